@@ -57,20 +57,10 @@ class UncertainInput:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Draws:
-    """Draws of the uncertain inputs of a study.
+    """Draws of the uncertain inputs of a study, which has their means.
 
-    Attributes
-    ----------
-    study : Study
-        With the mean of each input.
-    inputs : tuple of UncertainInput
-        In the order of the columns.
-    values : ndarray
-        Shape (sample, input), each in its SI unit.
-    probabilities : ndarray
-        The points behind the values: share of each distribution below them, shape (sample, input) [-].
-    seed : int
-        Of the scrambling.
+    `values` are in the SI units of the inputs, shape (sample, input); `probabilities` are the points behind
+    them, the share of each distribution below a value, same shape [-]. `seed` is that of the scrambling.
     """
 
     study: Study
@@ -101,13 +91,10 @@ def uncertain_inputs(
     InputError
         A friction of 0 has a scatter, or one from tests has a scatter of ten times its mean.
     """
-    known = study_numbers(study)
-    found = [
-        UncertainInput(
-            key=key, unit=known[key].unit, distribution=one, central=value_of(study, known[key]) or 0.0
-        )
-        for key, one in study.distributions.items()
-    ]
+    known, found = study_numbers(study), list[UncertainInput]()
+    for key, one in study.distributions.items():
+        central = value_of(study, known[key]) or 0.0
+        found.append(UncertainInput(key=key, unit=known[key].unit, distribution=one, central=central))
     return (*found, *_frictions(study, stated_frictions(study) if frictions is None else frictions))
 
 
@@ -122,11 +109,7 @@ def stated_frictions(study: Study) -> dict[Case, Friction]:
 
 
 def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[UncertainInput]:
-    """Measured frictions whose distribution the study does not give, with their scatter.
-
-    Log-normal, as the fit to tests and `probability_lowest` take them: friction scatters by a share of
-    itself.
-    """
+    """Measured frictions without a distribution in the study, log-normal, as the fit to tests assumes."""
     for (candidate, environment), friction in frictions.items():
         key = f"ranking.{candidate}.{environment}"
         if key in study.distributions:
@@ -134,16 +117,9 @@ def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[Unc
         scatter = study.ranking.friction_scatter if study.ranking else 0.0
         deviation, source = next_cage_deviation(friction, scatter)
         if deviation > 0.0:
-            scattered = _next_cage(
-                friction, deviation, f"Friction from tests of {candidate} in {environment}"
-            )
-            yield UncertainInput(
-                key=key,
-                unit="-",
-                distribution=settled_in(study, key, scattered),
-                central=friction.mean,
-                source=source,
-            )
+            where = f"Friction from tests of {candidate} in {environment}"
+            law = settled_in(study, key, _next_cage(friction, deviation, where))
+            yield UncertainInput(key=key, unit="-", distribution=law, central=friction.mean, source=source)
 
 
 def _next_cage(friction: Friction, deviation: Ratio, where: str) -> LogNormal:
@@ -163,19 +139,8 @@ def next_cage_deviation(friction: Friction, default_scatter: Ratio) -> tuple[Rat
     r"""Standard deviation of the friction of a new cage, and its source.
 
     Of a new cage, not of the mean: the scatter of single samples and the standard error of their mean
-    together, :math:`s \sqrt{1 + 1/n}` for n samples. Without a count the scatter is taken as it is.
-
-    Parameters
-    ----------
-    friction : Friction
-        Mean with its scatter, as far as it is known.
-    default_scatter : float
-        Standard deviation over mean where nothing is known [-].
-
-    Returns
-    -------
-    tuple
-        Standard deviation [-], and ``"measured"`` or ``"assumed"``.
+    together, :math:`s \sqrt{1 + 1/n}` for n samples; without a count the scatter alone; without a scatter
+    `default_scatter` times the mean. The source is ``"measured"`` or ``"assumed"``.
     """
     if friction.standard_deviation is None:
         return default_scatter * friction.mean, "assumed"
@@ -202,14 +167,9 @@ def sample(
     samples : int
         1 to `MOST_SAMPLES`, best a power of two. The first of more samples are the same as fewer samples.
     seed : int, optional
-        Of the scrambling; without it the study's.
+        Of the scrambling; without it the study's. The draws are the same on every machine.
     frictions : mapping, optional
         Measured friction of each case; by default as the study states it.
-
-    Returns
-    -------
-    Draws
-        The same for the same study, number and seed, whatever computes them.
 
     Raises
     ------
@@ -225,13 +185,8 @@ def sample(
     chosen = study.stability.seed if seed is None else seed
     points = sobol_points(samples, len(inputs), chosen)
     columns = [one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)]
-    return Draws(
-        study=study,
-        inputs=inputs,
-        values=np.stack(columns, axis=1),
-        probabilities=points,
-        seed=chosen,
-    )
+    values = np.stack(columns, axis=1)
+    return Draws(study=study, inputs=inputs, values=values, probabilities=points, seed=chosen)
 
 
 def sobol_points(samples: int, dimensions: int, seed: int) -> Array:

@@ -46,7 +46,7 @@ _restored: ContextVar[tuple[Path, Mapping[str, str]] | None] = ContextVar("resto
 
 @contextmanager
 def reading_only_in(folder: Path) -> Iterator[None]:
-    """Refuse, within it, every file that is outside a folder, be it by a link, and that we do not ship."""
+    """Refuse, within it, every file outside a folder, also by a link, that is not of the package."""
     token = _only_in.set(folder.resolve())
     try:
         yield
@@ -55,19 +55,12 @@ def reading_only_in(folder: Path) -> Iterator[None]:
 
 
 def size_of(path: Path, where: str) -> int:
-    """Size in bytes of a regular file, links followed; nothing else is to be opened.
-
-    Parameters
-    ----------
-    path : Path
-        As the user named it.
-    where : str
-        Its name in the refusal.
+    """Size in bytes of a regular file, links followed; no other may be opened. `where` names it in a refusal.
 
     Raises
     ------
     InputError
-        There is none, it is a folder, a pipe or a device, or it is outside of `reading_only_in`.
+        It does not exist, is a folder, a pipe or a device, or is outside of `reading_only_in`.
     """
     try:
         found = path.stat()
@@ -76,7 +69,7 @@ def size_of(path: Path, where: str) -> int:
     if stat.S_ISDIR(found.st_mode):
         raise InputError(where, "is a folder, not a file", cure="Name a file in it.")
     if not stat.S_ISREG(found.st_mode):
-        raise InputError(where, "is not a regular file", cure="Save what it gives to a file, and name that.")
+        raise InputError(where, "is not a regular file", cure="Save its output to a file, and name that.")
     folder, real = _only_in.get(), path.resolve()
     if folder is not None and not (real.is_relative_to(folder) or real.is_relative_to(_PACKAGE)):
         raise InputError(where, "is outside the folder that may be read", cure="Copy it into the folder.")
@@ -84,7 +77,7 @@ def size_of(path: Path, where: str) -> int:
 
 
 def unreadable(where: str, error: OSError | ValueError) -> InputError:
-    """Refusal of a file that the system does not give; a ValueError is that of a NUL in its name."""
+    """Refusal of a file that the system refused; a ValueError is that of a NUL in its name."""
     reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
     return InputError(where, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
 
@@ -139,19 +132,10 @@ def checksum_of_name(name: str) -> str:
 
 @contextmanager
 def restored(files: Mapping[str, bytes], links: Mapping[str, str]) -> Iterator[Path]:
-    """Yield a temporary folder with these files, which may name one another and nothing else.
+    """Yield a temporary folder with files by relative name, with slashes, which may name only one another.
 
-    Parameters
-    ----------
-    files : mapping of str to bytes
-        Content by relative name, with slashes.
-    links : mapping of str to str
-        Name here of each absolute path, by `checksum_of_name`.
-
-    Raises
-    ------
-    InputError
-        A name leaves the folder, or there is too much.
+    `links` has the name here of each absolute path, by `checksum_of_name`. Names that leave the folder are
+    refused, and too many or too large files.
     """
     if len(files) > MOST_FILES or sum(map(len, files.values())) > MOST_BYTES:
         raise InputError("The files of the answer", f"must be at most {MOST_FILES}, {MOST_BYTES >> 20} MB")

@@ -18,8 +18,8 @@ _SUSPECT = re.compile(r"[^\n\x20-\x7e]")
 def harmless(text: str) -> str:
     """Return the text with control characters spelled out, except ends of lines.
 
-    A terminal obeys them, and a title, a name or a log's header may come from somebody else. Characters that
-    cannot be seen, such as those that turn the direction of writing, are spelled out too.
+    A terminal obeys them, and a title or a log's header may come from a stranger. Invisible characters, such
+    as those that change the direction of writing, are spelled out too.
     """
     return _SUSPECT.sub(_spelled, text)
 
@@ -31,7 +31,7 @@ def _spelled(found: re.Match[str]) -> str:
 
 
 def one_line(text: str) -> str:
-    """Return the text on one line, with what no terminal should be sent spelled out."""
+    """Return the harmless text on one line."""
     return harmless(" ".join(text.split()))
 
 

@@ -24,10 +24,10 @@ WHOLE = ""
 RADIAL_CLEARANCE = "bearing.radial_clearance"
 MOST_DISTRIBUTIONS = 50
 SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
-"""Numbers that say how an answer is made, not what it is of."""
+"""Numbers of the method, not of the bearing."""
 
 ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
-"""What the contact angle depends on where the clearance is held."""
+"""Numbers from which the contact angle follows, at a given clearance."""
 
 Path = tuple[str | int, ...]
 Setter = Callable[[Sequence[float]], Study]
@@ -35,7 +35,7 @@ Setter = Callable[[Sequence[float]], Study]
 
 @dataclass(frozen=True, slots=True)
 class StudyNumber:
-    """One number of a study: its name in a study file, its SI unit, and where its records hold it."""
+    """One number of a study: its name in a study file, its SI unit, and its path in the records."""
 
     key: str
     unit: str
@@ -112,9 +112,7 @@ def value_of(study: Study, number: StudyNumber) -> float | None:
 
 
 def with_values(study: Study, values: Mapping[str, float]) -> Study:
-    """Return the study with other values of some of its numbers, by their names, all at once.
-
-    A number that is set is certain: its distribution is dropped.
+    """Return the study with other values of some of its numbers, all at once; these become certain.
 
     Raises
     ------
@@ -198,7 +196,7 @@ def radial_clearance(bearing: BallBearing) -> Metre:
 
 
 def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
-    """Return the study with these numbers uncertain; it holds the mean of each.
+    """Return the study with these numbers uncertain; its values are their means.
 
     A normal distribution becomes log-normal where the study takes no number down to its low end.
 

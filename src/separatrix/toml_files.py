@@ -33,7 +33,7 @@ DEEPEST = 16
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
-    """What a file is, for its refusals, and how large it may be."""
+    """Kind of a file: its name in refusals, and its largest size."""
 
     noun: str = "a study"
     most_bytes: int = MOST_BYTES
@@ -122,7 +122,7 @@ class Places:
     """File and line, or sheet and cell, of the paths of faults, as ``[ranking] candidates[2].name``."""
 
     label: str
-    """Of the file, the place of what has none of its own."""
+    """Of the file: the place of a path without one."""
 
     known: dict[str, str] = field(default_factory=dict)
 
@@ -146,7 +146,7 @@ def places_of(label: str, data: Mapping[str, object], lines: Mapping[str, int]) 
 
 
 def _paths(dotted: str, data: Mapping[str, object]) -> Iterator[str]:
-    """Yield a dotted key as the paths of faults, and those of what it is in."""
+    """Yield a dotted key as the paths of faults, with those of the tables around it."""
     name, *keys = dotted.split(".")
     inside = data.get(name)
     if not keys and not isinstance(inside, dict | list):
@@ -184,7 +184,7 @@ def _plain(key: str) -> str:
 
 
 def read_text(path: Path, kind: Kind = STUDY) -> str:
-    """Text of a file: a regular one, small enough for its kind, UTF-8, without NUL or endless lines."""
+    """Text of a regular file, small enough for its kind, in UTF-8, without NUL or endless lines."""
     label = label_of(path)
     size_of(path, path_text(path))
     try:
@@ -219,14 +219,14 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
     line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
     if "overwrite" in message or "twice" in message:
         key = _KEY_LINE.match(line)
-        return InputError(where, f"gives {printable(_plain(key[1])) if key else shown(line)} a second time")
+        return InputError(where, f"has {printable(_plain(key[1])) if key else shown(line)} a second time")
     reason = message[: found.start()]
     rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
     return InputError(where, rule, printable(line), _cure(line))
 
 
 def _cure(line: str) -> str:
-    """What the writer of an invalid line most likely meant."""
+    """Likely correction of an invalid line."""
     if comma := re.search(r"=\s*([+-]?[0-9]+),([0-9]+)", line):
         return f"Write a decimal point: {comma[1]}.{comma[2]}."
     if bare := re.search(r"=\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z][^#\"]{0,20})", line):
@@ -235,7 +235,7 @@ def _cure(line: str) -> str:
 
 
 def folded(name: str) -> str:
-    """Letters and digits of a name in lower case: what two spellings of it have in common."""
+    """Letters and digits of a name in lower case, which its spellings have in common."""
     return "".join(c for c in name.casefold() if c.isalnum())
 
 
@@ -332,7 +332,7 @@ def table(
     required: tuple[str, ...] = (),
     what: str = "this table",
 ) -> Values:
-    """Read a table in place, every key known and every required key there; all faults are collected."""
+    """Read a table in place, with known keys only and all required ones; all faults are collected."""
     if not isinstance(value, dict):
         raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
     given: Values = {}

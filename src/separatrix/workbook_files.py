@@ -42,20 +42,10 @@ SAVE_AGAIN = "Open it in a spreadsheet program and save it again as .xlsx."
 
 
 def refuse_unsafe(path: Path, label: str | None = None) -> None:
-    """Refuse what is not a workbook's zip file, is damaged or encrypted, or expands too far.
+    """Refuse a file that is not a workbook's zip file, is damaged or encrypted, or expands too far.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    label : str, optional
-        Its name in messages; the file's own name if omitted.
-
-    Raises
-    ------
-    InputError
-        It cannot be read, is not a zip file, has parts of one name, encrypted parts or a compression that
-        workbooks do not use, or would expand beyond `MOST_BYTES` or `MOST_RATIO`, or beyond what it declares.
+    That is beyond `MOST_BYTES`, `MOST_RATIO`, or the declared size. `label` names it in messages, by default
+    its own name.
     """
     name = printable(path.name) if label is None else label
     size = size_of(path, name)
@@ -140,7 +130,7 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Look:
-    """How a cell looks."""
+    """Look of a cell."""
 
     number_format: str = "General"
     bold: bool = False

@@ -59,7 +59,7 @@ def folder(tmp_path, monkeypatch):
 def test_no_verb_waits_for_a_pipe(capsys, call, path):
     """By its own name or by a link, in every place where a file is named."""
     line = refusal(capsys, call, path)
-    assert " is not a regular file. Save what it gives to a file, and name that.\n" in line
+    assert " is not a regular file. Save its output to a file, and name that.\n" in line
     assert "p.toml" in line or "link.toml" in line
 
 

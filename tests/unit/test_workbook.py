@@ -245,7 +245,7 @@ def test_the_width_beside_a_value_is_what_stands_behind_it_in_text(tmp_path):
 
 def test_a_formula_counts_with_its_saved_value_and_is_named(tmp_path):
     """The value is taken and the study says that it came from a formula, and from which cell."""
-    with pytest.warns(ValidityWarning, match=r"a\.xlsx: the cell holds a formula \(film!B2\)"):
+    with pytest.warns(ValidityWarning, match=r"a\.xlsx: the cell has a formula \(film!B2\)"):
         found = variant(tmp_path / "a.xlsx", ["thickness", Formula("1/2", 0.5), None, "um"])
     assert found.film.thickness == 5e-7
 

@@ -108,7 +108,8 @@ def _case(at: InpLines, kept: _Kept) -> ContactCase:
     rolls = digit["T"] >= 2
     if digit["C"] == 2:
         if rolls:
-            kept.rolling = tuple(at.numbers("CHI", "DQ", "VELOC")[:2])  # type: ignore[assignment]
+            angle, column, _ = at.numbers("CHI", "DQ", "VELOC")
+            kept.rolling = angle, column
         kept.materials = tuple(at.numbers("POISS1", "POISS2", "GG1", "GG2"))
         if digit["M"] == 4:
             kept.layer = tuple(at.numbers("GG3", "LAYTHK", "TAU_C0", "K_TAU"))
@@ -232,7 +233,7 @@ def _placed(at: InpLines, kept: _Kept, setup: ContactSetup, motion: Motion) -> E
 def _setup(at: InpLines, kept: _Kept, load: float, *, is_coated: bool, turned: bool) -> ContactSetup:
     """The contact of a case, under a load [N], or an approach [mm] with a minus sign.
 
-    One that was there before is the same object, so that cases start each other.
+    The contact of an earlier case is the same object, so that cases start each other.
     """
     missing = {"L": kept.friction, "C": kept.materials, "D": kept.area}
     for name, value in missing.items():

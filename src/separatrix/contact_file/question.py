@@ -33,7 +33,7 @@ LARGEST_STEPS = 5000  # columns rolled in a transient
 
 
 class Motion(Enum):
-    """What the bodies do: roll steadily, shift without rolling, or roll from a start."""
+    """Motion of the bodies: steady rolling, a shift without rolling, or rolling from a start."""
 
     ROLLING = "rolling"
     SHIFT = "shift"
@@ -78,7 +78,7 @@ def mirrored(vectors: Array) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactSetup:
-    """What touches what on which grid: cells over the Hertz ellipse, or those of a gap.
+    """A contact and its grid: cells over the Hertz ellipse, or those of a gap.
 
     `is_two_way`: pressure and tractions are solved each under the other, in steady rolling.
     """
@@ -152,7 +152,7 @@ class ContactCase:
 class ContactQuestion:
     """Cases in the order of their file.
 
-    `slope` asks for the slope of the traction curve at free rolling, under the spin of the first case;
+    `slope`: also the slope of the traction curve at free rolling, under the spin of the first case;
     `of_contact`: the answer is printed in the units and signs of CONTACT's users.
     """
 
@@ -165,7 +165,7 @@ class ContactQuestion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolvedCase:
-    """A case with its solution, or why it has none; a creep or shift that was found is in the case."""
+    """A case with its solution, or the reason for none; a creep or shift that was found is in the case."""
 
     case: ContactCase
     solution: ContactSolution | None
@@ -192,7 +192,7 @@ class SolvedCase:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactAnswer:
-    """The solved cases of a contact file; the slope if it was wanted, or why there is none."""
+    """The solved cases of a contact file; the slope if the question has it, or the reason for none."""
 
     question: ContactQuestion
     cases: tuple[SolvedCase, ...]
@@ -201,7 +201,7 @@ class ContactAnswer:
 
 
 def refuse_extremes(problem: ContactProblem, moves: Mapping[str, tuple[float, ...]]) -> None:
-    """Refuse spin that slips too fast, rolling without end, and films that are crushed."""
+    """Refuse too large a spin, too long a rolling distance, and films that are crushed."""
     ellipse = problem.ellipse
     reach = max(ellipse.semi_minor, ellipse.semi_major)
     for key, power in (("spin", 1), ("curvature", 2)):

@@ -80,7 +80,7 @@ def or_list(reader: Reader[Made]) -> Reader[tuple[Made, ...]]:
 def within(
     reader: Reader[Number], low: float, high: float, unit: str, *, open_low: bool = False
 ) -> Reader[Number]:
-    """Read a number that must lie between two others."""
+    """Read a number between two bounds."""
 
     def read(value: object, where: str) -> Number:
         found = reader(value, where)
@@ -177,7 +177,7 @@ class _File:
     def table(
         self, given: Mapping[str, object], prefix: str, readers: Mapping[str, Reader[object]], what: str
     ) -> Values:
-        """Values of a table, whose keys are `what`'s."""
+        """Values of a table, which a refusal calls `what`."""
         found: Values = {}
         for key, value in given.items():
             at = f"{prefix}{printable(key)}"

@@ -147,7 +147,7 @@ def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTab
 
 
 def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
-    """Refuse a name, or another name of a fluid, that one before it has but for capitals and spaces."""
+    """Refuse a name that an earlier record has, but for capitals and spaces."""
     known: dict[str, Record | FrictionTable] = {}
     for record in records:
         for name in (record.name, *_aliases(record)):

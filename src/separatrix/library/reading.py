@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
 
 from separatrix.errors import InputError, noted, together
 from separatrix.library.records import (
@@ -54,8 +53,7 @@ SECTIONS = {kind.replace(" ", "_"): kind for kind in KINDS}
 
 MOST_RECORDS, MOST_DATA, MOST_PROBLEMS = 2000, 100, 100
 TOP = ("title",)
-Given = TypeVar("Given")
-_long_text = partial(text, longest=1000, cure="Put it in quotes.")
+_long_text: Reader[str] = partial(text, longest=1000, cure="Put it in quotes.")
 BLANK = "What is not known is left out, never given as 0."
 
 
@@ -265,32 +263,20 @@ def _names(value: object, where: str) -> tuple[str, ...]:
     return tuple(value)
 
 
-def _that(
-    is_right: Callable[[Given], bool], rule: str, reader: Reader[Given], cure: str = ""
-) -> Reader[Given]:
-    """Reader of a value that passes a test after another reader."""
-
-    def read(value: object, where: str) -> Given:
-        given = reader(value, where)
-        if not is_right(given):
-            raise InputError(where, rule, shown(value), cure)
-        return given
-
-    return read
+def _source(value: object, where: str) -> str:
+    given = _long_text(value, where)
+    if len(given.strip()) < 3:
+        cure = "Give who measured or printed it, and where."
+        raise InputError(where, "must name a source", shown(value), cure)
+    return given
 
 
-_source = _that(
-    lambda given: len(given.strip()) >= 3,
-    "must name a source",
-    _long_text,
-    "Give who measured or printed it, and where.",
-)
-_confidence = _that(
-    lambda given: given.partition(";")[0].strip() in CONFIDENCES,
-    f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon",
-    _long_text,
-    'A guess is allowed and marked: "guess".',
-)
+def _confidence(value: object, where: str) -> str:
+    given = _long_text(value, where)
+    if given.partition(";")[0].strip() not in CONFIDENCES:
+        rule = f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon"
+        raise InputError(where, rule, shown(value), 'A guess is allowed and marked: "guess".')
+    return given
 
 
 def _phase(value: object, where: str) -> str:
@@ -336,11 +322,13 @@ def _aliases(value: object, where: str) -> list[str]:
     return [text(name, where) for name in value]
 
 
-_coolprop = _that(
-    lambda given: given.isascii() and given.replace("-", "").isalnum(),
-    "must be the plain name of a pure fluid, letters and digits",
-    text,
-)
+def _coolprop(value: object, where: str) -> str:
+    given = text(value, where)
+    if not (given.isascii() and given.replace("-", "").isalnum()):
+        raise InputError(where, "must be the plain name of a pure fluid, letters and digits", shown(value))
+    return given
+
+
 _FACTS: dict[str, Reader[object]] = {
     "substance": text,
     "phase": _phase,

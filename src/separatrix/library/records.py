@@ -50,7 +50,7 @@ PROPERTIES = {
     "critical_temperature": Property("K", "critical temperature", 0.1, 5000.0),
     "critical_pressure": Property("Pa", "critical pressure", 1.0, 1e9),
 }
-"""Every number that a record may hold."""
+"""Every number that a record may have."""
 
 ELASTIC = ("elastic_modulus", "poisson_ratio")
 SOLID_ONLY = (*ELASTIC, "compressive_strength", "thermal_expansion")
@@ -87,8 +87,8 @@ class Datum:
     source: str
     confidence: str
 
-    def holds_at(self, temperature: Kelvin) -> bool:
-        """Whether its source lets it serve at this temperature."""
+    def serves_at(self, temperature: Kelvin) -> bool:
+        """Whether its stated temperatures include this one."""
         if self.temperature is None:
             return False
         low, high = self.temperature
@@ -125,7 +125,7 @@ class LibraryFile:
 
 
 class Facts(TypedDict, total=False):
-    """Other names of a material or a fluid; what a fluid is."""
+    """Other names of a material or a fluid; substance and phase of a fluid."""
 
     substance: str
     phase: str
@@ -135,7 +135,7 @@ class Facts(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
-    """A material or a fluid as a library file gives it."""
+    """A material or a fluid of a library file."""
 
     kind: str
     name: str
@@ -203,15 +203,15 @@ class Choice(NamedTuple):
 
 
 def choose(data: Sequence[Datum], temperature: Kelvin | None, words: str) -> Choice:
-    """Datum for a temperature: the one whose stated range is narrowest around it.
+    """Datum for a temperature: that with the narrowest stated range around it.
 
-    None is interpolated or extrapolated. Where no range holds the temperature, the nearest datum serves and
-    the caution says so; without a temperature the first one serves.
+    None is interpolated or extrapolated. Where no range includes the temperature, the nearest datum serves
+    and the caution states it; without a temperature the first one serves.
     """
     if temperature is None:
         return Choice(data[0], None)
     spans = [(datum, *(datum.temperature or _NOWHERE)) for datum in data]
-    if fitting := [one for one in spans if one[0].holds_at(temperature)]:
+    if fitting := [one for one in spans if one[0].serves_at(temperature)]:
         return Choice(min(fitting, key=lambda one: one[2] - one[1])[0], None)
     nearest, low, high = min(spans, key=lambda one: max(one[1] - temperature, temperature - one[2], 0.0))
     at = format_quantity(temperature, "K")

@@ -1,4 +1,4 @@
-"""A study document: its sections key by key, each with its place, after `extends` has been followed."""
+"""A study document: its sections key by key, each with its place, merged over the file it extends."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ ALTERNATIVES = {
     "film": (("elastic_modulus", "poisson_ratio"), ("material",)),
     "ranking": (("candidates",), ("friction", "materials")),
 }
-"""Keys that exclude each other: a variant that gives one side drops the other side of its base."""
+"""Keys that exclude each other: a variant with one side drops the other side of its base."""
 
 TOP = ("title", "extends", "library")
 """Keys before the first section."""
@@ -59,9 +59,9 @@ class Unfinished(Exception):  # noqa: N818 - not an error: it never leaves this 
 
 @dataclass(slots=True)
 class Document:
-    """Sections of a study, from a text file or a workbook, before anything is converted.
+    """Sections of a study, from a text file or a workbook, before any value is converted.
 
-    A value may be an InputError: why it has none. What is wrong is noted under the path of its key,
+    A value may be an InputError, where a cell has none. A fault is noted under the path of its key,
     ``[cage] mass`` or ``[ranking] candidates[2].name``; `places` has its place.
     """
 
@@ -71,10 +71,10 @@ class Document:
     places: Places = field(default_factory=lambda: Places(""))
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
-    """Of the uncertain numbers, by their names, as they are read."""
+    """Distributions of the uncertain numbers by their names."""
 
     libraries: list[tuple[Path, object]] = field(default_factory=list)
-    """The study files of the chain, and what each has as `library`: these and their neighbours are read."""
+    """The study files of the chain, and the key `library` of each."""
 
     friction_folder: Path = field(default_factory=Path)
     """Folder of the file that gives [ranking] friction."""
@@ -84,7 +84,7 @@ class Document:
 
     @contextmanager
     def noting(self) -> Iterator[None]:
-        """Note what is refused, instead of raising it."""
+        """Note a refusal instead of raising it."""
         with suppress(Unfinished), noted(self.problems):
             yield
 
@@ -222,7 +222,7 @@ def _shipped_names(text: str) -> str:
 
 
 def library_of(document: Document) -> Library:
-    """Library of a study: what is shipped, stands beside its files, or is named in them."""
+    """Library of a study: the shipped records, and those of files beside it or named in it."""
     paths: list[Path] = []
     for study, given in document.libraries:
         if study not in shipped_studies().values():

@@ -40,16 +40,9 @@ _WITHOUT = {
     "bearing.bore": "not given; only the DN figure needs it",
     "operation.moment": "not given: the rings are held and carry any moment",
     "operation.tilt": "default: the rings are held parallel",
-    "operation.temperature": "not given",
-    "operation.fluid": "not given",
     "film.material": "default: bare races",
     "film.thickness": "default: bare races",
     "film.wear": "default: not worn",
-    "film.wear.width": "not given",
-    "film.wear.share": "not given",
-    "film.wear.across": "not given",
-    "film.wear.thicknesses": "not given",
-    "cage.material": "not given",
     "cage.ball_cage_stiffness": "default: Hertz, ball in pocket, at the impact speed",
     "cage.impact_speed": f"default: {_SCALED}",
     "cage.ball_cage_friction": "default: that of its material in [ranking] environment",
@@ -61,15 +54,11 @@ _WITHOUT = {
     "stability.reference_kick": f"default: {_SCALED}",
     "stability.restitution_factors": "default: chosen where the curve bends",
     "cage.mass": "not given: that of the ring's shape",
-    "cage.inner_diameter": "not given",
-    "cage.outer_diameter": "not given",
-    "cage.width": "not given",
     "cage.moment_of_inertia": "default: of the ring's shape, or a thin ring at the pitch diameter",
     "cage.transverse_inertia": "default: of the ring's shape, or half that about the axis",
-    "cage.land_spacing": "not given",
     "cage.land_diameter": "default: of the ring's shape, or the pitch diameter",
 }
-"""Meaning of an absent value."""
+"""Meaning of an absent value, where it is more than "not given"."""
 
 
 def resolved(study: Study) -> dict[str, Any]:
@@ -144,7 +133,7 @@ def _with_origin(study: Study, key: str, item: Mapping[str, object]) -> dict[str
     if origin is None:
         origin = "default" if study.origins else "given in Python"
         if item.get("value", 0) in (None, []):
-            origin = _WITHOUT.get(key, origin)
+            origin = _WITHOUT.get(key, "not given")
             if key == "operation.tilt" and not study.operation.is_tilt_held:
                 origin = "free: the inner ring tilts until the balls balance the moment"
     return {**item, "origin": origin}

@@ -1,4 +1,4 @@
-"""The section [ranking], and which of its candidates and environments are those of the study's own cage."""
+"""The section [ranking]; the candidate and the environment of the study's own cage."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _of_file(
 
 
 def _chosen(given: Values, known: tuple[str, ...], name: str) -> tuple[str, ...]:
-    """Materials that the study ranks, in any spelling; by default all that are known."""
+    """Materials that the study ranks, in any spelling; by default all known ones."""
     by_spelling = {folded(one): one for one in known}
     chosen = [by_spelling.get(folded(one), one) for one in given.get("materials", known)]
     if absent := [one for one in chosen if one not in known]:
@@ -116,7 +116,7 @@ def _chosen(given: Values, known: tuple[str, ...], name: str) -> tuple[str, ...]
 
 
 def _mean_of(law: TestedFriction, source: str) -> Friction:
-    """Mean over the tests, until the law predicts that at the pocket's conditions."""
+    """Mean over the tests, until the law predicts the friction at the conditions of the pocket."""
     own = law.serving(context().temperature)
     if others := len(law.own) - len(own):
         source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"
@@ -255,22 +255,22 @@ def name_environment(parts: Values) -> bool:
     if len(question.environments) == 1 or operation.fluid is None:
         return False
     for surface in (bearing.ball_material.name, bearing.ring_material.name):
-        found = [name for name in question.environments if _is(name, operation.fluid, surface)]
+        found = [name for name in question.environments if _fits(name, operation.fluid, surface)]
         if len(found) == 1:
             parts["ranking"] = replace(question, environment=found[0])
             return True
     return False
 
 
-def _is(environment: str, fluid: str, surface: str) -> bool:
-    """Whether an environment, "medium, counterface", is this fluid and, if it names one, this counterface."""
+def _fits(environment: str, fluid: str, surface: str) -> bool:
+    """Whether an environment, "medium, counterface", has this fluid and, if it names one, this surface."""
     medium, comma, counterface = environment.partition(",")
     alike = not comma or _alike(counterface, surface, "bearing material")
     return alike and _alike(medium, fluid, "fluid")
 
 
 def _alike(one: str, other: str, kind: str) -> bool:
-    """Whether two names are of the same record, or of what is in no library."""
+    """Whether two names are of the same record, or the same where the library has no record."""
     library = context().library
     first, second = (library.named(kind, name.strip()) or folded(name) for name in (one, other))
     return first == second

@@ -1,4 +1,4 @@
-"""From the sections of a document to the records of a study; everything wrong is collected."""
+"""From the sections of a document to the records of a study; all faults are collected."""
 
 from __future__ import annotations
 
@@ -41,13 +41,7 @@ _USELESS_ALONE = {
 
 
 def build_study(document: Document, name: str) -> Study:
-    """Build the study of a document.
-
-    Raises
-    ------
-    InputError
-        With everything that is wrong, a line each.
-    """
+    """Build the study of a document; a refusal has everything that is wrong, a line each."""
     from separatrix.study_file.ranking_section import FROM_BEARING, name_cage, name_environment
 
     title, library, fits = name, None, False
@@ -92,7 +86,7 @@ def _study(document: Document, made: Values) -> Study:
         if error.path != "[cage] ball_cage_stiffness":
             raise
         refusal = error.at(document.locate(error.path))
-    sentence = f"{refusal.path} {refusal.rule}: the section is left out, and what needs it is refused."
+    sentence = f"{refusal.path} {refusal.rule}: the section is left out, and verbs that need it are refused."
     warnings.warn(sentence, ValidityWarning, stacklevel=4)
     for key in [key for key in document.distributions if key.startswith("cage.")]:
         del document.distributions[key]
@@ -157,7 +151,7 @@ def _temperature(document: Document) -> float | None:
 
 
 def _used_records(library: Library, document: Document) -> dict[str, object]:
-    """Whole records of what a study names besides materials: its fluid, its friction table."""
+    """Whole records of the fluid and the friction table that a study names."""
     fluid = document.sections["operation"].get("fluid")
     known = library.fluid(fluid) if isinstance(fluid, str) else None
     records: dict[str, object] = {} if known is None else {"operation.fluid": known.plain()}
@@ -168,7 +162,7 @@ def _used_records(library: Library, document: Document) -> dict[str, object]:
 
 
 def _converted(document: Document, section: str) -> Values:
-    """Values of a section's known keys; what is wrong goes to the document's problems."""
+    """Values of a section's known keys; faults go to the document's problems."""
     converted: Values = {}
     readers = READERS[section]
     for key, value in document.sections[section].items():
@@ -217,7 +211,7 @@ def _record(document: Document, section: str, given: Values) -> object:
 
 
 def _bearing(document: Document, given: Values) -> Values:
-    """Give the contact angle without load that the radial clearance makes."""
+    """Replace the radial clearance by the contact angle without load."""
     if "radial_clearance" not in document.sections["bearing"]:
         return given
     if "radial_clearance" not in given:

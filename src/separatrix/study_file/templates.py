@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from separatrix.errors import DataError, InputError
 from separatrix.input_files import place
@@ -113,37 +113,21 @@ def section_remarks() -> dict[str, str]:
     return {match[2]: match[3] for match in found if match and match[3] and not match[1]}
 
 
-class Written(NamedTuple):
-    """A row of the template: its key, the cells of its value and its unit."""
-
-    key: str
-    value: object
-    unit: str
-
-
-def cells_of(key: str, value: object) -> Iterator[Written]:
-    """Yield the rows of a value of the template; a table has a row for each of its parts."""
+def cells_of(key: str, value: object) -> Iterator[tuple[str, object, str]]:
+    """Yield key, value and unit of the rows of a value of the template; a table has a row for each part."""
     if isinstance(value, dict):
         for part, item in value.items():
             yield from cells_of(f"{key}.{part}", item)
     elif isinstance(value, list):
-        found = [_quantity(item) for item in value]
+        found = [quantity_of(item) for item in value]
         texts = [
-            item if number is None else with_unit(number, "")
+            str(item) if number is None else with_unit(float(number), "")
             for item, (number, _) in zip(value, found, strict=True)
         ]
-        yield Written(key, f"{SEPARATOR} ".join(texts), found[0][1])
+        yield key, f"{SEPARATOR} ".join(texts), found[0][1]
     else:
-        number, unit = (None, "") if key in TEXTS else _quantity(value)
-        yield Written(key, value if number is None else number, unit)
-
-
-def _quantity(value: object) -> tuple[float | None, str]:
-    """Return number and unit of a text; None if it is none."""
-    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-    if match is None or not any((match[2] or "") in known for known in UNITS.values()):
-        return None, ""
-    return float(match[1]), match[2] or ""
+        number, unit = (None, "") if key in TEXTS else quantity_of(value)
+        yield key, float(number) if number and unit else value, unit
 
 
 def quantity_of(value: object) -> tuple[str | None, str]:
@@ -233,7 +217,7 @@ class _Choices:
         self._cells: list[tuple[Worksheet, str, tuple[str, ...], bool]] = []
 
     def add(self, sheet: Worksheet, row: int, key: str, unit: str) -> None:
-        """Give a row the lists for its value and its unit."""
+        """Add the lists for value and unit of a row."""
         items, is_open = choices_of(*key.split(".", 1))
         if items:
             self._cells.append((sheet, f"B{row}", items, not is_open))
@@ -272,7 +256,7 @@ class Offered:
     """Those of the friction tables of the library."""
 
     tested: tuple[str, ...] = ()
-    """Materials of what [ranking] friction names, a table of the library or a file."""
+    """Materials of the table of the library, or the file, in [ranking] friction."""
 
 
 NOTHING = Offered()
@@ -293,7 +277,7 @@ def offered_by(document: Document) -> Offered:
 
 
 def _tested(document: Document, library: Library) -> tuple[str, ...]:
-    """Materials of what [ranking] friction names; a file that cannot be read has none."""
+    """Materials of the table or file in [ranking] friction; none if it cannot be read."""
     name = document.sections.get("ranking", {}).get("friction")
     if not isinstance(name, str):
         return ()

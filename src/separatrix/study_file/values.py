@@ -132,7 +132,7 @@ _PROPERTIES: dict[str, Reader[object]] = {
 
 
 def named_material(name: str, kind: str, where: str) -> Material:
-    """Material of the library, or a refusal that lists what there is."""
+    """Material of the library, or a refusal that lists its materials."""
     return context().library.material(kind, known_name(name, kind, where), context().temperature)
 
 
@@ -144,7 +144,7 @@ def cage_material(value: object, where: str) -> Material | Uncertain | str:
 
 
 def known_name(name: str, kind: str, where: str, more: str = "") -> str:
-    """Exact name in the library of one in any spelling, or a refusal with what there is."""
+    """Exact name in the library of one in any spelling, or a refusal that lists the names."""
     found = context().library.named(kind, name)
     if found is not None:
         return found
@@ -181,13 +181,7 @@ def wear(value: object, where: str) -> Wear | Uncertain:
 
 
 def read_profile(path: Path, where: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Places across the groove and thicknesses there [m], of a table of two columns with their units.
-
-    Raises
-    ------
-    InputError
-        It is not there, or is not such a table: a line for each mistake.
-    """
+    """Places across the groove and thicknesses there [m], of a table of two columns with their units."""
     if not path.is_file():
         cure = "It is looked for in the folder of the study."
         raise InputError(where, "does not name a file", shown(str(path.name)), cure)
