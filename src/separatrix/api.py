@@ -178,7 +178,7 @@ def solve_contact(asked: str | Path | ContactQuestion) -> ContactCases:
     Warns
     -----
     ValidityWarning
-        A film is compressed by more than linear elasticity holds for.
+        A film is compressed beyond the range of linear elasticity.
     """
     from separatrix.contact_file import read_contact
     from separatrix.contact_file.question import ContactQuestion

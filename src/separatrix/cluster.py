@@ -32,7 +32,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
     Parameters
     ----------
     address : str
-        Of a running Dask scheduler, say ``"tcp://host:8786"``; or ``"local:N"`` for N processes here.
+        Of a running Dask scheduler, such as ``"tcp://host:8786"``; or ``"local:N"`` for N processes here.
 
     Raises
     ------

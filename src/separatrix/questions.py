@@ -59,7 +59,7 @@ VERBS: tuple[Verb, ...] = (
     Verb(name="restitution", help="Restitution factor of a ball/cage impact.", needs=("cage",)),
     Verb(
         name="mobility",
-        help="How the races hold a ball that is pushed along its orbit.",
+        help="Resistance of the races to a ball that is pushed along its orbit.",
         epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
         "the capacity of the races, and with a cage the restitution of impacts against their speed.",
     ),
@@ -89,7 +89,7 @@ VERBS: tuple[Verb, ...] = (
         help="Follow one run of the cage, in the plane or in space.",
         needs=("cage",),
         moves_a_cage=True,
-        epilog="An unresolved run says why. --animate mp4 needs the extra animation.",
+        epilog="An unresolved run states its reason. --animate mp4 needs the extra animation.",
         question=("kick", "run", "restitution_factor", "animate"),
     ),
     Verb(

@@ -53,7 +53,7 @@ def save_answer(
     pictures : bool
         Whether the figures are written, too.
     animation : str, optional
-        ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` hears how far it is.
+        ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` receives how far it is.
 
     Raises
     ------

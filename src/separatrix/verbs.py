@@ -69,7 +69,7 @@ def check(study: Study) -> answers.CheckAnswer:
         found = answers.CheckAnswer(static=None, static_reason=str(error))
     try:
         with warnings.catch_warnings():
-            # the chain was not asked for
+            # `check` does not report the chain
             warnings.filterwarnings("ignore", "(?!Clearances)", ValidityWarning)
             return replace(found, clearances=solve(study).clearances)
     except SeparatrixError as error:
@@ -81,7 +81,7 @@ def _try_predicted_friction(study: Study) -> None:
     if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
         return
     try:
-        # the chain was not asked for
+        # `check` does not report the chain
         with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             uncertain_inputs(study, frictions_to_draw(study))
     except SeparatrixError as error:

@@ -331,7 +331,7 @@ def test_a_study_without_a_cage_has_what_could_be_computed(monkeypatch, capsys):
         ("rank.json", "{", "is not the document of an answer: no valid JSON"),
         ("rank.json", '{"verb": "bearing", "study": {}}', "is not a document of `rank`"),
         ("rank.json", '{"verb": "rank", "study": {"bearing": {}}}', "lacks separatrix_version"),
-        ("notes.txt", "", "holds no answer of separatrix"),
+        ("notes.txt", "", "contains no answer of separatrix"),
     ],
 )
 def test_a_folder_of_something_else_is_refused(name, text, words, capsys):

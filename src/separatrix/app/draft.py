@@ -45,7 +45,7 @@ _NUMBER = re.compile(rf"\s*{NUMBER}\s*")
 class Fault:
     """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message.
 
-    `inside` is the rest of its path, for a key that holds tables: ``[2].friction."air, 440C".mean``.
+    `inside` is the rest of its path, for a key with tables: ``[2].friction."air, 440C".mean``.
     """
 
     section: str

@@ -143,7 +143,7 @@ class CandidateList:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FormSection:
-    """A section of the form, with what is said of it as a whole."""
+    """A section of the form, with its remark and the faults of the whole section."""
 
     name: str
     remark: str

@@ -105,7 +105,7 @@ class Jobs:
                 if replace(job.task, number=asked.number) == asked:
                     return job
             if len(active) >= MOST_WAITING:
-                raise InputError("The queue", f"holds {MOST_WAITING} jobs", cure="Wait, or cancel some.")
+                raise InputError("The queue", f"has {MOST_WAITING} jobs", cure="Wait, or cancel some.")
             self._last += 1
             self._jobs[asked.number] = job = Job(task=asked, study=name, title=title or verb)
             ended = [number for number, one in self._jobs.items() if not one.is_active]
@@ -197,7 +197,7 @@ class Jobs:
         if self._pipe is pipe:
             self._process = self._pipe = None
         for job in [job for job in self._jobs.values() if job.state == RUNNING]:
-            words = "The computing process ended; the terminal of `separatrix app` may say why. "
+            words = "The computing process ended; the terminal of `separatrix app` may show why. "
             words += "Finished runs are kept: resume to go on."
             self._change(job.number, state="failed", message=words, ended=time.monotonic())
         self._feed()

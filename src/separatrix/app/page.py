@@ -177,7 +177,7 @@ def _is_study(path: Path) -> bool:
 
 @dataclass(slots=True)
 class _Read:
-    """What a file held when it was read; each file has its own lock, so that a long one delays no other."""
+    """The content of a file when it was read; each has its own lock, so that a long read delays no other."""
 
     stamp: int | None = None
     content: Any = None

@@ -126,7 +126,7 @@ def made_ready(page: Page) -> None:
     for path in page.newest(results.READ)[:MOST_READY]:
         page.dataset(path)
     found = solve(read_study("cryogenic-turbopump"))
-    _ = found.restitution, found.friction  # computed when asked for
+    _ = found.restitution, found.friction  # computed at first use
 
 
 class TooLarge(Exception):  # noqa: N818 - a reply, not a fault
@@ -169,7 +169,7 @@ class Guard:
         elif self._brings_token(scope):
             await self._enter(send)
         elif not self._has_cookie(headers):
-            words = "Open the link that `separatrix app` printed in the terminal: it holds a token."
+            words = "Open the link that `separatrix app` printed in the terminal: it contains a token."
             await _reply(send, HTTPStatus.FORBIDDEN, words)
         else:
             await self._pass(scope, receive, send)

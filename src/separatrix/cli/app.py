@@ -136,7 +136,7 @@ def _start(
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
-    """Run the command line; return its exit status, as `separatrix.cli.main` says."""
+    """Run the command line; return its exit status, that of `separatrix.cli.main`."""
     command = typer.main.get_command(_application())
     try:
         status = command.main(arguments, prog_name="separatrix", standalone_mode=False)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 HELP = "Everything on one study as a document: HTML, and PDF with --pdf."
 EPILOG = (
-    "Of a folder: from the answers that it holds; nothing long is computed. Of a study: bearing, traction, "
+    "Of a folder: from the answers in it; nothing long is computed. Of a study: bearing, traction, "
     "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
     "same inputs that are there already are taken. Of two, each a study, a folder, a .json or a .html file: "
     "what changed, by more than counting noise or not. The HTML needs no other file and no network."

@@ -16,7 +16,7 @@ import typer
 
 from separatrix.cli.console import answer, answer_json, interruptible, progress_bar
 from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
-from separatrix.comparing.pair import Agreement, agreement
+from separatrix.comparing.records import Agreement
 from separatrix.comparing.saved import Document, Saved, read_answers
 from separatrix.errors import InputError
 from separatrix.messages import grouped, noted_warnings
@@ -116,6 +116,7 @@ def reproduce(
 
 
 def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
+    from separatrix.comparing.pair import agreement
     from separatrix.present import document
     from separatrix.runner import Interrupted
 
@@ -271,9 +272,9 @@ def _versions(stored: Document, kept: Document) -> Iterator[Version]:
 
 def _lines(one: Reproduced) -> Iterator[str]:
     found = one.result
-    said = "the same" if one.same else "different"
+    verdict = "the same" if one.same else "different"
     how = f", {found.agreement}" if found.same else f": {found.count} values differ"
-    yield f"{one.verb} {one.name}: {said}{how}."
+    yield f"{one.verb} {one.name}: {verdict}{how}."
     if found.largest_at is not None:
         yield f"  Largest relative difference {found.largest_difference:.2g}, of {found.largest_at}."
     for at in found.differences[:5]:

@@ -94,7 +94,7 @@ OPTIONS: dict[str, tuple[object, object]] = {
 
 
 def threads(jobs: int | None) -> int:
-    """Return the number of threads asked for, or one for each processor that this process may use."""
+    """Return the number of threads of an option, or one for each processor that this process may use."""
     if jobs is not None and not 1 <= jobs <= MOST_JOBS:
         cure = f"Leave it out for one thread on each of the {processors()} processors."
         raise InputError("--jobs", f"must lie between 1 and {MOST_JOBS}", got=str(jobs), cure=cure)
@@ -102,7 +102,7 @@ def threads(jobs: int | None) -> int:
 
 
 def folder(out: str | None) -> Path | None:
-    """Return the folder asked for; an empty name, as from an unset variable, is refused."""
+    """Return the folder of an option; an empty name, as from an unset variable, is refused."""
     if out is not None and not out.strip():
         raise InputError("--out", "needs the name of a folder", got='""', cure="The current one is .")
     return None if out is None else Path(out)
@@ -175,7 +175,7 @@ def run(
         if found.is_complete:
             return ANSWERED
         more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
-        return interrupted(f"the answer holds what was finished, and is marked complete: false.{more}")
+        return interrupted(f"the answer has what was finished, and is marked complete: false.{more}")
 
     return work()
 

@@ -83,7 +83,7 @@ TRIBOMETER_EPILOG = (
     "never overwritten."
 )
 FILES_HELP = "Raw tribometer logs, or folders of them; the format is recognised."
-FRICTION_HELP = "Friction file to write, say friction.toml [default: none]."
+FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
 MAP_HELP = "Column map (TOML) for what the logs do not state."
 PLOTS_HELP = "Folder of a page for each test [default: beside the friction file]."
 RUN_IN_HELP = 'Where running-in ends, for instance "200 m" [default: found].'
@@ -276,7 +276,7 @@ def _deliver(verb: str, document: Mapping[str, object], text: str | None) -> Non
 
 
 def _summary(verb: str, content: Content, library: str | None, *, as_json: bool) -> None:
-    """Answer with what a library file holds: its records, and how many of their numbers are guesses."""
+    """Answer with the content of a library file: its records, and how many of their numbers are guesses."""
     from dataclasses import asdict
 
     from separatrix.present.text.materials import added, checked, counts

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
-from separatrix.comparing.records import Comparison, Difference, Named, is_number
+from separatrix.comparing.records import (
+    DIFFERENT,
+    EXACT,
+    ROUNDED,
+    Agreement,
+    Comparison,
+    Difference,
+    Differing,
+    Named,
+    is_number,
+)
 from separatrix.comparing.results import differing, of_dataset, of_document, order
 from separatrix.comparing.saved import VERBS, Saved
 from separatrix.errors import InputError
-from separatrix.units import Ratio, printable
+from separatrix.units import printable
 
 MOST_ROWS = 2000
 
@@ -29,8 +38,6 @@ ROUNDING = 1e-9
 MOST_SHOWN = 20
 IGNORED = ("separatrix_version", "provenance")
 """Keys of a document that are not the answer."""
-
-EXACT, ROUNDED, DIFFERENT = "bit for bit", "to rounding", "different"
 
 
 def pair_of(first: Mapping[str, Saved], second: Mapping[str, Saved]) -> tuple[Saved, Saved, tuple[str, ...]]:
@@ -181,37 +188,6 @@ def _single(saved: Saved, name: str, section: str = "") -> object:
         return node.get(name) if isinstance(node, Mapping) else None
     found = None if saved.data is None else saved.data.get(f"{section}_{name}" if section else name)
     return found.item() if found is not None and found.size == 1 else None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Differing:
-    """A key whose value differs: numbers, texts, or what is there on one side only, in short."""
-
-    key: str
-    stored: object
-    computed: object
-    relative: Ratio | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Agreement:
-    """How well two documents agree.
-
-    `agreement` is "bit for bit", "to rounding" or "different". `largest_difference` is the largest relative
-    difference of two numbers, at the key `largest_at`; None if no number differs. `differences` are the first
-    of the `count` keys that differ beyond rounding.
-    """
-
-    agreement: str
-    largest_difference: Ratio | None
-    largest_at: str | None
-    differences: tuple[Differing, ...]
-    count: int
-
-    @property
-    def same(self) -> bool:
-        """Whether they are equal, at least to rounding."""
-        return self.agreement != DIFFERENT
 
 
 def agreement(stored: Mapping[str, object], computed: Mapping[str, object]) -> Agreement:

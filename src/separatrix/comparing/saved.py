@@ -24,13 +24,13 @@ VERBS = (
 """Verbs of a study whose answers are read; of a folder with several, two are compared in this order."""
 
 ENDINGS = (".json", ".nc", ".html", ".htm")
-"""Endings of the files that hold answers: documents, datasets, reports."""
+"""Endings of files with answers: documents, datasets, reports."""
 
 MOST_BYTES = 256 * 1024**2
 REPORT = re.compile(
     rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
 )
-"""Where a report holds the documents of its answers."""
+"""The documents of the answers in a report."""
 
 Document = Mapping[str, Any]
 """An answer as JSON has it; what comes from a file is checked where it is used."""

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ON_A_SCREEN = {"inputs": 8, "verdicts": 8, "rows": 15}
-"""Most rows of each table, unless all are asked for."""
+"""Most rows of each table, without --full."""
 
 HEADLINES = {"rank": ("margin", "probability_stable"), "sensitivity": ("probability_stable",)}
 """Results that are shown on a screen, of the bearing's own environment; of other verbs all are."""
@@ -230,10 +230,8 @@ def _check(data: xr.Dataset, saved: Saved) -> None:
 def comparison_document(found: Comparison) -> dict[str, object]:
     """Return a comparison as plain data, as ``--json`` prints it."""
     from separatrix import __version__
-    from separatrix.present.nodes import null_if_not_finite
 
-    with null_if_not_finite():
-        return {"separatrix_version": __version__, "verb": "compare", **plain(found)}
+    return {"separatrix_version": __version__, "verb": "compare", **plain(found, left_out=[])}
 
 
 def save_comparison(folder: Path, found: Comparison, first: Saved, second: Saved) -> None:

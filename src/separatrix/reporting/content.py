@@ -266,7 +266,7 @@ def read_folder(folder: Path, *, needed: bool = True) -> dict[str, Kept]:
     if needed and not found:
         names = ", ".join(f"{verb}.json" for verb in NEEDED)
         cure = "Name the folder of an answer, or a study: separatrix report cryogenic-turbopump."
-        raise InputError(str(folder), f"holds no answer of separatrix ({names})", cure=cure)
+        raise InputError(str(folder), f"contains no answer of separatrix ({names})", cure=cure)
     return found
 
 
@@ -334,7 +334,7 @@ def answers_of(
 ) -> tuple[dict[str, Kept], list[str], bool]:
     """Return the answers to a study, what was refused, and whether no answer was interrupted.
 
-    Those that the folder holds already are taken; the others that a report needs are computed.
+    Those in the folder are taken; the others that a report needs are computed.
     """
     known = read_folder(folder, needed=False) if folder is not None else {}
     found = {verb: one for verb, one in known.items() if answers(one, study)}

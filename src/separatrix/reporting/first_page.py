@@ -180,7 +180,7 @@ def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:
     """Yield what a reader of the first page must know; the rest has a section of its own."""
     found = [*about]
     if main.get("complete") is False:
-        found.append("The computation was interrupted: this answer holds only what was finished.")
+        found.append("The computation was interrupted: this answer has only what was finished.")
     if main["verb"] == "rank":
         found += _by_the_other_ball(main)
     found += main["warnings"]
