@@ -39,11 +39,6 @@ class LinearModel:
         """Whether the tests show how samples scatter: two samples, and a test beyond the coefficients."""
         return self.freedom > 0 and bool(np.any(self.sample != self.sample[0]))
 
-    @property
-    def has_repeats(self) -> bool:
-        """Whether some sample was tested more than once."""
-        return bool(np.bincount(self.sample).max() > 1)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Conditional:
@@ -98,7 +93,7 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     useful = [model for model in models if model.freedom > 0]
     if not useful:
         return None
-    separate = any(model.has_repeats for model in useful)
+    separate = any(np.bincount(model.sample).max() > 1 for model in useful)  # a sample was tested twice
     squares = 0.0  # that ordinary least squares leave
     for model in useful:
         b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]

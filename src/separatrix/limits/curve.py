@@ -96,10 +96,7 @@ class StabilityCurve:
 
 
 def stability_curve(
-    cage: PlanarCage,
-    settings: StabilitySettings,
-    *,
-    runner: Runner | None = None,
+    cage: PlanarCage, settings: StabilitySettings, *, runner: Runner | None = None
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 

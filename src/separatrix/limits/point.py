@@ -29,6 +29,11 @@ CROSSINGS, ANY_KICK = 3000, 1.0
 """Length of a run of hard impacts, in times that the kick takes to cross a pocket's clearance. There is no
 other time in it, so that any kick [m/s] gives the same."""
 
+OF_A_HARD_CAGE = (
+    *("mass", "moment_of_inertia", "ball_count", "pitch_radius", "inner_speed", "outer_speed"),
+    *("pocket_clearance", "ball_cage_stiffness", "race_damping"),
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinearLimit:
@@ -72,7 +77,10 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
         return HardLimit(restitution_factor=restitution_factor, critical_friction=0.0)
     settings = settings_for(settings, cage)
     lasting = CROSSINGS * cage.pocket_clearance / ANY_KICK
-    still, even = hard_cage(cage), replace(settings, ball_scatter=0.0, duration=lasting)
+    # without land, gravity, unbalance or anything uneven
+    kept = {name: getattr(cage, name) for name in OF_A_HARD_CAGE}
+    still = PlanarCage(**kept, cage_speed=0.0, ball_cage_friction=0.0, guidance=Guidance.BALL)
+    even = replace(settings, ball_scatter=0.0, duration=lasting)
 
     def look(friction: Ratio, first_run: int, runs: int) -> Count:
         rubbing = cage_at(still, restitution_factor, friction)
@@ -86,24 +94,6 @@ def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilityS
     return HardLimit(
         restitution_factor=restitution_factor,
         critical_friction=found.value if isinstance(found, Crossing) else None,
-    )
-
-
-def hard_cage(cage: PlanarCage) -> PlanarCage:
-    """Return the cage at rest, without land, gravity, unbalance or anything uneven."""
-    return PlanarCage(
-        mass=cage.mass,
-        moment_of_inertia=cage.moment_of_inertia,
-        ball_count=cage.ball_count,
-        pitch_radius=cage.pitch_radius,
-        cage_speed=0.0,
-        inner_speed=cage.inner_speed,
-        outer_speed=cage.outer_speed,
-        pocket_clearance=cage.pocket_clearance,
-        ball_cage_stiffness=cage.ball_cage_stiffness,
-        race_damping=cage.race_damping,
-        ball_cage_friction=0.0,
-        guidance=Guidance.BALL,
     )
 
 

@@ -128,11 +128,8 @@ def clock(
 ) -> tuple[Array | None, float | None, tuple[str, ...]]:
     """Return the cycles of a log: by its column, by the time of one cycle, or in its spectrum.
 
-    Returns
-    -------
-    tuple
-        Cycles done at each row, shape (row,), if means are over whole ones; length of a cycle in the unit of
-        the abscissa; notes. None where that is not known.
+    That is: cycles done at each row, shape (row,), if means are over whole ones; the length of a cycle in the
+    unit of the abscissa; notes. None where that is unknown.
     """
     done: Array | None = None
     notes: tuple[str, ...] = ()

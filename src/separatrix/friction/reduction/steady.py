@@ -125,15 +125,11 @@ def cosines(values: Array) -> Array:
 
 
 def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
-    """Return spectra that may be, one at zero frequency, how likely each is, and the most likely one's place.
+    """Return spectra that may be, one at zero frequency, how likely each is, and the place of the likeliest.
 
-    The first cosine is left out, for the straight line has taken it.
-
-    Returns
-    -------
-    tuple
-        Spectra at cosines 2, 3, ..., shape (corner, floor, cosine - 1); Whittle's likelihood of each, its
-        height at its best, all together one, shape (corner, floor); place of the largest.
+    The spectra are at cosines 2, 3, ..., for the straight line has taken the first, shape (corner, floor,
+    cosine - 1). How likely is Whittle's likelihood of each, its height at its best, all together one, shape
+    (corner, floor).
     """
     shapes = spectrum(np.arange(2.0, power.size + 1.0), CORNERS[:, None, None], FLOORS[:, None])
     height = np.maximum((power[1:] / shapes).mean(axis=-1), 1e-300)
@@ -229,7 +225,10 @@ def run_in(values: Array) -> RunIn:
     if even and straight.first(straight.noise) == 0:
         return straight.from_place(0, abs(float(values.mean())))
     tails = _Tails(values, _without_level)
-    first = tails.first(tails.noise + tails.worth)
+    # differences for which nothing is cut, shape (place, later place)
+    part = 1.0 - tails.left[None, :] / tails.left[:, None]
+    worth = np.minimum(WORTH, SEEN * part) * np.abs(tails.means)
+    first = tails.first(tails.noise + worth)
     if first:
         reach = int(np.searchsorted(tails.starts, STRETCH * tails.starts[first] + 1, side="right")) - 1
         first = max(first, min(tails.first(tails.noise), reach))
@@ -259,12 +258,6 @@ class _Tails:
         densities = np.array([float((tail[1 : COSINES + 1] ** 2).mean()) for tail in tails])
         self.variance = shorter * densities
         self.noise = float(stdtrit(min(COSINES, n - 1), 1.0 - CHANCE)) * np.sqrt(self.variance)
-
-    @property
-    def worth(self) -> Array:
-        """Differences for which nothing is cut, shape (place, later place)."""
-        part = 1.0 - self.left[None, :] / self.left[:, None]
-        return np.asarray(np.minimum(WORTH, SEEN * part) * np.abs(self.means))
 
     def first(self, limit: Array) -> int:
         """Return the first tail that agrees with all later ones within a limit; the last always does."""
