@@ -142,8 +142,8 @@ def test_nothing_is_changed_for_another_site(client, folder, origin):
         "/study/linked/secret.toml",
         "/study/..%5csecret.toml",
         "/log/..%2f..%2fsecret.toml",
-        "/static/..%2fguard.py",
-        "/static/%2e%2e/guard.py",
+        "/static/..%2fserver.py",
+        "/static/%2e%2e/server.py",
         "/cage/hostile.toml?point=..%2f..",
     ],
 )

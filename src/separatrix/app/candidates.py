@@ -39,11 +39,6 @@ def changed(text: str, number: int, path: tuple[str, ...], value: str) -> str:
         ``("friction", environment, "count")``.
     value : str
         As typed; an empty one removes the part, and the table that would be empty then.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, or does not have this candidate as a table.
     """
     document = parsed(text)
     items = _items(document)
@@ -64,13 +59,7 @@ def changed(text: str, number: int, path: tuple[str, ...], value: str) -> str:
 
 
 def added(text: str, name: str) -> str:
-    """Return the text with one more candidate, behind the others or at the end; it has only a name yet.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, there is no name, or `candidates` is not a list of tables.
-    """
+    """Return the text with one more candidate, behind the others or at the end; it has only a name yet."""
     if not name.strip():
         raise InputError(AT, "needs a name for the new candidate")
     document, data = parsed(text), tomllib.loads(text)
@@ -90,13 +79,7 @@ def added(text: str, name: str) -> str:
 
 
 def removed(text: str, number: int) -> str:
-    """Return the text without a candidate; comments below it, which are about what follows, stay.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, or does not have this candidate.
-    """
+    """Return the text without a candidate; comments below it, which are about what follows, stay."""
     document, data = parsed(text), tomllib.loads(text)
     items = _items(document)
     if not 0 <= number < len(items):

@@ -172,11 +172,6 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         Of the study; an empty section is above the first one.
     value : str
         As typed: a number, a quantity, a word, or a list or table as TOML writes it.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, so that it has to be mended as text first.
     """
     document = parsed(text)
     if section and section not in document:

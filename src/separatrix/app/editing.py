@@ -109,9 +109,7 @@ def routes(page: Page) -> APIRouter:
     def resume(number: int) -> Response:
         job = page.jobs.job(number)
         if job is None:
-            raise InputError(
-                "The job", "is no longer in the list", cure="Run the verb again: it resumes too."
-            )
+            raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
         task, more = job.task, {"name": job.study, "title": job.title}
         page.jobs.ask(task.verb, task.study, task.folder, question=task.question, values=task.values, **more)
         return all_jobs()

@@ -83,13 +83,7 @@ class Jobs:
         question: Mapping[str, object] | None = None,
         values: Mapping[str, float] | None = None,
     ) -> Job:
-        """Put a question into the queue; the same one that still waits or runs is not asked twice.
-
-        Raises
-        ------
-        InputError
-            Too many wait.
-        """
+        """Put a question into the queue unless the same one is active already; refused if too many wait."""
         with self._lock:
             asked = Task(
                 number=self._last + 1,

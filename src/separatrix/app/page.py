@@ -73,13 +73,7 @@ class Folder:
     root: Path
 
     def inside(self, name: str) -> Path:
-        """Return the path of a file or folder.
-
-        Raises
-        ------
-        InputError
-            It does not exist, is hidden, or is outside, be it by a link.
-        """
+        """Return the path of a file or folder; refused if it is missing, hidden, or outside, be it by a link."""
         parts = name.split("/")
         is_plain = bool(name) and not any(c in name for c in "\0\\:") and "" not in parts
         if is_plain and not any(part.startswith(".") for part in parts):
@@ -93,13 +87,7 @@ class Folder:
         raise InputError(shown(name), "is not the name of a file in this folder")
 
     def new(self, name: str) -> Path:
-        """Return the path of a file to make beside the studies; its name is letters, digits, dots, dashes.
-
-        Raises
-        ------
-        InputError
-            It is not such a name, or it is taken.
-        """
+        """Return the path of a file to make beside the studies; refused if its name is odd or taken."""
         if not _NAME.fullmatch(name) or Path(name).name != name:
             cure = "Use letters, digits, spaces, dots and dashes."
             raise InputError(shown(name), "is not a name for a file", cure=cure)
@@ -132,13 +120,7 @@ class Folder:
         ][:MOST_STUDIES]
 
     def table(self, name: str, table: str) -> Path:
-        """Return the path of a CSV file beside a study.
-
-        Raises
-        ------
-        InputError
-            It is not one of `tables`.
-        """
+        """Return the path of a CSV file beside a study; refused if it is not one of `tables`."""
         if table not in self.tables(name):
             raise InputError("--cases", "must be a CSV file beside the study", got=shown(table))
         return self.study(name).parent / table

@@ -244,13 +244,7 @@ async def _reply(send: Send, status: HTTPStatus, words: str, more: dict[str, str
 
 
 def listening(port: int) -> socket.socket:
-    """Return a socket that listens on this machine only; port 0 takes any free one.
-
-    Raises
-    ------
-    InputError
-        The port is taken.
-    """
+    """Return a socket that listens on this machine only; port 0 takes any free one."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         found.bind((HOST, port))

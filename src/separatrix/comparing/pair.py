@@ -41,13 +41,7 @@ IGNORED = ("separatrix_version", "provenance")
 
 
 def pair_of(first: Mapping[str, Saved], second: Mapping[str, Saved]) -> tuple[Saved, Saved, tuple[str, ...]]:
-    """Answers of the first verb that both have, and the other verbs that they share.
-
-    Raises
-    ------
-    InputError
-        They share no verb.
-    """
+    """Answers of the first verb that both have, and the other verbs that they share; refused without one."""
     shared = [verb for verb in VERBS if verb in first and verb in second]
     if not shared:
         names = [next(iter(one.values())).path for one in (first, second)]

@@ -192,13 +192,7 @@ def input_words(value: object, unit: str | None) -> str:
 
 
 def pictures(first: Saved, second: Saved) -> Iterator[tuple[str, Figure]]:
-    """Yield name and figure of each picture of two answers; none for a verb or an answer without arrays.
-
-    Raises
-    ------
-    InputError
-        An array cannot be drawn.
-    """
+    """Yield name and figure of each picture of two answers; none for a verb or an answer without arrays."""
     pair = [one.data for one in (first, second) if one.data is not None]
     if len(pair) < 2 or first.verb not in NEEDED:
         return

@@ -150,13 +150,7 @@ def _cases(cases: list[Row], names: Mapping[str, Row]) -> Table:
 
 
 def report_of_two(first: Mapping[str, Saved], second: Mapping[str, Saved]) -> Report:
-    """Return the report of two designs, each with its answers by verb: on the first verb that both have.
-
-    Raises
-    ------
-    InputError
-        They share no verb.
-    """
+    """Return the report of two designs, each with its answers by verb: on the first verb that both have."""
     one, other, also = pair_of(first, second)
     found = compared(one, other, also)
     titles = [answer.title for answer in found.answers]
