@@ -8,7 +8,7 @@ import pytest
 from separatrix.cage import ending
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.present.text.study import clearances, shown
+from separatrix.present.text.answer import clearances, shown
 from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
 from separatrix.study_file import LONGEST, read_study, resolved
 

@@ -82,13 +82,8 @@ def saved_area(case: xr.Dataset) -> Area:
 def tractions(area: Area, *, entry: str = "right", stick_line: Array | None = None) -> Figure:
     """Return arrows of the tractions of at least two rows over their size, with the area of stick hatched.
 
-    Parameters
-    ----------
-    area : Area or ContactSolution
-    entry : str
-        Where material enters, right or left; empty where it does not.
-    stick_line : ndarray, optional
-        End of stick along x of another theory for each row, shape (row,) [m]; NaN where a row slips.
+    Material enters at `entry`, right or left; empty where it does not. `stick_line` is the end of stick along
+    x of another theory, shape (row,) [m]; NaN where a row slips.
     """
     figure, axes = canvas(3.9, 3.3)
     size = 1e-6 * np.hypot(*area.traction) / _share(area)

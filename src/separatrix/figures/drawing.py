@@ -52,7 +52,7 @@ class Shape:
 
 
 def shape_of(study: Json) -> Shape:
-    """Return the shapes of a resolved study, as documents and datasets hold it."""
+    """Return the shapes of a resolved study, as documents and datasets have it."""
 
     def known(section: str, key: str) -> float | None:
         value = stated(study, section, key)
@@ -116,14 +116,9 @@ def _cage(
 
 
 def bearing_drawing(study: Json, angle: tuple[Radian, Radian] | None = None) -> Figure:
-    """Draw a bearing and its cage to scale.
+    """Draw a bearing and its cage to scale, from the resolved study of a document.
 
-    Parameters
-    ----------
-    study : mapping
-        The resolved study of a document.
-    angle : tuple of float, optional
-        Contact angles at the inner and the outer race under load; by default the one of the study.
+    `angle` has the contact angles at the inner and the outer race under load; by default that of the study.
     """
     of, nominal = shape_of(study), float(study["bearing"]["contact_angle"]["value"])
     inner, outer = angle or (nominal, nominal)

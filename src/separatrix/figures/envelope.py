@@ -27,6 +27,7 @@ from separatrix.figures.style import (
     VERMILION,
     Look,
     canvas,
+    with_ends,
 )
 from separatrix.present.text.tables import interval, number, significant
 from separatrix.units import Array, format_quantity
@@ -53,7 +54,7 @@ SENTENCES = {
 """What decides the worst case."""
 
 Place = tuple[Array, bool]
-"""Where each case lies along the axis, and whether lines between them have a meaning."""
+"""Place of each case along the axis, and whether lines between them have a meaning."""
 
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -82,10 +83,8 @@ def envelope(data: xr.Dataset) -> Figure:
     if has_duty(data):
         panels.append((0.8, _time))
     heights = [height for height, _ in panels]
-    ratios: Look = {"height_ratios": heights}
-    figure, grid = canvas(
-        PAGE, sum(heights) + 0.9, nrows=len(panels), sharex=True, squeeze=False, gridspec_kw=ratios
-    )
+    look: Look = {"nrows": len(panels), "sharex": True, "squeeze": False, "height_ratios": heights}
+    figure, grid = canvas(PAGE, sum(heights) + 0.9, **look)
     axes, place = [row[0] for row in grid], places(data)
     for one, (_, draw) in zip(axes, panels, strict=True):
         draw(one, data, place)
@@ -119,14 +118,14 @@ def places(data: xr.Dataset) -> Place:
 
 
 def _margin(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Draw the restitution factor below its threshold; what lies between is the margin."""
+    """Draw the restitution factor below its threshold; the distance is the margin."""
     x, is_line = place
     eta = np.asarray(data["restitution_factor"].values, dtype=float)
     axes.plot(x, eta, "o-" if is_line else "o", ms=3.0, color=BLACK, label=r"restitution factor $\eta$")
     threshold, top = column(data, "restitution_threshold"), float(np.nanmax(eta))
     if threshold is not None:
         top = 1.0
-        low, high = (data[f"restitution_threshold_{end}"].values.astype(float) for end in ("low", "high"))
+        _, low, high = with_ends(data, "restitution_threshold")
         error = np.abs(np.stack([threshold - low, high - threshold]))
         look: Look = {"ms": 3.0, "color": BLUE, "elinewidth": 0.8, "capsize": 1.5}
         axes.errorbar(x, threshold, error, fmt="s-" if is_line else "s", label="threshold (95 %)", **look)
@@ -206,7 +205,7 @@ def _name_axis(axes: Axes, data: xr.Dataset, place: Place) -> None:
 
 
 def worst(data: xr.Dataset, place: Place) -> tuple[float | None, str] | None:
-    """Return where the worst case lies, and which it is and why; no place where all cases are alike."""
+    """Return the place of the worst case, its name and reason; no place where all cases are alike."""
     if "worst_case" not in data:
         return None
     case, alike = int(data["worst_case"]), int(data["worst_alike"])
@@ -223,7 +222,7 @@ def worst(data: xr.Dataset, place: Place) -> tuple[float | None, str] | None:
 
 
 def _name_worst(panels: list[Axes], data: xr.Dataset, place: Place) -> None:
-    """Mark the worst case in every panel, and say above which and why; not where all are alike."""
+    """Mark the worst case in every panel, and name it with its reason above them."""
     found = worst(data, place)
     if found is None:
         return
@@ -327,7 +326,7 @@ def _margin_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator
         return
     texts = [f"{name}: restitution factor {number(one, 3)}" for name, one in zip(names, eta, strict=True)]
     if threshold is not None:
-        low, high = (data[f"restitution_threshold_{end}"].values.astype(float) for end in ("low", "high"))
+        _, low, high = with_ends(data, "restitution_threshold")
         rows = list(zip(names, eta, threshold, low, high, strict=True))
         above = [f"{name}: threshold {interval(t, a, b)}, margin {t - e:+.3f}" for name, e, t, a, b in rows]
         yield _series("threshold (95 %)", threshold, above, place, BLUE, (low, high))
@@ -345,7 +344,7 @@ def _probability_series(data: xr.Dataset, place: Place, names: list[str]) -> Ite
     ends = tuple(data[f"probability_{end}"].values.astype(float) for end in ("low", "high"))
     verdict = data["verdict"].values.astype(str)
     rows = zip(names, verdict, stable, *ends, data["reason"].values.astype(str), strict=True)
-    texts = [f"{name}: {said}; P(stable) {interval(*p)}. {why}".strip() for name, said, *p, why in rows]
+    texts = [f"{name}: {word}; P(stable) {interval(*p)}. {why}".strip() for name, word, *p, why in rows]
     for name, colour in VERDICT_COLOURS.items():
         if (verdict == name).any():
             values = np.where(verdict == name, stable, np.nan)
@@ -363,12 +362,9 @@ def _frequencies_series(data: xr.Dataset, place: Place, names: list[str]) -> Ite
     orbit = column(data, "orbit_frequency")
     for sign, way in ((1.0, "forward"), (-1.0, "backward")):
         if orbit is not None and (np.sign(orbit) == sign).any():
-            words, values = (
-                f"orbit of whirling runs, {way}",
-                np.where(np.sign(orbit) == sign, abs(orbit), np.nan),
-            )
-            texts = _hertz(names, words, values)
-            yield _series(words, values, texts, (place[0], False), VERMILION)
+            words = f"orbit of whirling runs, {way}"
+            values = np.where(np.sign(orbit) == sign, abs(orbit), np.nan)
+            yield _series(words, values, _hertz(names, words, values), (place[0], False), VERMILION)
 
 
 def _hertz(names: list[str], words: str, values: Array) -> list[str]:
@@ -378,13 +374,7 @@ def _hertz(names: list[str], words: str, values: Array) -> list[str]:
 def _time_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
     if has_duty(data):
         share = 100.0 * data["time_share"].values.astype(float)
-        yield Series(
-            name="share of the time",
-            kind="bars",
-            x=floats(place[0]),
-            y=floats(share),
-            text=tuple(
-                f"{name}: {significant(one, 3)} % of the time" for name, one in zip(names, share, strict=True)
-            ),
-            colour=GREY,
-        )
+        pairs = zip(names, share, strict=True)
+        texts = tuple(f"{name}: {significant(one, 3)} % of the time" for name, one in pairs)
+        x, y = floats(place[0]), floats(share)
+        yield Series(name="share of the time", kind="bars", x=x, y=y, text=texts, colour=GREY)

@@ -23,7 +23,17 @@ from separatrix.figures.stability import (
     linear_limit,
     own_point,
 )
-from separatrix.figures.style import BLACK, BLUE, CYCLE, GREEN, GREY, VERDICT_COLOURS, VERMILION, Json
+from separatrix.figures.style import (
+    BLACK,
+    BLUE,
+    CYCLE,
+    GREEN,
+    GREY,
+    VERDICT_COLOURS,
+    VERMILION,
+    Json,
+    with_ends,
+)
 from separatrix.present.text.tables import interval, number, quantity, significant
 
 Floats = tuple[float | None, ...]
@@ -90,9 +100,8 @@ def stability_plot(data: xr.Dataset) -> Plot:
 
 def _curve(data: xr.Dataset) -> Iterator[Series]:
     eta, top = data["restitution_factor"].values.astype(float), highest(data, candidates=True)
-    critical, low, high = (
-        data[name].values.astype(float) for name in ("critical_friction", "scatter_low", "scatter_high")
-    )
+    critical = data["critical_friction"].values.astype(float)
+    low, high = (data[f"scatter_{end}"].values.astype(float) for end in ("low", "high"))
     at = np.isfinite(critical)
     text = [
         f"eta {number(e, 2)}: half of the runs whirl at a friction of {_between(c, a, b)}"
@@ -198,9 +207,7 @@ def candidates_plot(data: xr.Dataset) -> Plot:
 def _thresholds(
     data: xr.Dataset, prefix: str, above: float, names: Sequence[str], title: str, colour: str
 ) -> Series:
-    found, low, high = (
-        data[f"{prefix}restitution_threshold{end}"].values.astype(float) for end in ("", "_low", "_high")
-    )
+    found, low, high = with_ends(data, f"{prefix}restitution_threshold")
     places = np.flatnonzero(np.isfinite(found))
     data = data[[name for name in data.data_vars if str(name).startswith(prefix)]]  # few are sliced faster
     return Series(
@@ -312,7 +319,7 @@ def plain(label: str) -> str:
 
 
 def floats(values: Iterable[float]) -> Floats:
-    """Return numbers as those of Python; None for what is not finite."""
+    """Return numbers as those of Python; None where they are not finite."""
     return tuple(_or_none(float(one)) for one in values)
 
 
@@ -327,16 +334,9 @@ def _between(value: float, low: float, high: float) -> str:
 
 
 def places(axes: Axes, plot: Plot, most: int, *names: str) -> Iterator[Place]:
-    """Yield where the points of a plot are in an SVG of its figure.
+    """Yield where the points with text of a plot are in an SVG of its finished figure.
 
-    Parameters
-    ----------
-    axes : Axes
-        Of a finished figure: nothing moves afterwards.
-    plot : Plot
-        Its series with text; all of them, or those of these names.
-    most : int
-        Points of a series that has more than this are thinned evenly to at most this number.
+    They are those of all series, or of these names, thinned evenly to at most `most` of each.
     """
     figure = axes.figure.get_figure(root=True)
     if figure is None:

@@ -50,7 +50,7 @@ SIZES = {"STABLE": 5.0, "UNSTABLE": 4.0, "UNDECIDED": 3.0}
 
 
 class Cells(NamedTuple):
-    """What is known at each point of a map, shape (y, x).
+    """State of each point of a map, shape (y, x).
 
     The share of the runs that whirl, NaN if unknown; which points the program refused; which were not run,
     for an interrupt or as the points around agree, whose share they then have; where there is no verdict.
@@ -64,7 +64,7 @@ class Cells(NamedTuple):
 
 
 def cells(data: xr.Dataset) -> Cells:
-    """Return what is known at each point of a map."""
+    """Return the state of each point of a map."""
     table = {
         name: data[name].transpose("y", "x").values for name in ("probability_whirl", "reason", "decision")
     }

@@ -34,7 +34,7 @@ NEVER = 1e3
 
 LAND: Look = {"color": VERMILION, "lw": 3.5, "alpha": 0.45, "zorder": 1.5}
 POCKETS: Look = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 1.5)), "zorder": 1.5}
-"""Boundaries lie below the path, the land wide and light: neither hides the other or a path along it."""
+"""Boundaries are below the path, the land wide and light: neither hides the other or a path along it."""
 
 FAINTEST, SEEN = -50.0, -30.0
 """Weakest whirl of the picture against time, and weakest for which it goes on, under the strongest [dB]."""
@@ -75,7 +75,7 @@ def _goes_on(data: xr.Dataset) -> bool:
 
 
 def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
-    """Return both ends of the axis of time [ms]; a millisecond if nothing but the start is there."""
+    """Return both ends of the axis of time [ms]; a millisecond if the run has only its start."""
     times = [time for time in map(milliseconds, runs) if time.size > 1]
     last = max((float(time[-1]) for time in times), default=0.0)
     first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
@@ -146,7 +146,7 @@ def largest_play(data: xr.Dataset) -> float | None:
 
 
 def orbit_reach(data: xr.Dataset) -> float:
-    """Return what a picture of the orbit must show on either side [m]."""
+    """Return the least half width of a picture of the orbit [m]."""
     far, land, play = (float(np.abs(data["position"].values).max()), land_boundary(data), largest_play(data))
     return 1.12 * max(far, play or 0.0, 0.0 if land is None else float(land.max()), 1e-9)
 

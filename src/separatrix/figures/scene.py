@@ -18,7 +18,7 @@ width of the cage over the ball's diameter."""
 ARC, ROUND = np.linspace(0.0, 1.0, 9), np.linspace(0.0, 2 * np.pi, 181)
 
 THICK, WIDE, RIM = 0.28, 1.35, 0.88
-"""Half the radial thickness of the cage over the ball's diameter; its width over that, if it is not given;
+"""Half the radial thickness of the cage over the ball's diameter; its width over that, if it is not stated;
 largest size of a pocket along the axis over the cage's width."""
 
 FARTHEST_IN_SPACE = 0.25
@@ -30,41 +30,23 @@ POCKET_POINTS = 24
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Scene:
-    """Sizes [m], and each moment's movements times `enlarged`, in the frame of the ball set.
+    """Sizes [m], and each moment's movements times `enlarged`, in the frame of the ball set."""
 
-    Attributes
-    ----------
-    radius, ball, half_width : float
-        Of the pitch circle and of a ball; half the radial width of the cage [m].
-    angles, walls : ndarray
-        Of each pocket, and half its angle from wall to wall with the play enlarged [rad].
-    offset, turn, lead, force, land_force : ndarray
-        Centre (time, 2) [m], rotation (time,) [rad], angle of each ball ahead (time, ball) [rad], forces [N].
-    frame : ndarray
-        Angle that the ball set has turned by, if the picture is fixed in space; else 0 [rad].
-    enlarged : float
-        How many times too large movements and plays are drawn [-].
-    land, side : float, int
-        Radius of the land in the picture [m], infinite without one; 1 for a land outside the cage, -1 inside.
-    edges : tuple
-        Radius of the inner and the outer edge of the cage [m]; the guided one with its lobes.
-    """
-
-    radius: float
-    ball: float
-    angles: Array
-    walls: Array
-    offset: Array
-    turn: Array
-    lead: Array
-    force: Array
-    land_force: Array
-    frame: Array
-    enlarged: float
-    land: float
-    side: int
-    edges: tuple[Array | float, Array | float]
-    half_width: float
+    radius: float  # of the pitch circle
+    ball: float  # radius
+    angles: Array  # of each pocket [rad]
+    walls: Array  # half the angle of each pocket from wall to wall, with the play enlarged [rad]
+    offset: Array  # of the centre, shape (time, 2)
+    turn: Array  # rotation of the cage, shape (time,) [rad]
+    lead: Array  # angle by which each ball is ahead, shape (time, ball) [rad]
+    force: Array  # of each pocket, shape (time, ball) [N]
+    land_force: Array  # shape (time,) [N]
+    frame: Array  # angle by which the ball set has turned, if the picture is fixed in space; else 0 [rad]
+    enlarged: float  # factor by which movements and plays are drawn too large
+    land: float  # radius of the land in the picture; infinite without one
+    side: int  # 1 for a land outside the cage, -1 inside
+    edges: tuple[Array | float, Array | float]  # radii of the cage; the guided one with its lobes
+    half_width: float  # half the radial width of the cage
 
     @property
     def reach(self) -> float:
@@ -188,55 +170,30 @@ def turned(points: Array, angle: float) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SpaceScene:
-    """Sizes [m], and movements at each moment, true, in the frame of the ball set.
+    """Sizes [m], and movements at each moment, true, in the frame of the ball set."""
 
-    Attributes
-    ----------
-    radius, ball, half_width, half_thickness : float
-        Of the pitch circle, a ball, and the cage.
-    angles, plays : ndarray
-        Of each pocket [rad], and half its clearance along the orbit [m].
-    axial_play : float
-        Half the clearance of a pocket along the axis [m].
-    is_square : bool
-        Whether pockets have corners.
-    land, side, heights, gap : float, int, tuple, float
-        Radius of the surface of the cage at the land, 1 outside or -1 inside (0: no land), heights of the
-        lands over the pockets, radial clearance.
-    centre, lean, axial, rotation : ndarray
-        Shapes (time, 2), (time, 2), (time,), (time,).
-    lead, ball_axial, force : ndarray
-        Of each ball, shape (time, ball); the force is the largest since the moment before.
-    largest_force : float
-        Of all samples of the run [N].
-    frame : ndarray
-        Angle by which the ball set has turned [rad].
-    enlarged : float
-        How many times too large movements and clearances are drawn at first.
-    """
-
-    radius: float
-    ball: float
-    half_width: float
-    half_thickness: float
-    angles: Array
-    plays: Array
-    axial_play: float
-    is_square: bool
-    land: float
-    side: int
-    heights: tuple[float, ...]
-    gap: float
-    centre: Array
-    lean: Array
-    axial: Array
-    rotation: Array
-    lead: Array
-    ball_axial: Array
-    force: Array
-    largest_force: float
-    frame: Array
-    enlarged: float
+    radius: float  # of the pitch circle
+    ball: float  # radius
+    half_width: float  # of the cage
+    half_thickness: float  # of the cage
+    angles: Array  # of each pocket [rad]
+    plays: Array  # half the clearance of each pocket along the orbit
+    axial_play: float  # half the clearance of a pocket along the axis
+    is_square: bool  # whether pockets have corners
+    land: float  # radius of the surface of the cage at the land
+    side: int  # 1 for a land outside the cage, -1 inside, 0 without one
+    heights: tuple[float, ...]  # of the lands over the pockets
+    gap: float  # radial clearance of the lands
+    centre: Array  # shape (time, 2)
+    lean: Array  # shape (time, 2) [rad]
+    axial: Array  # shape (time,)
+    rotation: Array  # shape (time,) [rad]
+    lead: Array  # of each ball, shape (time, ball)
+    ball_axial: Array  # shape (time, ball)
+    force: Array  # largest of each ball since the moment before, shape (time, ball) [N]
+    largest_force: float  # of all samples of the run [N]
+    frame: Array  # angle by which the ball set has turned [rad]
+    enlarged: float  # factor by which movements and clearances are drawn too large at first
 
     def moved(self, points: Array, moment: int) -> Array:
         """Return points of the cage, shape (..., 3), where it is at a moment, movements enlarged."""
@@ -250,52 +207,33 @@ class SpaceScene:
     def ball_places(self, moment: int) -> Array:
         """Return the centre of each ball, shape (ball, 3)."""
         angle = self.angles + self.enlarged * self.lead[moment] / self.radius
-        across = [self.radius * np.cos(angle), self.radius * np.sin(angle)]
-        return np.stack([*across, self.enlarged * self.ball_axial[moment]], axis=-1)
+        return np.column_stack([ring(self.radius, angle), self.enlarged * self.ball_axial[moment]])
 
     def faces(self) -> Array:
-        """Return the faces of the cage at rest around its pockets, shape (face, 4, 3)."""
-        found, count = [], self.angles.size
+        """Return the faces of the cage at rest around its enlarged pockets, shape (face, 4, 3)."""
+        around = 2.0 * np.pi * (np.arange(POCKET_POINTS) + 0.5) / POCKET_POINTS
+        c, s = np.cos(around), np.sin(around)
+        square = np.maximum(np.abs(c), np.abs(s))
+        corner = square if self.is_square else 1.0
+        across = min(self.ball + self.enlarged * self.axial_play, RIM * self.half_width)
         ends = np.append(self.angles, self.angles[0] + 2.0 * np.pi)
         middles = 0.5 * (ends[:-1] + ends[1:])
-        lows = np.roll(middles, 1)
+        lows, found = np.roll(middles, 1), []
         lows[0] -= 2.0 * np.pi
-        for j in range(count):
-            hole, frame = self._pocket(j), _frame(middles[j], lows[j], self.half_width)
-            hole[:, 0] += self.angles[j]
-            for side in (-1.0, 1.0):
-                inner, outer = (self._on(side, one) for one in (hole, frame))
+        for angle, play, low, high in zip(self.angles, self.plays, lows, middles, strict=True):
+            along = (self.ball + self.enlarged * play) / self.radius
+            hole = angle + along * c / corner, across * s / corner
+            share = 0.5 * (high + low) + 0.5 * (high - low) * c / square, self.half_width * s / square
+            for r in (self.radius - self.half_thickness, self.radius + self.half_thickness):
+                inner, outer = (np.column_stack([ring(r, at), height]) for at, height in (hole, share))
                 quads = [inner, np.roll(inner, -1, axis=0), np.roll(outer, -1, axis=0), outer]
                 found.append(np.stack(quads, axis=1))
         return np.concatenate(found)
-
-    def _pocket(self, j: int) -> Array:
-        """Return angle and height of the edge of a pocket, its clearance enlarged, shape (point, 2)."""
-        around = 2.0 * np.pi * (np.arange(POCKET_POINTS) + 0.5) / POCKET_POINTS
-        along = (self.ball + self.enlarged * self.plays[j]) / self.radius
-        across = min(self.ball + self.enlarged * self.axial_play, RIM * self.half_width)
-        c, s = np.cos(around), np.sin(around)
-        corner = np.maximum(np.abs(c), np.abs(s)) if self.is_square else 1.0
-        return np.stack([along * c / corner, across * s / corner], axis=1)
-
-    def _on(self, side: float, flat: Array) -> Array:
-        """Return points at angle and height on the outer or the inner surface, shape (point, 3)."""
-        r = self.radius + side * self.half_thickness
-        return np.stack([r * np.cos(flat[:, 0]), r * np.sin(flat[:, 0]), flat[:, 1]], axis=1)
 
     @property
     def land_radius(self) -> float:
         """Radius of the land in the picture, its clearance enlarged [m]."""
         return self.land + self.side * self.enlarged * self.gap
-
-
-def _frame(high: float, low: float, half_width: float) -> Array:
-    """Return the edge of a pocket's share of the cage, a point for each of the pocket's, shape (point, 2)."""
-    around = 2.0 * np.pi * (np.arange(POCKET_POINTS) + 0.5) / POCKET_POINTS
-    c, s = np.cos(around), np.sin(around)
-    corner = np.maximum(np.abs(c), np.abs(s))
-    middle, half = 0.5 * (high + low), 0.5 * (high - low)
-    return np.stack([middle + half * c / corner, half_width * s / corner], axis=1)
 
 
 def axial_play(data: xr.Dataset) -> float | None:

@@ -167,11 +167,9 @@ def whirl(data: xr.Dataset) -> Figure:
         axes.set_xlim(0.0, float(milliseconds(data)[-1]) or 1.0)
         motion.shade_judged(axes, data)
     _ratios(panels[2, 0], data)
-    time, slip = (
-        1e3 * data["analysis_whirl_window_time"].values,
-        data["analysis_whirl_window_cage_slip"].values,
-    )
-    panels[2, 1].plot(time, 100.0 * slip, "o-", color=BLUE, ms=2.5, lw=0.8)
+    time = 1e3 * data["analysis_whirl_window_time"].values
+    slip = 100.0 * data["analysis_whirl_window_cage_slip"].values
+    panels[2, 1].plot(time, slip, "o-", color=BLUE, ms=2.5, lw=0.8)
     panels[2, 1].set_ylabel("slip against the balls [%]")
     return figure
 
@@ -261,10 +259,7 @@ def _lands(axes: Axes, data: xr.Dataset) -> None:
 
 def _clocks(clock: Axes, dots: Axes, data: xr.Dataset) -> None:
     """Draw the share of the impulse by the angle on the pocket, and the peak of each touch."""
-    edges, impulse = (
-        data["analysis_impacts_clock_edges"].values,
-        data["analysis_impacts_clock_impulse"].values,
-    )
+    edges, impulse = (data[f"analysis_impacts_clock_{name}"].values for name in ("edges", "impulse"))
     share = 100.0 * impulse / (impulse.sum() or 1.0)
     middles = 0.5 * (edges[:-1] + edges[1:])
     clock.bar(middles, share, width=0.92 * np.diff(edges), color=SKY, edgecolor=BLUE, lw=0.5)

@@ -49,7 +49,7 @@ MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 """Most frames of a page, and most numbers in all: they keep it under 1 MB."""
 
 PAGE_PARTS = Path(__file__).with_name("space_view")
-"""Folder of what every page that shows a run has, and of the page that has nothing else."""
+"""Folder of style, script and templates of pages that show a run."""
 
 NANO = 1e9
 """Movements are whole nanometres and nanoradians; forces 1/255 of the largest."""
@@ -200,7 +200,7 @@ def view(data: xr.Dataset) -> str:
     run = run_for_page(data, moments)
     spans = " and ".join(f"{first:.4g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
     title = cut(str(data.attrs.get("title", "")), WIDTH)
-    # a text of the study may hold any mark: the JSON stands in a script
+    # a text of the study may hold any mark: the JSON is inside a script
     found = json.dumps(run, allow_nan=False, separators=(",", ":"))
     for sign in "<>&\u2028\u2029":
         found = found.replace(sign, f"\\u{ord(sign):04x}")
@@ -218,7 +218,7 @@ def _text(path: Path) -> str:
 
 
 def _filled(template: str, parts: Mapping[str, str]) -> str:
-    """Return a template with its marks replaced; what stands in their place is not searched again."""
+    """Return a template with its marks replaced; the replacements are not searched again."""
     return re.sub("@([A-Z]+)@", lambda mark: parts[mark[1]], template)
 
 

@@ -23,6 +23,7 @@ from separatrix.figures.style import (
     canvas,
     cut,
     legend_below,
+    with_ends,
 )
 from separatrix.units import Array
 
@@ -71,7 +72,7 @@ def stability(data: xr.Dataset) -> Figure:
 
 
 def highest(data: xr.Dataset, *, candidates: bool = False) -> float:
-    """Friction at the top of the picture: every curve and mark in it lies below."""
+    """Friction at the top of the picture: above every curve and mark in it."""
     names = [*DRAWN, *(["material_friction"] if candidates else [])]
     found = [data[name].values.ravel().astype(float) for name in names if name in data]
     top = float(np.nanmax(np.concatenate([[0.0], *found])))
@@ -89,9 +90,7 @@ def band_ends(data: xr.Dataset, top: float, of: str = "") -> tuple[Array, Array]
     An end without a number is at 0 (runs whirl without friction) or beyond `top` (they settle up to it);
     where nothing is known there is no band.
     """
-    middle, low, high = (
-        np.asarray(data[f"{of}critical_friction{end}"].values, dtype=float) for end in ("", "_low", "_high")
-    )
+    middle, low, high = with_ends(data, f"{of}critical_friction")
     unknown = np.isnan(low) & np.isnan(high) & np.isnan(middle)
     low, high = np.where(np.isnan(low), 0.0, low), np.where(np.isnan(high), 2 * top, high)
     return np.where(unknown, np.nan, low), np.where(unknown, np.nan, high)
@@ -153,9 +152,8 @@ def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
         axes.plot(at, middle, "D", mfc="white", mec=BLACK, ms=4.5, ls="", zorder=4, label=label)
         if not has_band(data):
             label = f"band at this bearing's $\\eta$, kick of {kicks_text(data)}"
-            axes.vlines(
-                at, *band_ends(data, top, "here_"), color=BLUE, alpha=0.25, lw=9, zorder=1, label=label
-            )
+            look: Look = {"color": BLUE, "alpha": 0.25, "lw": 9, "zorder": 1}
+            axes.vlines(at, *band_ends(data, top, "here_"), label=label, **look)
 
 
 def _band(axes: Axes, data: xr.Dataset, top: float) -> None:
@@ -188,7 +186,7 @@ def draw_chain(axes: Axes, data: xr.Dataset) -> None:
 
 
 def explain_extrapolated(axes: Axes, sentences: xr.DataArray) -> None:
-    """Add to the legend that a friction is extrapolated; the printed answer gives the reason."""
+    """Add to the legend that a friction is extrapolated; the printed answer states the reason."""
     if (sentences.values.astype(str) != "").any():
         look: Look = {"ls": "", "marker": f"${EXTRAPOLATED}$", "color": GREY, "ms": 4}
         axes.plot([], [], label="friction extrapolated", **look)
@@ -228,7 +226,7 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _measured_mean(table: Array) -> Array:
-    """Return the mean of each column over what is known; infinite for a column of nothing."""
+    """Return the mean of each column over its finite numbers; infinite without any."""
     known = np.isfinite(table)
     total = np.where(known, table, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
     return np.where(known.any(axis=0), total, np.inf)
@@ -266,13 +264,12 @@ def comparison(first: xr.Dataset, second: xr.Dataset, titles: Sequence[str]) -> 
         name = cut(title, NAME_WIDTH)[0] if title else ""
         look: Look = {"color": colour, "ls": line, "marker": marker, "ms": 3}
         axes.plot(eta, middle, label=f"{name} (95 % interval shaded)", **look)
-        axes.fill_between(
-            eta, data["scatter_low"].values, data["scatter_high"].values, color=colour, alpha=0.2
-        )
+        low, high = (data[f"scatter_{end}"].values for end in ("low", "high"))
+        axes.fill_between(eta, low, high, color=colour, alpha=0.2)
         own = data.get("here_restitution_factor")
         if own is not None and own.size == 1 and np.isfinite(float(own)):
             axes.axvline(float(own), color=colour, ls=line, lw=0.8)
-        known = np.concatenate([one[np.isfinite(one)] for one in (middle, data["scatter_high"].values)])
+        known = np.concatenate([one[np.isfinite(one)] for one in (middle, high)])
         highest = max(highest, float(known.max(initial=0.0)))
     axes.set_ylim(0.0, 1.1 * highest if highest > 0.0 else HIGHEST)
     axes.set_title(f"{'a  ' if place else ''}Critical friction; vertical: the bearing's own $\\eta$")
@@ -296,7 +293,7 @@ def _margins(axes: Axes, pair: Sequence[xr.Dataset], environment: str) -> None:
         place = [str(name) for name in data["environment"].values].index(environment)
         here = data.isel(environment=place)
         eta = here["material_restitution_factor"].values
-        columns = [here[f"material_restitution_threshold{end}"].values - eta for end in ("", "_low", "_high")]
+        columns = [one - eta for one in with_ends(here, "material_restitution_threshold")]
         tables.append({str(m): row for m, *row in zip(here["material"].values, *columns, strict=True)})
     names = [*dict.fromkeys([*tables[0], *tables[1]])]
     names.sort(key=lambda name: -np.nan_to_num(tables[0].get(name, [np.nan])[0], nan=-9.0))

@@ -24,7 +24,7 @@ from matplotlib.transforms import offset_copy
 from matplotlib.typing import RcKeyType
 
 from separatrix.errors import InputError
-from separatrix.units import format_quantity
+from separatrix.units import Array, format_quantity
 
 Look = dict[str, Any]
 """Keyword arguments of matplotlib."""
@@ -76,7 +76,7 @@ NOTHING: dict[str, Look] = {
     ".svg": {"Date": None, "Creator": None},
     ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
 }
-"""Endings of pictures, and what is left out of each so that the same data give the same bytes."""
+"""Endings of pictures, and what is left out of each so that the same data make the same bytes."""
 
 WIDTH = 122
 """Letters on a line over the width of a page."""
@@ -118,7 +118,7 @@ def settled(figure: Figure) -> Figure:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format of the ending, one of `NOTHING`; the same data give the same bytes."""
+    """Write the figure in the format of the ending, one of `NOTHING`; the same data make the same bytes."""
     if path.suffix not in NOTHING:
         raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
     with journal():
@@ -178,6 +178,12 @@ def label_lines(
             annotation_clip=False,
             arrowprops={**leader, "color": own} if moved and want < 1 else None,
         )
+
+
+def with_ends(data: xr.Dataset, name: str) -> tuple[Array, Array, Array]:
+    """Return a variable with the low and the high end of its interval."""
+    value, low, high = (np.asarray(data[f"{name}{end}"].values, dtype=float) for end in ("", "_low", "_high"))
+    return value, low, high
 
 
 def spread(wanted: Sequence[float], gap: float) -> list[float]:
@@ -256,7 +262,7 @@ def stated(study: Json, section: str, key: str) -> Any:
 
 
 def headed(figure: Figure, data: xr.Dataset) -> Figure:
-    """Write above a figure what it was made from; nothing if the dataset does not record it."""
+    """Write title, operating point and run above a figure, as far as the dataset records them."""
     width, height = figure.get_size_inches()
     lines = heading(data, int(WIDTH * min(1.0, width / PAGE)))
     if lines:
@@ -268,12 +274,7 @@ def headed(figure: Figure, data: xr.Dataset) -> Figure:
 def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     """Return the title of the study, its operating point, and which run this is; each a line or two.
 
-    Parameters
-    ----------
-    data : Dataset
-        Of any verb, from `literal_texts`; what its attributes do not record is left out.
-    width : int
-        Most letters of a line.
+    `data` is from `literal_texts`; what its attributes do not record is left out.
     """
     study = study_of(data)
     seed = f"seed {int(data.attrs['seed'])}" if "seed" in data.attrs else ""
@@ -324,7 +325,7 @@ def _material(section: Json) -> str:
 
 
 def _run(data: xr.Dataset, study: Json, seed: str) -> str:
-    """Return friction and whose it is, kick, number and seed of a run, and how it ended."""
+    """Return friction with its material, kick, number and seed of a run, and its outcome."""
     parts = []
     if "cage_ball_cage_friction" in data:
         cage = study.get("cage", {})

@@ -62,13 +62,7 @@ BESIDE = {
 
 
 def page(data: xr.Dataset) -> Figure:
-    """Return the page of one test.
-
-    Parameters
-    ----------
-    data : Dataset
-        From `separatrix.present.tribometer.page_data`, or loaded from where that was saved.
-    """
+    """Return the page of one test, from `present.tribometer.page_data` or a file of it."""
     beside = [name for name in BESIDE if f"trace_{name}" in data][:3]
     lines = heading(data)
     rows = [row for row in (["trace"], ["histogram", "lags", "spectrum"], beside) if row]
@@ -102,7 +96,7 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def conditions(data: xr.Dataset) -> str:
-    """Return material, counterface, medium and loads of the test, as far as they are known."""
+    """Return material, counterface, medium and loads of the test, as far as the log states them."""
     known: Json = json.loads(data.attrs["conditions"])
     pair = " on ".join(str(known[key]) for key in ("material", "counterface") if known.get(key))
     named = [pair, known.get("medium") or ""]
@@ -147,7 +141,7 @@ def scale(data: xr.Dataset) -> tuple[float, str]:
 
 
 def _trace(axes: Axes, data: xr.Dataset) -> None:
-    """Draw friction along the test, what is left out, means of spans and the steady mean."""
+    """Draw friction along the test, the parts left out, means of spans and the steady mean."""
     size, label = scale(data)
     along = np.asarray(data["trace"].values) / size
     start, end = float(data["run_in_end"]) / size, float(data["steady_end"]) / size

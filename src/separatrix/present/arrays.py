@@ -16,7 +16,7 @@ from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
 from separatrix.present.contact import padded
 from separatrix.present.container import DAMAGE, check_container, damaged
-from separatrix.present.nodes import Group, Leaf, Node, Table, null_if_not_finite, plain
+from separatrix.present.nodes import Group, Leaf, Node, Table, plain
 from separatrix.present.shapes import all_notes, shape
 from separatrix.units import Rows
 
@@ -61,9 +61,7 @@ def to_xarray(answer: object) -> xr.Dataset:
     eta = node.get("restitution_factor")
     if isinstance(eta, Leaf) and eta.axes is None:  # a single number with the name of a dimension
         node["chain_restitution_factor"] = node.pop("restitution_factor")
-    with null_if_not_finite():
-        variables = {name: variable(leaf) for name, leaf in _flat(node).items()}
-    return xr.Dataset(variables, attrs=complete)
+    return xr.Dataset({name: variable(leaf) for name, leaf in _flat(node).items()}, attrs=complete)
 
 
 def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
@@ -168,7 +166,7 @@ def _stacked(table: Table) -> Columns:
         if (name,) == like.axes:  # the places on a dimension inside
             columns[name] = like
             continue
-        blank = _blank(plain(like.value)) if like.axes else None
+        blank = _blank(plain(like.value, left_out=[])) if like.axes else None
         found = [one[name] if name in one else Leaf(None, None, ()) for one in flat]
         values = [one.value if one.axes == like.axes else blank for one in found]
         columns[name] = like._replace(value=values, axes=(dimension, *(like.axes or ())))
@@ -193,7 +191,7 @@ def _array(value: object, *, is_text: bool) -> NDArray[np.generic]:
     """
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
         return np.where(np.isfinite(value), value, np.nan) if value.dtype.kind == "f" else value
-    values = plain(value)
+    values = plain(value, left_out=[])
     found = list(_leaves(values))
     if any(isinstance(one, str) for one in found) or (is_text and all(one is None for one in found)):
         return np.array(_filled(values, ""), dtype=object)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from separatrix.chain.traction.exact.contact import ContactSolution
 from separatrix.chain.traction.profile import Profile
 from separatrix.contact_file.question import ContactAnswer, ContactSetup, Motion, SolvedCase
-from separatrix.present.nodes import Document, null_if_not_finite, plain
+from separatrix.present.nodes import Document, plain
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -58,15 +58,7 @@ FIELDS = {"fraction": "-", "pressure": "Pa", "traction": "Pa", "slip": "-", "sti
 
 
 def document(answer: ContactAnswer, notes: Sequence[str]) -> Document:
-    """Return the answer as plain data: SI units, None where something is absent.
-
-    Parameters
-    ----------
-    answer : ContactAnswer
-        From `separatrix.contact_file.solving.solve_cases`.
-    notes : sequence of str
-        Warnings on the way.
-    """
+    """Return the answer as plain data: SI units, None for absent values; the notes are its warnings."""
     from separatrix import __version__
 
     asked, setups = answer.question, _setups(answer)
@@ -75,12 +67,11 @@ def document(answer: ContactAnswer, notes: Sequence[str]) -> Document:
         of, names = answer.slope, ("slope", "slope_error", "free_rolling_offset")
         slope = {name: None if of is None else float(getattr(of, name)) for name in names}
         slope |= {"reason": answer.slope_reason or None}
-    with null_if_not_finite():
-        contacts = [
-            plain(one.problem, "contacts")
-            | {"columns": one.columns, "rows": one.rows, "on_gap": bool(one.gap)}
-            for one in setups
-        ]
+    contacts = [
+        plain(one.problem, "contacts", left_out=[])
+        | {"columns": one.columns, "rows": one.rows, "on_gap": bool(one.gap)}
+        for one in setups
+    ]
     return {
         "separatrix_version": __version__,
         "verb": "contact",
@@ -196,28 +187,28 @@ DIGIT_T = {Motion.SHIFT: "1", Motion.TRANSIENT: "2", Motion.ROLLING: "3"}
 def in_words(answer: ContactAnswer, notes: Sequence[str]) -> str:
     """Return the answer as text."""
     asked, setups = answer.question, _setups(answer)
-    described = (
-        [] if asked.of_contact or not setups else [section("Contact", facts(_contact(setups[0], answer)))]
-    )
+    blocks = [heading(asked.title)]
+    if setups and not asked.of_contact:
+        blocks.append(section("Contact", facts(_contact(setups[0], answer))))
     cases = _contact_table(answer) if asked.of_contact else _table(answer)
     failed = [one for one in answer.cases if one.solution is None]
     lines = [paragraph(f"Case {one.case.number} has no solution: {one.reason}", first="  ") for one in failed]
     signs = SIGNS_OF_SHIFT if asked.cases[0].motion is Motion.SHIFT else SIGNS
     lines += [paragraph(OF_CONTACT if asked.of_contact else signs)]
-    blocks = [heading(asked.title), *described, section("Cases", cases, "", *lines)]
-    noted = [paragraph(note, first="Note: ", indent="      ") for note in notes]
-    return "\n\n".join([*blocks, *(["\n".join(noted)] if noted else [])]) + "\n"
+    blocks.append(section("Cases", cases, "", *lines))
+    if notes:
+        blocks.append("\n".join(paragraph(note, first="Note: ", indent="      ") for note in notes))
+    return "\n\n".join(blocks) + "\n"
 
 
 def _contact(setup: ContactSetup, answer: ContactAnswer) -> list[tuple[str, str]]:
     problem, ellipse = setup.problem, setup.problem.ellipse
-    largest = next((one.solution.max_pressure for one in answer.cases if one.solution is not None), None)
+    solved = next((one.solution for one in answer.cases if one.solution is not None), None)
+    b, a = (f"{1e3 * axis:.4g} mm" for axis in (ellipse.semi_minor, ellipse.semi_major))
+    largest = solved and solved.max_pressure
     found = [
         ("Load", quantity(ellipse.load, "N")),
-        (
-            "Hertz ellipse",
-            f"{_mm(ellipse.semi_minor)} along rolling, {_mm(ellipse.semi_major)} across (half axes)",
-        ),
+        ("Hertz ellipse", f"{b} along rolling, {a} across (half axes)"),
         ("Maximum pressure", quantity(largest or ellipse.max_pressure, "Pa", 4)),
     ]
     for number, body in enumerate(problem.bodies, 1):
@@ -240,25 +231,18 @@ def _contact(setup: ContactSetup, answer: ContactAnswer) -> list[tuple[str, str]
         compliance = f"up to {max(L.values):.3g}" if isinstance(L, Profile) else f"{L:.3g}"
         found.append(("Film in series h/G", f"{compliance} m/Pa"))
     if problem.roughness > 0.0:
-        found.append(
-            ("Rough surfaces", f"compliance {quantity(problem.roughness, 'm', 3)} over the pressure")
-        )
-    strain = next((one.solution.film_strain for one in answer.cases if one.solution is not None), 0.0)
-    if strain:
-        found.append(("Strain of the softest layer", significant(strain, 2)))
+        compliance = f"compliance {quantity(problem.roughness, 'm', 3)} over the pressure"
+        found.append(("Rough surfaces", compliance))
+    if solved and solved.film_strain:
+        found.append(("Strain of the softest layer", significant(solved.film_strain, 2)))
     if answer.slope is not None:
         one = answer.slope
         value = f"{significant(one.slope)} +- {significant(one.slope_error, 2)}"
-        found.append(
-            ("Slope at free rolling", f"{value}, at a creep of {significant(one.free_rolling_offset)}")
-        )
+        value += f", at a creep of {significant(one.free_rolling_offset)}"
+        found.append(("Slope at free rolling", value))
     elif answer.slope_reason:
         found.append(("Slope at free rolling", f"none: {answer.slope_reason}"))
     return found
-
-
-def _mm(value: float) -> str:
-    return f"{1e3 * value:.4g} mm"
 
 
 def _table(answer: ContactAnswer) -> str:
@@ -272,19 +256,14 @@ def _table(answer: ContactAnswer) -> str:
     headers = ("case", *heads, *results, "work\nuJ" if is_shift else "power over\nspeed, N")
     rolled, rows = 0.0, []
     for one in answer.cases:
-        rolled += one.case.distance
-        rows.append([str(one.case.number), *_moves(one, rolled), *_results(one)])
+        case = one.case
+        rolled += case.distance
+        moves = [1e2 * case.longitudinal_creep, 1e2 * case.lateral_creep, 1e-3 * case.spin]
+        if case.motion is Motion.SHIFT:
+            moves = [1e6 * case.longitudinal_shift, 1e6 * case.lateral_shift, 1e3 * case.turn]
+        moves += [1e3 * rolled] if case.motion is Motion.TRANSIENT else []
+        rows.append([str(case.number), *(significant(move + 0.0) for move in moves), *_results(one)])
     return table(headers, rows)
-
-
-def _moves(one: SolvedCase, rolled: float) -> list[str]:
-    case = one.case
-    if case.motion is Motion.SHIFT:
-        values = [1e6 * case.longitudinal_shift, 1e6 * case.lateral_shift, 1e3 * case.turn]
-    else:
-        values = [1e2 * case.longitudinal_creep, 1e2 * case.lateral_creep, 1e-3 * case.spin]
-    values += [1e3 * rolled] if case.motion is Motion.TRANSIENT else []
-    return [significant(value + 0.0) for value in values]
 
 
 def _results(one: SolvedCase) -> list[str]:

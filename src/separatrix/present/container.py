@@ -41,7 +41,7 @@ _SAVE_AGAIN = "Only files that separatrix wrote are read; compute this one again
 
 
 def check_container(path: Path) -> None:
-    """Refuse a file of results that is no plain one.
+    """Refuse a file of results that is not a plain one.
 
     It is not HDF5, is larger than `MOST_BYTES`, has links, groups, external, virtual or compressed data, data
     of a type that no result has, or more data than bytes.
@@ -89,7 +89,7 @@ def _check(file: h5py.File, path: Path, size: int) -> None:
     where = str(path)
     left = size - sum(_attribute_sizes(file, where))
     if len(file) > MOST_VARIABLES:
-        raise _refusal(where, f"holds more than {MOST_VARIABLES} variables", str(len(file)))
+        raise _refusal(where, f"has more than {MOST_VARIABLES} variables", str(len(file)))
     for name in file:
         at = f'{where}, variable "{printable(name)}"'
         variable = _variable(file, name, at)
@@ -128,7 +128,7 @@ def _is_plain(dtype: np.dtype[np.generic]) -> bool:
 
 
 def _attribute_sizes(owner: h5py.File | h5py.Dataset, where: str) -> Iterator[int]:
-    """Bytes of each attribute of a file or a variable; those that are no number or text are refused."""
+    """Bytes of each attribute of a file or a variable; others than numbers and texts are refused."""
     if len(owner.attrs) > MOST_ATTRIBUTES:
         raise _refusal(where, f"has more than {MOST_ATTRIBUTES} attributes", str(len(owner.attrs)))
     for name in owner.attrs:
@@ -144,7 +144,7 @@ def _attribute_sizes(owner: h5py.File | h5py.Dataset, where: str) -> Iterator[in
 
 
 def _text_bytes(variable: h5py.Dataset, path: Path, at: str) -> int:
-    """Length of all texts of a variable, as their entries say: they may share one long text, or lie.
+    """Length of all texts of a variable, as their entries state: they may share one long text, or be wrong.
 
     HDF5 file format specification, version 3.0, IV.B: an entry is the length, then where the text is.
     """

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
-from collections.abc import Iterator, Mapping, Sequence
-from contextvars import ContextVar
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from math import isfinite
@@ -66,7 +64,7 @@ def fields_of(record: object, *names: str) -> Node:
 
 
 def absent(record: type) -> Node:
-    """Return the fields of a class of records as they are where there is none: nothing but their units."""
+    """Return the fields of a class of records without a record: only their units."""
     return {name: _item(None, kind) for name, kind in _kinds(record).items()}
 
 
@@ -129,8 +127,6 @@ SPELLED = (
 )
 """Enumerations whose values are shown; of the others the names."""
 
-_left_out: ContextVar[list[str] | None] = ContextVar("left_out", default=None)
-
 
 class NotFiniteError(SeparatrixError, ArithmeticError):
     """A record has a NaN or an infinity where a number is due."""
@@ -146,8 +142,8 @@ def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]
     from separatrix.present.shapes import all_notes
     from separatrix.study_file import provenance_of, resolved
 
-    with null_if_not_finite() as left_out:
-        body = plain(Group(shape(answer)), verb)
+    left_out: list[str] = []
+    body = plain(Group(shape(answer)), verb, left_out)
     warnings = all_notes(answer, notes)
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
@@ -168,29 +164,27 @@ def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]
     }
 
 
-@contextlib.contextmanager
-def null_if_not_finite() -> Iterator[list[str]]:
-    """Within it `plain` gives None for a number that is not finite; yield where that was so."""
-    found: list[str] = []
-    token = _left_out.set(found)
-    try:
-        yield found
-    finally:
-        _left_out.reset(token)
+def plain(value: object, path: str = "result", left_out: list[str] | None = None) -> Any:
+    """Return a record, a node or a container of them as what JSON can hold.
 
-
-def plain(value: object, path: str = "result") -> Any:
-    """Return a record, a node or a container of them as what JSON can hold; `path` is its place in messages.
+    Parameters
+    ----------
+    value : object
+    path : str
+        Its place, for messages.
+    left_out : list of str, optional
+        A number that is not finite becomes None, and is added to this list.
 
     Raises
     ------
     NotFiniteError
-        A number is NaN or infinite, and that is not inside `document`.
+        A number is NaN or infinite, and there is no such list.
     """
     if isinstance(value, Leaf):
-        return plain(value.value, path)
+        return plain(value.value, path, left_out)
     if isinstance(value, Table):
-        return None if value.records is None else [plain(Group(one), path) for one in value.records]
+        records = value.records
+        return None if records is None else [plain(Group(one), path, left_out) for one in records]
     if is_dataclass(value) and not isinstance(value, type):
         value = Group(shape(value))
     if isinstance(value, Group):
@@ -199,18 +193,17 @@ def plain(value: object, path: str = "result") -> Any:
         return str(value.value) if type(value) in SPELLED else value.name
     if isinstance(value, np.ndarray | np.generic):
         is_plain = value.dtype.kind in "biu" or (value.dtype.kind == "f" and np.isfinite(value).all())
-        return value.tolist() if is_plain else plain(value.tolist(), path)
+        return value.tolist() if is_plain else plain(value.tolist(), path, left_out)
     if isinstance(value, Mapping):
-        return {_key(key): plain(one, f"{path}.{_key(key)}") for key, one in value.items()}
+        return {_key(key): plain(one, f"{path}.{_key(key)}", left_out) for key, one in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, str | bytes):
-        return [plain(one, f"{path}[{i}]") for i, one in enumerate(value)]
+        return [plain(one, f"{path}[{i}]", left_out) for i, one in enumerate(value)]
     if value is None or isinstance(value, bool | int | str):
         return value
     if not isinstance(value, float):
         raise TypeError(f"{path}: a {type(value).__name__} has no plain form")
     if isfinite(value):
         return value
-    left_out = _left_out.get()
     if left_out is None:
         raise NotFiniteError(f"{path} is {value}")
     left_out.append(f"{path} is {value}")

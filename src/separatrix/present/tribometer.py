@@ -4,26 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from separatrix.friction.fit import FrictionFit
 from separatrix.friction.law import in_words as range_words
 from separatrix.friction.logs import described
 from separatrix.friction.logs.log import MEANINGS
-from separatrix.friction.reduction import Reduction, steady
+from separatrix.friction.reduction import Reduction, TestFriction, steady
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.present.arrays import variable
 from separatrix.present.nodes import Document, Leaf, plain
 from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
 from separatrix.units import Array
-
-if TYPE_CHECKING:
-    from separatrix.friction.fit import FrictionFit
-    from separatrix.friction.reduction import TestFriction
-    from separatrix.friction.tribometer import ReducedLogs
 
 Node = dict[str, Leaf]
 
@@ -43,15 +38,7 @@ FACTS = ("run_in_method", "rows", "steady_rows", "cycles", "degrees_of_freedom")
 
 
 def document(found: ReducedLogs, *, written: str | None) -> Document:
-    """Return the answer as plain data: SI units, None where something is absent.
-
-    Parameters
-    ----------
-    found : ReducedLogs
-        From `separatrix.friction.tribometer.tribometer`.
-    written : str or None
-        Path of the friction file, if one is written.
-    """
+    """Return the answer as plain data: SI units, None for absent values; `written` is the friction file."""
     from separatrix import __version__
 
     fit = found.fit
@@ -96,13 +83,7 @@ def document(found: ReducedLogs, *, written: str | None) -> Document:
 
 
 def page_data(reduction: Reduction) -> xr.Dataset:
-    """Return what the page of plots of one test is drawn from; small, whatever the length of the log.
-
-    Parameters
-    ----------
-    reduction : Reduction
-        From `separatrix.friction.reduction`.
-    """
+    """Return the data of the page of plots of one test; small, whatever the length of the log."""
     test, unit = reduction.test, MEANINGS[reduction.test.run_in_axis]
     rate = "-" if unit == "-" else "Hz" if unit == "s" else f"1/{unit}"
     node = {name: Leaf(getattr(test, name), "-") for name in NUMBERS}
@@ -195,7 +176,7 @@ def autocorrelation(values: Array) -> tuple[Array, Array]:
 
 
 def _means(values: Array, starts: NDArray[np.int64]) -> Array:
-    """Return the mean of each column that begins at these rows; absent where none of its values is there."""
+    """Return the mean of each column that begins at these rows; NaN where all its values are absent."""
     there = np.isfinite(values)
     counts = np.add.reduceat(there.astype(float), starts)
     sums = np.add.reduceat(np.where(there, values, 0.0), starts)
@@ -215,7 +196,6 @@ FIT_LEGEND = (
     "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
     "standard deviation of a new sample about it."
 )
-AXIS_UNITS = {"time": "s", "distance": "m", "cycles": "-"}
 WORDS = {"slip_speed": "slip speed", "pressure": "pressure", "pressure_velocity": "pV"}
 UNITS = {"slip_speed": "m/s", "pressure": "Pa"}
 
@@ -246,7 +226,7 @@ def in_words(found: ReducedLogs, *, written: str | None, plots: str | None) -> s
 def _row(test: TestFriction, flags: list[str]) -> list[str]:
     known, (low, high), end = test.conditions, test.interval, f"{test.run_in_end:.4g} cycles"
     if test.run_in_axis != "cycles":
-        end = quantity(test.run_in_end, AXIS_UNITS[test.run_in_axis], 3)
+        end = quantity(test.run_in_end, MEANINGS[test.run_in_axis], 3)
     return [
         test.source,
         known.material or ABSENT,
@@ -263,12 +243,10 @@ def _fits(fit: FrictionFit) -> str:
     rows, notes = [], [*_slopes(fit), _components(fit)]
     for (material, environment), one in fit.groups.items():
         at = one.at()
-        shares = (
-            f"{100.0 * error / at.mean:.1f} %" for error in (at.standard_error, at.standard_deviation or 0.0)
-        )
-        rows.append(
-            [material, environment, str(len(one.tests)), f"{at.mean:.4f}", *shares, one.scatter_source]
-        )
+        errors = at.standard_error, at.standard_deviation or 0.0
+        shares = [f"{100.0 * error / at.mean:.1f} %" for error in errors]
+        cells = [material, environment, str(len(one.tests)), f"{at.mean:.4f}", *shares, one.scatter_source]
+        rows.append(cells)
         notes += [f"{material}, {environment}: {note}." for note in one.covariates.notes]
     lines = ["", *(paragraph(line, first="  ", indent="      ") for line in notes)]
     legend = "\n" + paragraph(FIT_LEGEND)

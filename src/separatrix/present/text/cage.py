@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.answers import SpaceSimulationAnswer
-from separatrix.cage import CageMotion
+from separatrix.answers import SimulationAnswer, SpaceSimulationAnswer
+from separatrix.cage import CageMotion, History, Judgement, PlanarCage, SpaceAnalysis
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.limits.point import own_restitution_factor
@@ -27,14 +26,8 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.ranking.records import NotMeasured
-from separatrix.study import BallModel, Guidance
-
-if TYPE_CHECKING:
-    from separatrix.answers import SimulationAnswer
-    from separatrix.cage import History, Judgement, PlanarCage, SpaceAnalysis
-    from separatrix.ranking.records import Ranking, Row
-    from separatrix.study import Study
+from separatrix.ranking.records import NotMeasured, Ranking, Row
+from separatrix.study import BallModel, Guidance, Study
 
 DIRECTIONS = {1: "forward", -1: "backward", 0: "none"}
 
@@ -84,7 +77,7 @@ def simulate(answer: SimulationAnswer | SpaceSimulationAnswer, study: Study) -> 
         section("Centre of the cage", facts([*orbit_facts(history, cage), clearance_fact(cage)])),
         section("Largest forces", facts(forces)),
         section("Work done on the cage; energy at the end", facts(ledger)),
-        section("What it holds for", facts(basis(study, answer))),
+        section("Basis of this answer", facts(basis(study, answer))),
         SINGLE,
     ]
 
@@ -145,7 +138,7 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
     mean = f"{stated(found, 'mean_offset')} at the end, relative spread {number(found.orbit_evenness, 2)}"
     forces = f"{stated(found, 'largest_contact_force')} at a pocket, {stated(found, 'largest_land_force')}"
     energy = (
-        f"{significant(1e3 * found.end_energy, 3)} mJ; frame and loads alone can give "
+        f"{significant(1e3 * found.end_energy, 3)} mJ; frame and loads alone can supply "
         f"{significant(1e3 * found.drive_energy, 3)} mJ"
     )
     growth = f"{significant(found.growth_rate, 3)} 1/s (one run: no interval)"
@@ -181,16 +174,13 @@ def _space_facts(found: Judgement) -> list[tuple[str, str]]:
 
 
 def motion_words(motion: CageMotion | None) -> str:
-    """Return a class of motion as it is printed."""
+    """Return a class of motion as text."""
     return motion.value if motion else "unresolved"
 
 
 def _power_facts(found: History | Judgement, rubbing: float) -> list[tuple[str, str]]:
-    powers = {"pocket": found.pocket_power, "land": found.land_power}
-    each = (
-        f"{name} {'feeds' if watt > 0.0 else 'takes'} {quantity(abs(watt), 'W')}"
-        for name, watt in powers.items()
-    )
+    powers = (("pocket", found.pocket_power), ("land", found.land_power))
+    each = (f"{name} {'feeds' if w > 0.0 else 'takes'} {quantity(abs(w), 'W')}" for name, w in powers)
     rows = [("Friction power", ", ".join(each))]
     if found.rubbing_force > 0.0:
         both = f"{stated(found, 'rubbing_force')} at {stated(found, 'rubbing_speed')}"
@@ -240,7 +230,7 @@ def _simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]
         section("The run", facts(ended)),
         section(f"Motion in space: means {part}", facts([*_motion(found), clearance_fact(cage)])),
         section("Forces and rubbing of the whole run", facts(_forces(answer))),
-        section("What it holds for", facts([*basis(study, answer)[:BASIS], *running])),
+        section("Basis of this answer", facts([*basis(study, answer)[:BASIS], *running])),
         SINGLE,
     ]
 
@@ -310,7 +300,7 @@ WHY = {
 
 
 def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
-    """Return verdicts by both models of a ball, and where they differ; nothing where forces are small."""
+    """Return verdicts by both models of a ball, and where they differ; nothing without a second verdict."""
     runs = 0
     both: list[tuple[str, Judgement, Judgement]] = []
     for row in rows:
@@ -352,4 +342,4 @@ def _differences(both: Sequence[tuple[str, Judgement, Judgement]]) -> str:
         if names:
             than = "more" if more else "less"
             said.append(f"With traction {', '.join(names)} come out {than} stable: {WHY[more]}.")
-    return " ".join(said) or "Both models give the same verdicts."
+    return " ".join(said) or "Both models reach the same verdicts."

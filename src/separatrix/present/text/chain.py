@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import degrees
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from separatrix.answers import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
+from separatrix.chain.clearances import Clearances
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.equilibrium import Equilibrium
+from separatrix.chain.mobility import Impacts, Mobility
+from separatrix.chain.models import ModelSlopes
 from separatrix.present.nodes import Leaf, Node, field_units, fields_of
 from separatrix.present.shapes import shape
 from separatrix.present.text.tables import (
@@ -18,16 +25,7 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.study import PressureSlip, Worn
-
-if TYPE_CHECKING:
-    from separatrix.answers import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
-    from separatrix.chain.clearances import Clearances
-    from separatrix.chain.contacts import BearingState
-    from separatrix.chain.equilibrium import Equilibrium
-    from separatrix.chain.mobility import Impacts, LinearMobility, Mobility
-    from separatrix.chain.models import ModelSlopes
-    from separatrix.study import Study
+from separatrix.study import PressureSlip, Study, Worn
 
 BALL_HEADERS = (
     *("ball", "azimuth\ndeg", "angle in\ndeg", "angle out\ndeg", "load in\nN", "load out\nN"),
@@ -204,7 +202,7 @@ def contact_words(study: Study) -> str:
 
 
 def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
-    """Return what a cage's answer is based on: bearing, operation, film, and the numbers of the chain."""
+    """Return the basis of a cage's answer: bearing, operation, film, and the numbers of the chain."""
     at, operation, film, solution = study.bearing, study.operation, study.film, answer.solution
     loads = (("axial", "axial_load"), ("radial", "radial_load"))
     loaded = [f"{stated(operation, key)} {words}" for words, key in loads if getattr(operation, key)]
@@ -238,13 +236,13 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
     facts += running_clearances(solution.clearances)
     if solution.orbital_share is not None:  # of a bearing whose balls do not run alike
         lead, clearance = (quantity(one, "m") for one in (answer.cage.lead_amplitude, answer.cage.half_play))
-        share = f"the harmonics used hold {100 * solution.orbital_share:.4g} % of the speed variance"
+        share = f"the harmonics used contain {100 * solution.orbital_share:.4g} % of the speed variance"
         facts.append(("Free balls lead and lag", f"up to {lead} (pockets {clearance} each way); {share}"))
     return facts
 
 
 def running_clearances(found: Clearances | None) -> list[tuple[str, str]]:
-    """Return each clearance at rest and as it runs, with its strains; nothing where the study states it."""
+    """Return each clearance at rest and as it runs, with its strains; empty if the study states it."""
     if found is None:
         return []
     at = f"at {quantity(found.temperature, 'K')} and a cage speed of {quantity(found.cage_speed, 'rad/s')}"
@@ -278,42 +276,46 @@ SMALL = {
     "slip_speed_inner": "Slip speed, inner race",
     "slip_speed_outer": "Slip speed, outer race",
 }
+MODE_HEADERS = ("mode", "rate\n1/s", "time", "share of 1/C_eff\n%", "rate, rigid\n1/s")
+PUSH_HEADERS = ("speed\nm/s", "F forward\nN", "F backward\nN", "law\nN")
+IMPACT_HEADERS = (
+    *("speed\nm/s", "from behind\n-", "from front\n-", "by the law\n-"),
+    *("peak force\nN", "time\nus"),
+)
 SHOWN_PUSHES = 8
 
 
 def mobility(answer: MobilityAnswer, study: Study) -> list[str]:  # noqa: ARG001
     """Small motion by both slip laws, the law of traction, and the restitution of impacts."""
     found, rigid = answer.mobility, answer.rigid
-    units = field_units(type(found.linear))
+    linear, units = found.linear, field_units(type(found.linear))
     cells = [
-        [words, *(quantity(getattr(one, name), units[name], 5) for one in (found.linear, rigid))]
+        [words, *(quantity(getattr(one, name), units[name], 5) for one in (linear, rigid))]
         for name, words in SMALL.items()
     ]
-    small = table(("", "elastic creep", "rigid"), cells)
+    rates = np.column_stack([linear.rates, linear.shares, rigid.rates]).tolist()
+    modes = [
+        [
+            str(i),
+            significant(of, 5),
+            quantity(1.0 / of, "s", 3),
+            f"{100.0 * share:.2f}",
+            significant(other, 5),
+        ]
+        for i, (of, share, other) in enumerate(rates, 1)
+    ]
+    forces = found.force_forward, found.force_backward, found.force_law
+    step = max(1, found.speed.size // SHOWN_PUSHES)
+    shown = np.column_stack([found.speed, *forces])[::-step][::-1].tolist()
+    pushes = [[significant(speed, 3), *map(significant, each)] for speed, *each in shown]
     blocks = [
-        section("Small motion of the most loaded ball", small),
-        section("Modes", _modes(found.linear, rigid)),
-        section("Push along the orbit", facts(_law(found)), _pushes(found)),
+        section("Small motion of the most loaded ball", table(("", "elastic creep", "rigid"), cells)),
+        section("Modes", table(MODE_HEADERS, modes)),
+        section("Push along the orbit", facts(_law(found)), table(PUSH_HEADERS, pushes, left=0)),
     ]
     if answer.impacts is None:
         return [*blocks, section("Impacts of the cage", paragraph(f"Not computed: {answer.impacts_reason}"))]
     return [*blocks, section("Impacts of the cage on the ball", *_impacts(answer.impacts))]
-
-
-def _modes(found: LinearMobility, rigid: LinearMobility) -> str:
-    """Return a table of the rates, the time of each, and what it adds to the speed of a slow push."""
-    rows = [
-        [
-            str(i + 1),
-            significant(float(found.rates[i]), 5),
-            quantity(1.0 / float(found.rates[i]), "s", 3),
-            f"{100.0 * float(found.shares[i]):.2f}",
-            significant(float(rigid.rates[i]), 5),
-        ]
-        for i in range(found.rates.size)
-    ]
-    headers = ("mode", "rate\n1/s", "time", "share of 1/C_eff\n%", "rate, rigid\n1/s")
-    return table(headers, rows)
 
 
 def _law(found: Mobility) -> Sequence[tuple[str, str]]:
@@ -333,36 +335,15 @@ def _law(found: Mobility) -> Sequence[tuple[str, str]]:
     ]
 
 
-def _pushes(found: Mobility) -> str:
-    chosen = range(found.speed.size - 1, -1, -max(1, found.speed.size // SHOWN_PUSHES))
-    rows = [
-        [
-            significant(float(found.speed[i]), 3),
-            *(
-                significant(float(force[i]))
-                for force in (found.force_forward, found.force_backward, found.force_law)
-            ),
-        ]
-        for i in reversed(chosen)
-    ]
-    return table(("speed\nm/s", "F forward\nN", "F backward\nN", "law\nN"), rows, left=0)
-
-
 def _impacts(found: Impacts) -> list[str]:
     """Return a table of restitution against the speed of the impact, and what it is to be compared with."""
+    restitutions = found.restitution_forward, found.restitution_backward, found.restitution_law
     rows = [
-        [
-            significant(float(found.speed[i]), 3),
-            *(
-                number(float(one[i]))
-                for one in (found.restitution_forward, found.restitution_backward, found.restitution_law)
-            ),
-            significant(float(found.peak_force[i])),
-            significant(1e6 * float(found.duration[i])),
-        ]
-        for i in range(found.speed.size)
+        [significant(speed, 3), *map(number, each), significant(force), significant(1e6 * time)]
+        for speed, *each, force, time in np.column_stack(
+            [found.speed, *restitutions, found.peak_force, found.duration]
+        ).tolist()
     ]
-    headers = ("speed\nm/s", "from behind\n-", "from front\n-", "by the law\n-", "peak force\nN", "time\nus")
     beside = [
         ("Mass that the impact feels", stated(found, "felt_mass")),
         ("Limit of gentle impacts", number(found.restitution_linear)),
@@ -370,7 +351,7 @@ def _impacts(found: Impacts) -> list[str]:
         ("eta of the paper, all of the mass", number(found.nominal_restitution_factor)),
     ]
     return [
-        table(headers, rows, left=0),
+        table(IMPACT_HEADERS, rows, left=0),
         facts(beside),
         paragraph("Share of its speed with which the cage returns; below 0 it goes on behind the ball."),
     ]

@@ -1,4 +1,4 @@
-"""Text of the library: lists of records, records whole, and what a file holds."""
+"""Text of the library: lists of records, whole records, and the contents of a file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ WORDS = {
 """Properties whose key is not their name."""
 
 POINTS = ("point", "critical temperature", "critical pressure")
-"""Properties that are no function of temperature."""
+"""Properties that do not depend on temperature."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +45,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """What a record of a library file holds, and how many of its numbers are guesses."""
+    """Contents of a record of a library file, and how many of its numbers are guesses."""
 
     kind: str
     name: str
@@ -191,7 +191,7 @@ def _state(state: FluidState) -> list[tuple[str, str]]:
 
 
 def checked(file: LibraryFile, records: Sequence[Counts]) -> str:
-    """Return what a library file holds."""
+    """Return the contents of a library file."""
     headers = ("kind", "name", "line", "numbers", "guesses", "no temperature")
     rows = [
         [r.kind, r.name, str(r.line or ABSENT), *map(str, (r.numbers, r.guesses, r.without_temperature))]
@@ -202,7 +202,7 @@ def checked(file: LibraryFile, records: Sequence[Counts]) -> str:
 
 
 def added(library: str, records: Sequence[Counts]) -> str:
-    """Return what was added."""
+    """Return the added records."""
     return f"Added to {library}: {', '.join(f'{record.kind} {record.name}' for record in records)}.\n"
 
 
