@@ -73,7 +73,7 @@ class Folder:
     root: Path
 
     def inside(self, name: str) -> Path:
-        """Return the path of a file or folder; refused if it is missing, hidden, or outside, be it by a link."""
+        """Return the path of a file or folder; refused if missing, hidden, or outside, be it by a link."""
         parts = name.split("/")
         is_plain = bool(name) and not any(c in name for c in "\0\\:") and "" not in parts
         if is_plain and not any(part.startswith(".") for part in parts):

@@ -29,7 +29,7 @@ INTERRUPTED = 130
 LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
 
-WORTH_SAYING: Second = 5.0
+WORTH_PRINTING: Second = 5.0
 """An expected time below this is not printed."""
 
 FIRST_PART = 0.05
@@ -136,7 +136,7 @@ class Life:
         """Take in how far the work is; without an estimate beforehand its first part gives one."""
         self.done, self.total = done, total
         passed = time.monotonic() - self.begun
-        if not self.expected and passed > WORTH_SAYING and FIRST_PART * total <= done < total:
+        if not self.expected and passed > WORTH_PRINTING and FIRST_PART * total <= done < total:
             self.expected = True
             complain(f"{self.title} takes about {in_words(passed * total / done)}.")
 
@@ -144,7 +144,7 @@ class Life:
         """Print what the work will take, unless that is too short to matter."""
         seconds, self.expected = estimate(), True
         self.started = time.monotonic()  # what was compiled for the estimate is not part of a step
-        if seconds >= WORTH_SAYING:
+        if seconds >= WORTH_PRINTING:
             complain(f"{self.title} takes {'at most ' if at_most else ''}about {in_words(seconds)}.")
 
     def line(self) -> str:
