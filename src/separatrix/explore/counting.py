@@ -40,9 +40,9 @@ from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner, joined
 from separatrix.units import Array, MetrePerSecond, Ratio
 
-BLOCK = 64  # bearings after which a case is looked at
+BLOCK = 64  # bearings after which a case is judged
 RISK: Ratio = 1e-3
-"""Probability, at each look, that a case is ended whose true share lies on the other side of a limit."""
+"""Probability, at each judgement, that a case is ended whose true share lies on the other side of a limit."""
 
 NORMAL = 3.2905  # normal quantile of that probability, on both sides together
 

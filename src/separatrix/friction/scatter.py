@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from separatrix.units import Array, Ratio
 
-_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are looked for, in units of the residual one
+_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are searched, in units of the residual one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

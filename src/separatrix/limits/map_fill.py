@@ -21,14 +21,14 @@ AGREEING = 6
 """A point is decided once this number of runs agree from the first on; otherwise when it is settled."""
 
 LOOK_AFTER = 2
-"""Runs after which a point is looked at again, whose first runs did not agree; more for a very long one."""
+"""Runs after which a point is judged again, whose first runs did not agree; more for a very long one."""
 
 MOST_WRONG: Ratio = 1e-3
 """Largest probability that all the runs of such a point would have the other majority."""
 
 
 def first_look(runs: int) -> int:
-    """Runs after which a point is looked at: the fewest that keep to `MOST_WRONG`, and to `AGREEING`."""
+    """Runs after which a point is judged: the fewest that keep to `MOST_WRONG`, and to `AGREEING`."""
     enough = next(n for n in range(1, runs + 1) if wrong_side_probability(runs, n) <= MOST_WRONG)
     return min(max(enough, AGREEING), runs)
 
@@ -104,7 +104,7 @@ def _answer(tally: Tally) -> tuple[int, bool]:
 
 
 def further(made: int, most: int) -> int:
-    """Runs to make before a point is looked at again."""
+    """Runs to make before a point is judged again."""
     return min(max(LOOK_AFTER, made // 8), most - made)
 
 

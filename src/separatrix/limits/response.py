@@ -112,7 +112,7 @@ class GrowthCounter:
         return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
 
 
-SEARCHED_FRICTION: Ratio = 1.0  # critical friction is looked for from 0 up to here
+SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
 _STEPS_A_DECADE = 24  # neighbours differ by 10 %, well inside the band
 LADDER: tuple[Ratio, ...] = (
     0.0,

@@ -131,7 +131,7 @@ def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
     """A sentence on the pockets that yield, of candidates, or a cage beside them, whose strength is known."""
     walls = {one.name: one.material for one in (study.ranking.candidates if study.ranking else ())}
     own = study.cage.material if study.cage else None
-    said = []
+    weak = []
     for row in rows:
         wall, force = walls.get(row.name, own), row.largest_contact_force
         if wall is None or wall.compressive_strength is None or force == 0.0:
@@ -139,11 +139,11 @@ def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
         pressure, limit = pocket_pressure(study.bearing, wall, force), YIELDS * wall.compressive_strength
         if pressure > limit:
             both = (format_quantity(each, "Pa", 2) for each in (pressure, limit))
-            said.append(f"{row.name} {' against '.join(both)}")
-    if said:
+            weak.append(f"{row.name} {' against '.join(both)}")
+    if weak:
         yield (
             f"The largest pocket force presses a ball into a flat pocket wall beyond {YIELDS:g} times its "
-            f"compressive strength, where it begins to yield: {', '.join(said)}. The pocket dents and wears; "
+            f"compressive strength, where it begins to yield: {', '.join(weak)}. The pocket dents and wears; "
             "its elastic stiffness is outside its range."
         )
 
@@ -194,10 +194,10 @@ def disagreement(threshold: Ratio, verdict: Verdict) -> str:
 
     The paper rejects a material that needs a restitution factor below 0.6, whatever its film gives.
     """
-    inapt = threshold < SOLID_LUBRICATION_LIMIT
-    if inapt and verdict is Verdict.STABLE:
+    rejected = threshold < SOLID_LUBRICATION_LIMIT
+    if rejected and verdict is Verdict.STABLE:
         return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be rejected."
-    if not inapt and verdict is Verdict.UNSTABLE:
+    if not rejected and verdict is Verdict.UNSTABLE:
         return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be kept."
     return ""
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     import nptdms
 
-MOST_ROWS_ABOVE = 2000  # rows in which the first rows of numbers are looked for
+MOST_ROWS_ABOVE = 2000  # rows in which the first rows of numbers are searched
 _NUMBERS = (float, datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
 _FIRST_DAY = datetime.datetime(1900, 1, 1)
 _PIECE = 4 * 1024**2

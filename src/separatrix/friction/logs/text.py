@@ -33,7 +33,7 @@ from separatrix.units import Array, printable
 Wanted = Callable[[Sequence[str], Sequence[str]], Sequence[int]]
 """From the headers and units of a table to the numbers of the columns to read."""
 
-HEAD = 300  # lines in which the table's separator and decimal sign are looked for first
+HEAD = 300  # lines in which the table's separator and decimal sign are searched first
 NEAR = 6  # rows below which a line of names makes metadata of them
 MOST_TABLES = 2000  # tables of one file; each keeps some 80 kB
 _COMMA_IN_QUOTES = re.compile(rb'"[^"\n]*,[^"\n]*"')

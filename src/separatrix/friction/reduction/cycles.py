@@ -200,7 +200,7 @@ LONGEST, SHORTEST = 4096, 64  # rows of a segment
 CHANCE = 1e-4  # probability with which noise alone would show a line as strong somewhere in the spectrum
 BESIDE = 8  # places on each side of a line from which the noise is estimated; the two next to it are left out
 LOWEST = 12
-"""First place of a spectrum where a line is looked for: there is no noise to the left of lower ones."""
+"""First place of a spectrum where a line is searched: there is no noise to the left of lower ones."""
 
 HARMONICS = 12  # multiples of the cycle that are its own
 

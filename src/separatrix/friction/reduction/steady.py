@@ -193,12 +193,12 @@ DRIFT = 0.01  # probability without a drift below which a tail still drifts
 EVEN = 3.0
 """Ratio of the power at the lowest cosines to that at the next from which friction wanders or bends."""
 
-FEWEST = 12  # spans below which running-in is not looked for
+FEWEST = 12  # spans below which running-in is not searched
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunIn:
-    """End of running-in, as a share of the stretch that was looked at."""
+    """End of running-in, as a share of the stretch."""
 
     end: Ratio
     rest: Ratio
