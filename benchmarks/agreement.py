@@ -15,7 +15,8 @@ from dataclasses import replace
 
 from separatrix.cage import PlanarCage, Verdict, judge, wilson_interval
 from separatrix.chain.solution import solve
-from separatrix.limits import SEARCHED_FRICTION, cage_at, critical_friction
+from separatrix.limits.point import critical_friction
+from separatrix.limits.response import SEARCHED_FRICTION, cage_at
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study

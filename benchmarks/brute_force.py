@@ -24,7 +24,7 @@ from scipy.special import expit
 
 from separatrix.cage import Ensemble, RunOutcome, Verdict, judge, wilson_interval
 from separatrix.explore.drivers import FEWEST, fitted
-from separatrix.limits import critical_friction
+from separatrix.limits.point import critical_friction
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.runner import Runner, joined
 from separatrix.study import Study

@@ -41,16 +41,8 @@ from separatrix.figures.style import (
     save,
     settled,
 )
-from separatrix.limits import (
-    Count,
-    Crossing,
-    GrowthCounter,
-    Response,
-    cage_at,
-    critical_friction,
-    linear_limit,
-)
-from separatrix.limits.response import LADDER
+from separatrix.limits.point import critical_friction, linear_limit
+from separatrix.limits.response import LADDER, Count, Crossing, GrowthCounter, Response, cage_at
 from separatrix.study import StabilitySettings
 from separatrix.units import Array
 

@@ -15,7 +15,7 @@ import distributed
 from separatrix.chain.solution import solve
 from separatrix.cluster import cluster
 from separatrix.errors import ValidityWarning
-from separatrix.limits import stability_curve
+from separatrix.limits.curve import stability_curve
 from separatrix.runner import Runner
 from separatrix.study_file import read_study
 

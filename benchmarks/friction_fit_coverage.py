@@ -19,8 +19,8 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage import wilson_interval
+from separatrix.friction.file import FrictionTest
 from separatrix.friction.fit import FrictionFit, MaterialFit, fit_friction, linear_model
-from separatrix.friction.records import FrictionTest
 from separatrix.friction.scatter import variance_components
 
 ENVIRONMENT = {"counterface": "440C", "medium": "liquid nitrogen"}

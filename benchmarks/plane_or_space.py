@@ -15,8 +15,8 @@ from dataclasses import replace
 
 import separatrix
 from separatrix.cage import PlanarCage
-from separatrix.limits import critical_friction
-from separatrix.limits.growth import GrowthCounter
+from separatrix.limits.point import critical_friction
+from separatrix.limits.response import GrowthCounter
 from separatrix.study import BallModel, MotionModel, PocketShape, StabilitySettings
 
 SPEEDS = (669.0, 400.0, 200.0, 100.0, 50.0, 0.0)

@@ -4,8 +4,9 @@ import pytest
 
 from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.chain.solution import solve
-from separatrix.limits import GrowthCounter, critical_friction
-from separatrix.ranking import rank
+from separatrix.limits.point import critical_friction
+from separatrix.limits.response import GrowthCounter
+from separatrix.ranking.rank import rank
 from separatrix.runner import Runner
 from separatrix.study_file import read_study
 

@@ -18,14 +18,13 @@ from separatrix.chain.restitution import Restitution
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction.exact.contact import ContactProblem
 from separatrix.comparing.records import Comparison
-from separatrix.explore.envelope import Duty, WorstCase
-from separatrix.explore.sweep import Sweep
+from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
 from separatrix.present.contact import GIVEN, NUMBERS
 from separatrix.study_file import document
-from separatrix.study_file.sections import READERS, required_fields
 from separatrix.study_file.templates import quantity_of, section_remarks, template_keys, units_like
+from separatrix.study_file.values import READERS, required_fields
 from separatrix.units import format_quantity, unit_of
 
 KEYS = """# Keys of a study

@@ -18,9 +18,9 @@ from separatrix.chain.shown_traction import ExactArea
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy
-from separatrix.limits import StabilityCurve
+from separatrix.limits.curve import StabilityCurve
 from separatrix.limits.map_records import StabilityMap
-from separatrix.ranking import Ranking
+from separatrix.ranking.records import Ranking
 from separatrix.units import Metre, MetrePerSecond, Ratio
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -24,13 +23,13 @@ from separatrix.answers import (
 )
 from separatrix.chain.contacts import BearingState
 from separatrix.errors import ValidityWarning
-from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
-from separatrix.explore.sweep import Case, Sweep
-from separatrix.kept_files import noting
-from separatrix.notes import grouped, noted_warnings
-from separatrix.runner import Progress, made_into
+from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case
+from separatrix.explore.sweep import Sweep
+from separatrix.messages import grouped, noted_warnings
+from separatrix.questions import computed, verb_named
+from separatrix.runner import Interrupted, Progress
 from separatrix.study import Study
-from separatrix.study_file import asked_by, read_study, require
+from separatrix.study_file import read_study, require
 from separatrix.units import MetrePerSecond, Ratio
 
 if TYPE_CHECKING:
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
 
     from separatrix.comparing.records import Comparison
     from separatrix.contact_file.question import ContactAnswer, ContactQuestion, SolvedCase
+    from separatrix.present.nodes import Document
     from separatrix.reporting.record import Report
 
 Record = TypeVar("Record")
@@ -70,7 +70,7 @@ class Answer(Generic[Record]):
         """Verb and study; `summary` has the answer."""
         return f"<{self.verb} of {self.study.name}: summary(), to_dataframe(), to_xarray(), plot()>"
 
-    def document(self) -> dict[str, Any]:
+    def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
         from separatrix.present import document
 
@@ -101,20 +101,15 @@ class Answer(Generic[Record]):
         return plot(self.verb, self.to_xarray(), name)
 
 
-def _answer(
-    verb: str, study: Asked, compute: Callable[[Study], Record], *needs: str, **question: object
-) -> Answer[Record]:
-    """Answer of a verb, with what was noted on the way; the notes are warnings for the caller, too."""
+def _answer(verb: str, study: Asked, question: Mapping[str, object] | None = None, **how: Any) -> Answer[Any]:
+    """Answer of a verb with its notes, which are warnings for the caller, too; `how` is as for `computed`."""
     with noted_warnings() as notes:
         asked = study if isinstance(study, Study) else read_study(study)
-        require(asked, verb, *needs)
-
-        def made(record: Record) -> Answer[Record]:
-            known = asked_by(asked, verb, question, reading)
-            return Answer(verb=verb, record=record, study=known, notes=tuple(grouped(notes)))
-
-        with noting() as reading:
-            answer = made_into(made, lambda: compute(asked))
+        require(asked, verb, *verb_named(verb).needs)
+        found = computed(verb_named(verb), asked, question or {}, **how)
+    answer = Answer(verb=verb, record=found.record, study=found.study, notes=tuple(grouped(notes)))
+    if not found.is_complete:
+        raise Interrupted(answer)
     for note in answer.notes:
         warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
@@ -132,17 +127,17 @@ class ContactCases:
         """The cases in their order, each with its `ContactSolution`, or a reason and None."""
         return self.record.cases
 
-    def document(self) -> dict[str, Any]:
+    def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        from separatrix.present.contact import contact
+        from separatrix.present.contact import document
 
-        return contact(self.record, self.notes)
+        return document(self.record, self.notes)
 
     def summary(self) -> str:
         """Text, as the command line prints it."""
-        from separatrix.present.text.contact import contact
+        from separatrix.present.contact import in_words
 
-        return contact(self.record, self.notes)
+        return in_words(self.record, self.notes)
 
     def to_xarray(self) -> xr.Dataset:
         """Numbers and fields of the cases with their units, as they are saved in netCDF files."""
@@ -183,7 +178,7 @@ def solve_contact(asked: str | Path | ContactQuestion) -> ContactCases:
     Warns
     -----
     ValidityWarning
-        A film is compressed by more than linear elasticity holds for.
+        A film is compressed beyond the range of linear elasticity.
     """
     from separatrix.contact_file import read_contact
     from separatrix.contact_file.question import ContactQuestion
@@ -199,27 +194,27 @@ def solve_contact(asked: str | Path | ContactQuestion) -> ContactCases:
 
 def check(study: Asked) -> Answer[CheckAnswer]:
     """Inputs of a study with their sources, and the bearing at standstill."""
-    return _answer("check", study, verbs.check)
+    return _answer("check", study)
 
 
 def bearing(study: Asked) -> Answer[BearingState]:
     """Ball equilibrium, and the contacts of the most loaded ball."""
-    return _answer("bearing", study, verbs.bearing)
+    return _answer("bearing", study)
 
 
 def traction(study: Asked) -> Answer[TractionAnswer]:
     """Traction curves of ball on race, and their slopes."""
-    return _answer("traction", study, verbs.traction)
+    return _answer("traction", study)
 
 
 def restitution(study: Asked) -> Answer[RestitutionAnswer]:
     """Restitution factor of an impact of ball and cage."""
-    return _answer("restitution", study, verbs.restitution, "cage")
+    return _answer("restitution", study)
 
 
 def mobility(study: Asked) -> Answer[MobilityAnswer]:
     """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
-    return _answer("mobility", study, verbs.mobility)
+    return _answer("mobility", study)
 
 
 def simulate(
@@ -230,8 +225,8 @@ def simulate(
     restitution_factor: str | Ratio | None = None,
 ) -> Answer[SimulationAnswer | SpaceSimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
-    asked: dict[str, Any] = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
-    return _answer("simulate", study, lambda one: verbs.simulate(one, **asked), "cage", **asked)
+    question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
+    return _answer("simulate", study, question)
 
 
 def stability(
@@ -264,8 +259,7 @@ def stability(
     Interrupted
         With the answer made of what was finished.
     """
-    with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        return _answer("stability", study, lambda one: verbs.stability(one, runner), "cage")
+    return _answer("stability", study, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 
 def map(
@@ -283,10 +277,8 @@ def map(
     progress: Progress | None = None,
 ) -> Answer[MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
-    question: dict[str, Any] = {"x": x, "y": y, "points": points, "runs": runs}
-    question |= {"kick": kick, "adaptive": adaptive}
-    with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        return _answer("map", study, lambda one: verbs.map(one, runner, **question), "cage", **question)
+    question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
+    return _answer("map", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 
 def rank(
@@ -298,8 +290,7 @@ def rank(
     progress: Progress | None = None,
 ) -> Answer[RankingAnswer]:
     """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
-    with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        return _answer("rank", study, lambda one: verbs.rank(one, runner), "cage", "ranking")
+    return _answer("rank", study, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 
 def sensitivity(
@@ -312,13 +303,10 @@ def sensitivity(
     progress: Progress | None = None,
 ) -> Answer[SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
-    with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        question = {"samples": samples}
-
-        def compute(one: Study) -> SensitivityAnswer:
-            return verbs.sensitivity(one, runner, samples=samples)
-
-        return _answer("sensitivity", study, compute, "cage", "ranking", **question)
+    question = {"samples": samples}
+    return _answer(
+        "sensitivity", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress
+    )
 
 
 def sweep(
@@ -335,9 +323,8 @@ def sweep(
 ) -> Answer[Sweep]:
     """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
-    question: dict[str, Any] = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
-    with verbs.long_job(jobs, folder, cluster, progress) as runner:
-        return _answer("sweep", study, lambda one: verbs.sweep(one, runner, **question), **question)
+    question = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
+    return _answer("sweep", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 
 def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Comparison:
@@ -360,8 +347,7 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     def saved(one: Answer[Any] | str | Path) -> dict[str, Saved]:
         if not isinstance(one, Answer):
             return read_answers(Path(one))
-        has_arrays = one.verb not in WITHOUT_DATA
-        data = one.to_xarray() if has_arrays else None
+        data = None if one.verb in WITHOUT_DATA else one.to_xarray()
         return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document(), data=data)}
 
     return compared(*pair_of(saved(first), saved(second)))
@@ -379,21 +365,14 @@ def report(
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.reporting.content import report_of
-    from separatrix.reporting.kept import Kept, answers_of
+    from separatrix.reporting.content import answers_of, report_of
+    from separatrix.reporting.record import Kept
 
     asked = study if isinstance(study, Study) else read_study(study)
-    how: dict[str, Any] = {"jobs": jobs, "folder": folder, "cluster": cluster, "progress": progress}
-    verb_of: dict[str, Callable[..., Answer[Any]]] = {
-        "bearing": bearing,
-        "traction": traction,
-        "restitution": restitution,
-        "stability": partial(stability, **how),
-        "rank": partial(rank, **how),
-    }
 
     def compute(verb: str) -> Kept:
-        return Kept((answer := verb_of[verb](asked)).document(), answer.to_xarray())
+        answer = _answer(verb, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        return Kept(answer.document(), answer.to_xarray())
 
     kept, missing, _ = answers_of(asked, None, compute)
     return report_of(kept, missing)

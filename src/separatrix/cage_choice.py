@@ -1,4 +1,4 @@
-"""Which candidate the cage is made of, and which environment the bearing runs in: alike for every verb."""
+"""Candidate of the cage and environment of the bearing, the same for every verb."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NAMELESS = "given in the study"
 
 
 def cage_candidate(study: Study) -> Candidate | None:
-    """Candidate that [cage] material names, else the only one; None if the study does not say."""
+    """Candidate that [cage] material names, else the only one; None if the study states none."""
     candidates = study.ranking.candidates if study.ranking else ()
     name = _name(study)
     if not name and len(candidates) == 1:
@@ -25,7 +25,7 @@ def reference_candidate(study: Study, question: RankingQuestion) -> Candidate:
 
 
 def other_than_candidates(study: Study, question: RankingQuestion) -> str:
-    """A sentence on a cage whose material is no candidate: the curve shown is another's; else empty."""
+    """Sentence on a cage whose material is not a candidate: the curve is another's; else empty."""
     given = study.cage.material if study.cage else None
     if given is None or cage_candidate(study) is not None:
         return ""
@@ -35,7 +35,7 @@ def other_than_candidates(study: Study, question: RankingQuestion) -> str:
 
 
 def environment_of(question: RankingQuestion) -> str | None:
-    """Return the stated environment, else the only one; None if the study does not say."""
+    """Return the stated environment, else the only one; None if the study states none."""
     alone = question.environments[0] if len(question.environments) == 1 else None
     return question.environment or alone
 
@@ -53,7 +53,7 @@ def required_environment(study: Study, question: RankingQuestion) -> str:
 
 
 def require_friction(study: Study) -> None:
-    """Refuse a study whose cage has no known friction: what is missing, and what can be given instead."""
+    """Refuse a study whose cage has no known friction, with the missing key and its alternatives."""
     if study.cage is not None and study.cage.ball_cage_friction is not None:
         return
     where = f"{study.name}: [cage] ball_cage_friction"
@@ -80,13 +80,7 @@ def _name(study: Study) -> str:
 
 
 def ranking_question(study: Study) -> RankingQuestion:
-    """Return what a study wants ranked.
-
-    Raises
-    ------
-    InputError
-        Nothing.
-    """
+    """Return the question of [ranking], or refuse a study without candidates."""
     if study.ranking is None or not study.ranking.candidates:
         cure = 'Write friction = "pin-on-disk-77K" there, or [[ranking.candidates]].'
         raise InputError(study.name, "lacks the section [ranking] with candidate materials", cure=cure)

@@ -32,7 +32,7 @@ def cluster(address: str) -> Iterator[tuple[Executor, int]]:
     Parameters
     ----------
     address : str
-        Of a running Dask scheduler, say ``"tcp://host:8786"``; or ``"local:N"`` for N processes here.
+        Of a running Dask scheduler, such as ``"tcp://host:8786"``; or ``"local:N"`` for N processes here.
 
     Raises
     ------
@@ -92,7 +92,6 @@ def _not_a_scheduler(address: str, error: Exception) -> InputError:
 
 
 def _processes(address: str) -> int:
-    """Return N of local:N."""
     text = address.removeprefix("local:")
     if not re.fullmatch(r"[0-9]{1,4}", text) or not 1 <= int(text) <= MOST_LOCAL:
         raise InputError("--cluster", f"must be local:N with N from 1 to {MOST_LOCAL}", f'"{address}"')

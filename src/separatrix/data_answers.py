@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.errors import InputError
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.friction.tribometer import tribometer as reduced
-from separatrix.library import KINDS, Library, Record, as_material, beside, library_files, with_files
-from separatrix.library.fluids import ATMOSPHERE, contradictions, fluid_state, other_phase
-from separatrix.toml_values import nearest
+from separatrix.library import Library, as_material, beside, library_files, with_files
+from separatrix.library.records import ATMOSPHERE, KINDS, Record, contradictions, fluid_state, other_phase
+from separatrix.toml_files import nearest
 from separatrix.units import Kelvin, Pascal, shown
 
 if TYPE_CHECKING:
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.friction.reduction import Reduction
-    from separatrix.library import FrictionTable
+    from separatrix.library.records import FrictionTable
+    from separatrix.present.nodes import Document
     from separatrix.present.text.materials import Shown
     from separatrix.runner import Progress
 
@@ -34,15 +35,15 @@ Libraries = Sequence[str | Path]
 class TribometerAnswer(ReducedLogs):
     """What logs of tribometers show, from `tribometer`."""
 
-    def document(self) -> dict[str, Any]:
+    def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        from separatrix.present.tribometer import tribometer as document
+        from separatrix.present.tribometer import document
 
         return document(self, written=None)
 
     def summary(self) -> str:
         """Text, as the command line prints it."""
-        from separatrix.present.text.tribometer import tribometer as in_words
+        from separatrix.present.tribometer import in_words
 
         return in_words(self, written=None, plots=None)
 
@@ -127,7 +128,7 @@ class Materials:
     library: Library
     records: tuple[Record | FrictionTable, ...]
 
-    def document(self) -> dict[str, Any]:
+    def document(self) -> Document:
         """Plain data, as ``materials list --json`` prints it, without the version."""
         return {
             "libraries": [file.plain() for file in self.library.files],
@@ -184,7 +185,22 @@ class Materials:
         found = self.find(name)
         if pressure is not None and (temperature is None or all(record.kind != "fluid" for record in found)):
             raise InputError("--pressure", "is for a fluid, together with --temperature")
-        return [_shown(record, temperature, pressure) for record in found]
+        from separatrix.present.text.materials import Shown
+
+        views = []
+        for record in found:
+            if temperature is None or not isinstance(record, Record):
+                views.append(Shown(record=record))
+            elif record.kind != "fluid":
+                material = as_material(record, temperature)
+                taken = (material.record or {}).get("taken", {})
+                one = Shown(record=record, taken_at=temperature, taken=taken, cautions=material.cautions)
+                views.append(one)
+            else:
+                state = fluid_state(record, temperature, ATMOSPHERE if pressure is None else pressure)
+                cautions = [*contradictions(record.plain(), temperature), *other_phase(record, state)]
+                views.append(Shown(record=record, state=state, cautions=cautions))
+        return views
 
 
 def materials(kind: str | None = None, *, libraries: Libraries = ()) -> Materials:
@@ -208,31 +224,11 @@ def materials(kind: str | None = None, *, libraries: Libraries = ()) -> Material
             raise InputError("--library", "does not name a file or folder", f'"{named}"')
         paths += library_files(Path(named))
     library = with_files(paths)
-    kinds = KINDS if kind is None else (_kind(kind),)
-    return Materials(
-        library=library, records=tuple(one for each in kinds for one in library.records(each).values())
-    )
-
-
-def _kind(kind: str) -> str:
-    """Return the kind of record that is meant, in any spelling and in the plural too."""
-    spelled = kind.strip().casefold().replace("_", " ")
-    for known in KINDS:
-        if spelled in (known, f"{known}s"):
-            return known
-    raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, KINDS))
-
-
-def _shown(record: Record | FrictionTable, temperature: float | None, pressure: float | None) -> Shown:
-    """Return the record; at a temperature with what serves there, or with the state of a fluid."""
-    from separatrix.present.text.materials import Shown
-
-    if temperature is None or not isinstance(record, Record):
-        return Shown(record=record)
-    if record.kind != "fluid":
-        material = as_material(record, temperature)
-        taken = (material.record or {}).get("taken", {})
-        return Shown(record=record, taken_at=temperature, taken=taken, cautions=material.cautions)
-    state = fluid_state(record, temperature, ATMOSPHERE if pressure is None else pressure)
-    cautions = [*contradictions(record.plain(), temperature), *other_phase(record, state)]
-    return Shown(record=record, state=state, cautions=cautions)
+    kinds: tuple[str, ...] = KINDS
+    if kind is not None:  # in any spelling, and in the plural too
+        spelled = kind.strip().casefold().replace("_", " ")
+        kinds = tuple(known for known in KINDS if spelled in (known, f"{known}s"))
+        if not kinds:
+            raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, KINDS))
+    records = tuple(one for each in kinds for one in library.records(each).values())
+    return Materials(library=library, records=records)

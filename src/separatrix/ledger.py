@@ -1,4 +1,4 @@
-"""Finished pieces of a long job in an SQLite file, so that an interrupted or killed one goes on."""
+"""Finished pieces of a long job in an SQLite file, so that an interrupted job can resume."""
 
 from __future__ import annotations
 
@@ -24,23 +24,14 @@ _TABLE = "CREATE TABLE IF NOT EXISTS piece (key BLOB PRIMARY KEY, found BLOB) WI
 class Ledger:
     """Pieces by their key, a checksum of all that they depend on: many jobs may share a file.
 
-    A kill loses what was finished since the last write, a fraction of a second of work.
-
-    Parameters
-    ----------
-    path : Path
-        The file; it is made when the first piece is written.
-
-    Raises
-    ------
-    InputError
-        It is no such file.
+    The file is made when the first piece is written; a file of another kind is refused. A kill loses the
+    pieces since the last write, a fraction of a second of work.
     """
 
     def __init__(self, path: Path) -> None:
         self.path, self.goes_on = path, path.exists()
         self.taken = 0
-        """Runs that were found here instead of being computed."""
+        """Runs that were read here instead of being computed."""
         self._lock, self._written = threading.Lock(), time.monotonic()
         self._new: dict[bytes, bytes] = {}
         self._connection: sqlite3.Connection | None = None
@@ -48,7 +39,7 @@ class Ledger:
             self._execute("SELECT 1 FROM piece LIMIT 1")
 
     def get(self, key: bytes) -> bytes | None:
-        """Return what was kept under a key; None if nothing was."""
+        """Return the piece of a key; None if there is none."""
         with self._lock:
             if key in self._new or self._connection is None:
                 return self._new.get(key)
@@ -56,14 +47,14 @@ class Ledger:
         return row[0] if row and isinstance(row[0], bytes) else None
 
     def put(self, key: bytes, found: bytes) -> None:
-        """Keep a piece; it is written with others a little later."""
+        """Keep a piece, to be written with others a little later."""
         with self._lock:
             self._new[key] = found
             if time.monotonic() - self._written > AT_LEAST_EVERY:
                 self._write()
 
     def close(self) -> None:
-        """Write what is left, and close the file."""
+        """Write the remaining pieces, and close the file."""
         with self._lock:
             if self._new:
                 self._write()
@@ -94,7 +85,7 @@ class Ledger:
 
 
 def key_of(*parts: object) -> bytes:
-    """Checksum of what a piece depends on, by its exact text, and of the program's sources."""
+    """Checksum of the inputs of a piece, by their exact text, and of the program's sources."""
     text = "\n".join(map(repr, parts))
     return hashlib.sha256(program() + text.encode()).digest()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +13,8 @@ from separatrix.errors import InputError
 from separatrix.units import shown
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from separatrix.runner import Progress
     from separatrix.study import Study
 
@@ -55,7 +59,7 @@ VERBS: tuple[Verb, ...] = (
     Verb(name="restitution", help="Restitution factor of a ball/cage impact.", needs=("cage",)),
     Verb(
         name="mobility",
-        help="How the races hold a ball that is pushed along its orbit.",
+        help="Resistance of the races to a ball that is pushed along its orbit.",
         epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
         "the capacity of the races, and with a cage the restitution of impacts against their speed.",
     ),
@@ -85,7 +89,7 @@ VERBS: tuple[Verb, ...] = (
         help="Follow one run of the cage, in the plane or in space.",
         needs=("cage",),
         moves_a_cage=True,
-        epilog="An unresolved run says why. --animate mp4 needs the extra animation.",
+        epilog="An unresolved run states its reason. --animate mp4 needs the extra animation.",
         question=("kick", "run", "restitution_factor", "animate"),
     ),
     Verb(
@@ -127,11 +131,26 @@ def verb_named(name: str) -> Verb:
     return found
 
 
+def asked_study(verb: Verb, study: str | Path, models: Mapping[str, str]) -> Study:
+    """Return the study of a file or a shipped name, with other models of its cage if there are any.
+
+    Raises
+    ------
+    InputError
+        The file is wrong, lacks a section that the verb needs, or cannot have these models.
+    """
+    from separatrix.study_file import read_study, require
+
+    found = read_study(study, models)
+    require(found, verb.name, *verb.needs)
+    return found
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Computed:
-    """The record of an answer, whether it is all that was asked, and the runs kept by an earlier call.
+    """The record of an answer, whether it is complete, and the number of runs kept by an earlier call.
 
-    `study` is the one asked, with the question for the provenance of its answer.
+    `study` has the question, for the provenance of its answer.
     """
 
     record: Any
@@ -143,14 +162,14 @@ class Computed:
 def computed(
     verb: Verb,
     study: Study,
-    question: Mapping[str, Any],
+    question: Mapping[str, object],
     *,
     jobs: int | None = None,
-    folder: Path | None = None,
+    folder: str | Path | None = None,
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Computed:
-    """Answer a verb, or give the part that was finished before an interrupt.
+    """Answer a verb, or return the part that was finished before an interrupt.
 
     Parameters
     ----------
@@ -159,7 +178,8 @@ def computed(
     question : mapping
         Options of the verb alone, by the names of its function in `separatrix.verbs`.
     jobs, folder, cluster, progress
-        As for `separatrix.verbs.long_job`.
+        Of a verb that keeps runs: threads, by default one for each processor; where finished runs are kept;
+        address of a Dask scheduler, or ``local:N``, that makes them; called with (done, total).
 
     Raises
     ------
@@ -169,22 +189,36 @@ def computed(
         Before anything was finished.
     """
     from separatrix import verbs
-    from separatrix.kept_files import noting
-    from separatrix.runner import Interrupted
+    from separatrix.cluster import cluster as connected
+    from separatrix.input_files import noting
+    from separatrix.ledger import NAME, Ledger
+    from separatrix.runner import Interrupted, Runner
     from separatrix.study_file import asked_by
 
-    function = getattr(verbs, verb.name)
-    with noting() as reading:
+    function, threads, is_complete = getattr(verbs, verb.name), jobs or processors(), True
+    ledger: Ledger | None = None
+    executor: Executor | None = None
+    with noting() as reading, contextlib.ExitStack() as stack:
         if not verb.keeps_runs:
-            record, is_complete, taken = function(study, **question), True, 0
+            record = function(study, **question)
         else:
-            with verbs.long_job(jobs, folder, cluster, progress) as runner:
-                try:
-                    record, is_complete = function(study, runner, **question), True
-                except Interrupted as stop:
-                    if stop.finished is None:
-                        raise
-                    record, is_complete = stop.finished, False
-            taken = runner.ledger.taken if runner.ledger is not None else 0
+            if folder is not None:
+                Path(folder).mkdir(parents=True, exist_ok=True)
+                ledger = stack.enter_context(contextlib.closing(Ledger(Path(folder) / NAME)))
+            if cluster is not None:
+                executor, threads = stack.enter_context(connected(cluster))
+            try:
+                runner = Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
+                record = function(study, runner, **question)
+            except Interrupted as stop:
+                if stop.finished is None:
+                    raise
+                record, is_complete = stop.finished, False
+    taken = 0 if ledger is None else ledger.taken
     asked = asked_by(study, verb.name, question, reading)
     return Computed(record=record, study=asked, is_complete=is_complete, runs_taken=taken)
+
+
+def processors() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -10,6 +10,7 @@ import zlib
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import fields
+from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
@@ -26,7 +27,7 @@ Answer = TypeVar("Answer")
 
 
 class Progress(Protocol):
-    """Hears how far a long job is."""
+    """Is called with how far a long job is."""
 
     def __call__(self, done: int, total: int, /) -> None:
         """Take in how many points of those known so far are done."""
@@ -34,21 +35,15 @@ class Progress(Protocol):
 
 @runtime_checkable
 class Expecting(Progress, Protocol):
-    """Hears beforehand what a long job will take, too."""
+    """Is called beforehand with what a long job will take, too."""
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Take in an estimate, which costs something to make."""
 
 
-LOOK = 0.1
-"""Time between two looks at whether the work was interrupted [s]."""
-
-PART = 16
-"""Runs from each kick that the ledger keeps together."""
-
-SOON = 1.0
-"""Time of the runs between two looks at whether to stop, if one run does not take longer [s]."""
-
+LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
+PART = 16  # runs from each kick that the ledger keeps together
+SOON = 1.0  # time of the runs between two looks at whether to stop, if one run does not take longer [s]
 BY_BALL = ("pocket_impacts", "pocket_rubbing")
 WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
 
@@ -56,10 +51,8 @@ WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C or SIGTERM ended a long job.
 
-    Parameters
-    ----------
-    finished : object
-        The answer made of what was finished, a record that names what it lacks; None if nothing was.
+    `finished` is the answer made of what was finished, a record that names what it lacks; None if nothing
+    was.
     """
 
     def __init__(self, finished: object = None) -> None:
@@ -68,7 +61,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Runner:
-    """How a long job runs; its numbers depend on nothing of it.
+    """How a long job runs; its numbers do not depend on it.
 
     An interrupt (Ctrl-C or SIGTERM) lets the runs under way end and starts no others; a second one does not
     wait for them.
@@ -80,7 +73,7 @@ class Runner:
     progress : callable, optional
         Called with (done, total so far) after each point.
     ledger : Ledger, optional
-        Where finished runs are kept, and looked for.
+        Keeps finished runs, for a later job.
     executor : Executor, optional
         Computes the pieces elsewhere, as `separatrix.cluster` does; by default the threads compute them.
     """
@@ -102,25 +95,6 @@ class Runner:
             resumed = self.ledger is not None and self.ledger.goes_on
             self.progress.expect(estimate, at_most=at_most or resumed)
 
-    def call(self, compute: Callable[..., Result], *arguments: object) -> Result:
-        """Result of a pure function of plain arguments, computed by the executor or here.
-
-        Raises
-        ------
-        Interrupted
-            Before it was started, or while another process was at it.
-        """
-        if self.stop.is_set():
-            raise Interrupted
-        if self.executor is None:
-            return compute(*arguments)
-        future = self.executor.submit(compute, *arguments)
-        while not self.stop.is_set():
-            with contextlib.suppress(TimeoutError):
-                return future.result(timeout=LOOK)
-        future.cancel()
-        raise Interrupted
-
     def ensemble(
         self,
         cage: PlanarCage,
@@ -130,13 +104,7 @@ class Runner:
         runs: int,
         first_run: int = 0,
     ) -> Ensemble:
-        """Run a cage as `run_ensemble` does, unless the ledger knows how that ends.
-
-        Raises
-        ------
-        Interrupted
-            The work was interrupted.
-        """
+        """Run a cage as `run_ensemble` does, unless the ledger has these runs; or raise `Interrupted`."""
         piece = cage, settings, tuple(kicks), runs, first_run
         if self.ledger is None:
             return self._followed(*piece)
@@ -147,7 +115,8 @@ class Runner:
             self.ledger.taken += len(kicks) * runs
             return known
         found = self._followed(*piece)
-        self.ledger.put(key, _packed(found))
+        arrays = (np.asarray(getattr(found, field.name)) for field in fields(found))
+        self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
         return found
 
     def _followed(
@@ -159,37 +128,34 @@ class Runner:
         first_run: int,
     ) -> Ensemble:
         """Follow runs: here as many at a time as end soon, so that an interrupt waits for no more."""
-        if self.executor is not None:
-            return self.call(_ensemble, cage, settings, kicks, runs, first_run)
+        run = partial(run_ensemble, cage, settings, kicks=kicks)
+        if self.executor is not None and not self.stop.is_set():
+            return self._elsewhere(self.executor.submit(run, runs=runs, first_run=first_run))
         parts: list[Ensemble] = []
         begun, size = 0, 1
         while begun < runs:
+            if self.stop.is_set():
+                raise Interrupted
             start, size = time.perf_counter(), min(size, runs - begun)
-            parts.append(self.call(_ensemble, cage, settings, kicks, size, first_run + begun))
+            parts.append(run(runs=size, first_run=first_run + begun))
             begun += size
             size = max(1, int(size * SOON / max(time.perf_counter() - start, 1e-3)))
         return joined(parts)
 
-    def whole_ensemble(self, cage: PlanarCage, settings: StabilitySettings) -> Ensemble:
-        """Every run of the settings, whose kicks are numbers, from every kick.
+    def _elsewhere(self, future: Future[Result]) -> Result:
+        """Result of the executor, unless an interrupt comes first."""
+        while not self.stop.is_set():
+            with contextlib.suppress(TimeoutError):
+                return future.result(timeout=LOOK)
+        future.cancel()
+        raise Interrupted
 
-        Raises
-        ------
-        Interrupted
-            The work was interrupted before the last part.
-        """
-        firsts = range(0, settings.runs, PART)
+    def whole_ensemble(self, cage: PlanarCage, settings: StabilitySettings) -> Ensemble:
+        """Every run of the settings, whose kicks are numbers, from every kick."""
+        kicks, runs = settings.kicks, settings.runs
+        parts = ((first, min(PART, runs - first)) for first in range(0, runs, PART))
         return joined(
-            [
-                self.ensemble(
-                    cage,
-                    settings,
-                    kicks=settings.kicks,
-                    runs=min(PART, settings.runs - first),
-                    first_run=first,
-                )
-                for first in firsts
-            ]
+            [self.ensemble(cage, settings, kicks=kicks, runs=n, first_run=first) for first, n in parts]
         )
 
     def work_out(
@@ -203,7 +169,8 @@ class Runner:
     ) -> Answer:
         """Answer made of the results of `compute` at each place, and at the places that follow from them.
 
-        Threads, because the kernels below release the interpreter's lock.
+        Threads, because the kernels below release the interpreter's lock. `Interrupted` has the answer made
+        of the places that were finished, if any was.
 
         Parameters
         ----------
@@ -214,15 +181,10 @@ class Runner:
         into : callable
             Makes the answer of the results by their places; after an interrupt some are missing.
         more : callable, optional
-            Given a place just finished and all results so far: which places it makes wanted. Those that are
-            known or under way are not computed again. What it answers must not depend on the order.
+            Given a place just finished and all results so far: which places it makes wanted, whatever the
+            order. None is computed twice.
         progress : callable, optional
             Called instead of the runner's own.
-
-        Raises
-        ------
-        Interrupted
-            With the answer made of the places that were finished; without one if none was.
         """
         report = progress or self.progress
         results: dict[Place, Result] = {}
@@ -267,12 +229,6 @@ def made_into(make: Callable[[Result], Answer], compute: Callable[[], Result]) -
         raise Interrupted(None if stop.finished is None else make(stop.finished)) from None  # type: ignore[arg-type]
 
 
-def _ensemble(
-    cage: PlanarCage, settings: StabilitySettings, kicks: Sequence[MetrePerSecond], runs: int, first_run: int
-) -> Ensemble:
-    return run_ensemble(cage, settings, kicks=kicks, runs=runs, first_run=first_run)
-
-
 @contextlib.contextmanager
 def _noticed(stop: threading.Event) -> Iterator[None]:
     """Let an interrupt set an event instead of breaking in anywhere; the second one breaks in."""
@@ -302,12 +258,6 @@ def joined(parts: Sequence[Ensemble]) -> Ensemble:
 
     kind = type(parts[0])
     return kind(**{field.name: column(field.name) for field in fields(kind)})
-
-
-def _packed(found: Ensemble) -> bytes:
-    """Bytes of an ensemble, exact."""
-    arrays = (np.asarray(getattr(found, field.name)) for field in fields(found))
-    return zlib.compress(b"".join(array.tobytes() for array in arrays), 1)
 
 
 def _unpacked(kind: type[Ensemble], known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 from separatrix import figures
 from separatrix.figures.animation import animate
 from separatrix.figures.space import is_in_space
-from separatrix.figures.space_page import write_page
-from separatrix.plain_text import harmless
+from separatrix.figures.space_film import write_page
+from separatrix.messages import harmless
 from separatrix.present import dataset, in_words, save
 from separatrix.staged import staged
 from separatrix.workbook import results_workbook
-from separatrix.workbook_looks import add_table, new_workbook, text_for_cell, workbook_bytes
+from separatrix.workbook_files import add_table, new_workbook, text_for_cell, workbook_bytes
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from separatrix.present.json import Document
+    from separatrix.present.nodes import Document
     from separatrix.runner import Progress
     from separatrix.study import Study
 
@@ -53,7 +53,7 @@ def save_answer(
     pictures : bool
         Whether the figures are written, too.
     animation : str, optional
-        ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` hears how far it is.
+        ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` receives how far it is.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Files are written aside and renamed into place; nothing is ever left half-written."""
+"""Files are written aside and renamed into place, so that none is ever left half-written."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MINE = re.compile(re.escape(_AHEAD) + r"(?P<host>[0-9a-f]{8})-(?P<process>[0-9]
 
 
 def _prefix() -> str:
-    """Beginning of the name of what is written aside: by which machine and process."""
+    """Beginning of the names of files written aside: the machine and the process."""
     return f"{_AHEAD}{_host()}-{os.getpid()}-"
 
 
@@ -29,7 +29,7 @@ def _host() -> str:
 
 
 def _remove_left_behind(folder: Path) -> None:
-    """Remove what processes of this machine wrote aside and could not remove, for they were killed."""
+    """Remove files that processes of this machine wrote aside before they were killed."""
     for path in folder.glob(f"{_AHEAD}*"):
         named = _MINE.match(path.name)
         if named is None or named["host"] != _host() or _is_alive(int(named["process"])):
@@ -41,10 +41,10 @@ def _remove_left_behind(folder: Path) -> None:
 
 
 def _is_alive(process: int) -> bool:
-    """Whether there is such a process; where the system cannot be asked without harm, it counts as alive."""
+    """Whether a process exists; taken as true where the system has no harmless test."""
     if os.name == "posix":
         try:
-            os.kill(process, 0)  # asks, sends nothing
+            os.kill(process, 0)  # sends nothing
         except ProcessLookupError:
             return False
         except (OSError, OverflowError):  # it belongs to another user; or the number is none of a process
@@ -70,9 +70,9 @@ def staged(folder: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def writable_folder(path: Path) -> Iterator[Path]:
-    """Make the folder and its parents, and see that it can be written, before the long work.
+    """Make the folder and its parents, and test that it can be written, before the long work.
 
-    Folders that it made and that are left empty are taken away. One that cannot be written is refused.
+    Folders that it made are removed at the end if they are empty. One that cannot be written is refused.
     """
     probe, missing = path / f"{_prefix()}{uuid.uuid4().hex}", list[Path]()
     try:
@@ -100,7 +100,7 @@ def _cannot_write(path: Path, error: OSError) -> InputError:
 
 
 def refuse_existing(path: Path) -> None:
-    """Refuse the name of a new file that is taken, be it by a link that leads nowhere."""
+    """Refuse the name of a new file that is taken, also by a broken link."""
     if os.path.lexists(path):
         raise _exists_already(path)
 

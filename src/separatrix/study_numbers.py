@@ -15,7 +15,7 @@ from separatrix.distribution import Distribution, LogNormal, Normal, described, 
 from separatrix.errors import InputError
 from separatrix.study import SECTIONS as SECTIONS
 from separatrix.study import BallBearing, Material, Study, Wear, key_of
-from separatrix.toml_values import nearest
+from separatrix.toml_files import nearest
 from separatrix.units import Metre, Radian, format_quantity, shown
 
 WHOLE = ""
@@ -24,10 +24,10 @@ WHOLE = ""
 RADIAL_CLEARANCE = "bearing.radial_clearance"
 MOST_DISTRIBUTIONS = 50
 SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
-"""Numbers that say how an answer is made, not what it is of."""
+"""Numbers of the method, not of the bearing."""
 
 ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
-"""What the contact angle depends on where the clearance is held."""
+"""Numbers from which the contact angle follows, at a given clearance."""
 
 Path = tuple[str | int, ...]
 Setter = Callable[[Sequence[float]], Study]
@@ -35,7 +35,7 @@ Setter = Callable[[Sequence[float]], Study]
 
 @dataclass(frozen=True, slots=True)
 class StudyNumber:
-    """One number of a study: its name in a study file, its SI unit, and where its records hold it."""
+    """One number of a study: its name in a study file, its SI unit, and its path in the records."""
 
     key: str
     unit: str
@@ -104,17 +104,15 @@ def value_of(study: Study, number: StudyNumber) -> float | None:
     if number.key == RADIAL_CLEARANCE:
         return radial_clearance(study.bearing)
     held: Any = study
-    step: Any
     for step in number.path:
         if held is not None:
-            held = held[step] if isinstance(held, Mapping | tuple) else getattr(held, step)
+            is_field = isinstance(step, str) and not isinstance(held, Mapping)
+            held = getattr(held, str(step)) if is_field else held[step]
     return held if isinstance(held, int | float) else None
 
 
 def with_values(study: Study, values: Mapping[str, float]) -> Study:
-    """Return the study with other values of some of its numbers, by their names, all at once.
-
-    A number that is set is certain: its distribution is dropped.
+    """Return the study with other values of some of its numbers, all at once; these become certain.
 
     Raises
     ------
@@ -134,20 +132,19 @@ def setter(study: Study, keys: Sequence[str]) -> Setter:
     left = {key: one for key, one in study.distributions.items() if key not in keys}
     is_held = RADIAL_CLEARANCE in study.origins and not {RADIAL_CLEARANCE, "bearing.contact_angle"} & {*keys}
     moves = any(f"bearing.{key}" in keys for key in ANGLE_FROM)
-    held = {"radial_clearance": radial_clearance(study.bearing)} if is_held and moves else None
+    clearance = radial_clearance(study.bearing) if is_held and moves else None
 
     def with_these(values: Sequence[float]) -> Study:
-        changes: dict[Any, Any] = {} if held is None else {"bearing": dict(held)}
+        changes: dict[Path, float] = {}
+        if clearance is not None:
+            changes["bearing", "radial_clearance"] = clearance
         for number, value in zip(chosen, values, strict=True):
             if number.is_whole and value != int(value):
                 raise InputError("A whole number", "must be set to one", f"{value:g}")
-            inside = changes
-            for step in number.path[:-1]:
-                inside = inside.setdefault(step, {})
-            inside[number.path[-1]] = int(value) if number.is_whole else float(value)
+            changes[number.path] = int(value) if number.is_whole else float(value)
         try:
-            parts = {name: _changed(getattr(study, name), name, part) for name, part in changes.items()}
-            return replace(study, **parts, distributions=left)
+            changed: Study = _changed(study, "", {**changes, ("distributions",): left})
+            return changed
         except InputError as error:
             first = (error.problems or (error,))[0]
             raise first.at(key_of(first.path)) from None
@@ -162,18 +159,20 @@ def _known(known: Mapping[str, StudyNumber], key: str) -> StudyNumber:
     return known[key]
 
 
-def _changed(held: Any, name: str, changes: dict[Any, Any]) -> Any:
-    """Record, tuple or mapping with other values inside."""
+def _changed(held: Any, name: str, changes: Mapping[Path, object]) -> Any:
+    """Record, tuple or mapping with other values at the paths inside it."""
+    if () in changes:
+        return changes[()]
     if held is None:
         raise InputError(f"[{name}]", "is missing")
+    below: dict[str | int, dict[Path, object]] = {}
+    for (step, *rest), value in changes.items():
+        below.setdefault(step, {})[tuple(rest)] = value
     if isinstance(held, tuple):
-        return tuple(_changed(x, name, changes[i]) if i in changes else x for i, x in enumerate(held))
+        return tuple(_changed(x, name, below[i]) if i in below else x for i, x in enumerate(held))
     if isinstance(held, Mapping):
-        return {k: _changed(x, str(k), changes[k]) if k in changes else x for k, x in held.items()}
-    inside = {
-        key: _changed(getattr(held, key), key, value) if isinstance(value, dict) else value
-        for key, value in changes.items()
-    }
+        return {k: _changed(x, str(k), below[k]) if k in below else x for k, x in held.items()}
+    inside = {str(key): _changed(getattr(held, str(key), None), str(key), one) for key, one in below.items()}
     if isinstance(held, BallBearing) and "radial_clearance" in inside:
         clearance = inside.pop("radial_clearance")
         sizes = [inside.get(key, getattr(held, key)) for key in ANGLE_FROM]
@@ -197,7 +196,7 @@ def radial_clearance(bearing: BallBearing) -> Metre:
 
 
 def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
-    """Return the study with these numbers uncertain; it holds the mean of each.
+    """Return the study with these numbers uncertain; its values are their means.
 
     A normal distribution becomes log-normal where the study takes no number down to its low end.
 

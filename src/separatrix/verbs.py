@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import os
+import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from math import nan
 from pathlib import Path
+from typing import Any
 
-from separatrix.answers import (
-    CheckAnswer,
-    MapAnswer,
-    MobilityAnswer,
-    RankingAnswer,
-    RestitutionAnswer,
-    SensitivityAnswer,
-    StabilityAnswer,
-    TractionAnswer,
-)
-from separatrix.cage import PlanarCage
+from separatrix import answers
+from separatrix.cage import PlanarCage, analyse, linear_whirl_frequency, simulate_in_space
+from separatrix.cage import simulate as follow
 from separatrix.cage_choice import (
+    cage_candidate,
+    environment_of,
     ranking_question,
     reference_candidate,
     required_environment,
@@ -32,66 +28,49 @@ from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, exact_area, shear
 from separatrix.chain.solution import Solution, solve
-from separatrix.cluster import cluster as connected
 from separatrix.draws import uncertain_inputs
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y, checked_points, read_axis
-from separatrix.explore.cases import asked_cases
+from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case, asked_cases, checked_points, read_axis
 from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
-from separatrix.explore.sweep import Case, Sweep
+from separatrix.explore.sweep import Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction.fit import TestedFriction
-from separatrix.ledger import NAME, Ledger
-from separatrix.limits import stability_curve
+from separatrix.limits.curve import stability_curve
 from separatrix.limits.map import stability_map, value_here
-from separatrix.limits.map_parameters import KICK
-from separatrix.limits.map_records import MapQuestion
-from separatrix.ranking import rank as rank_materials
+from separatrix.limits.map_records import KICK, MapQuestion
+from separatrix.limits.response import cage_at
 from separatrix.ranking.drawn import frictions_to_draw
-from separatrix.runner import Progress, Runner, made_into
-from separatrix.simulating import kick_speed, warn_of_extrapolation
-from separatrix.simulating import simulate as simulate
-from separatrix.study import Study, TractionModel
-from separatrix.units import MetrePerSecond, format_quantity
+from separatrix.ranking.rank import rank as rank_materials
+from separatrix.ranking.reason import Moved, beyond_motion, transmitted_force
+from separatrix.runner import Runner, made_into
+from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
+from separatrix.units import NUMBER, MetrePerSecond, Ratio, format_quantity, parse, printable
 
 MOST_RUNS = 1_000_000
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 """Bearings that `sensitivity` draws."""
 
+SAMPLES_A_WHIRL = 15
+"""Samples of a simulated run in a period of the linear whirl."""
 
-@contextlib.contextmanager
-def long_job(
-    jobs: int | None, folder: str | Path | None, cluster: str | None, progress: Progress | None
-) -> Iterator[Runner]:
-    """Yield the runner of a long job: `folder` keeps its finished runs, `cluster` makes them.
-
-    Without `jobs` there is a thread for each processor.
-    """
-    with contextlib.ExitStack() as stack:
-        ledger, executor, threads = None, None, jobs or os.cpu_count() or 1
-        if folder is not None:
-            Path(folder).mkdir(parents=True, exist_ok=True)
-            ledger = Ledger(Path(folder) / NAME)
-            stack.callback(ledger.close)
-        if cluster is not None:
-            executor, threads = stack.enter_context(connected(cluster))
-        yield Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
+MOST_SHOWN = 20_000
+FEWEST_SHOWN = (1000, 4000)
+"""Samples of a simulated run; the fewest in the plane, and in space, where axial impacts are shorter."""
 
 
-def check(study: Study) -> CheckAnswer:
+def check(study: Study) -> answers.CheckAnswer:
     """The bearing at standstill, for its contact pressures."""
     _try_predicted_friction(study)
     at_rest = replace(study.operation, inner_speed=0.0, outer_speed=0.0)
     try:
-        found = CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
+        found = answers.CheckAnswer(static=solve(replace(study, operation=at_rest)).bearing)
     except SeparatrixError as error:
-        found = CheckAnswer(static=None, static_reason=str(error))
+        found = answers.CheckAnswer(static=None, static_reason=str(error))
     try:
         with warnings.catch_warnings():
-            warnings.filterwarnings(
-                "ignore", "(?!Clearances)", ValidityWarning
-            )  # the chain was not asked for
+            # `check` does not report the chain
+            warnings.filterwarnings("ignore", "(?!Clearances)", ValidityWarning)
             return replace(found, clearances=solve(study).clearances)
     except SeparatrixError as error:
         return replace(found, clearances_reason=str(error))
@@ -102,8 +81,8 @@ def _try_predicted_friction(study: Study) -> None:
     if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
         return
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ValidityWarning)  # the chain was not asked for
+        # `check` does not report the chain
+        with warnings.catch_warnings(action="ignore", category=ValidityWarning):
             uncertain_inputs(study, frictions_to_draw(study))
     except SeparatrixError as error:
         warnings.warn(f"`sensitivity` refuses this study: {error}", ValidityWarning, stacklevel=2)
@@ -115,19 +94,19 @@ def bearing(study: Study) -> BearingState:
     return replace(solution.bearing, clearances=solution.clearances)
 
 
-def traction(study: Study) -> TractionAnswer:
+def traction(study: Study) -> answers.TractionAnswer:
     """Traction curves by both models, and by strips at other pivoting-to-rolling ratios."""
     solution = solve(study)
     _ = solution.slopes  # refused, and warned of, as everything after them
     inner, outer = race_tracks(study.bearing, study.film, solution.bearing)
-    with warnings.catch_warnings():  # the comparison says where its models leave their range
-        warnings.simplefilter("ignore", ValidityWarning)
+    # the comparison states where its models leave their range
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         inner_strips, inner_exact = curves_by_model(inner, study.traction)
         outer_strips, outer_exact = curves_by_model(outer, study.traction)
         inner_area, outer_area = (exact_area(one, study.traction) for one in (inner, outer))
         comparison = compare_models(solution)
     is_exact = study.traction.model is TractionModel.EXACT
-    return TractionAnswer(
+    return answers.TractionAnswer(
         race_friction=study.film.race_friction,
         bearing=solution.bearing,
         comparison=comparison,
@@ -146,15 +125,15 @@ def traction(study: Study) -> TractionAnswer:
     )
 
 
-def restitution(study: Study) -> RestitutionAnswer:
+def restitution(study: Study) -> answers.RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
     _ = solution.clearances  # refused, and warned of
-    with warnings.catch_warnings():  # of films that are not the study's
-        warnings.simplefilter("ignore", ValidityWarning)
+    # of films that are not the study's
+    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
         films, wear = exact_films(solution), wear_curve(solution)
-    return RestitutionAnswer(
+    return answers.RestitutionAnswer(
         solution=solution,
         film_thickness=study.film.thickness or 0.0,
         lubrication=solution.lubrication,
@@ -175,7 +154,7 @@ def _warn_if_overdamped(found: Restitution) -> None:
         )
 
 
-def mobility(study: Study) -> MobilityAnswer:
+def mobility(study: Study) -> answers.MobilityAnswer:
     """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
     solution = solve(study)
     found = solution.mobility
@@ -187,19 +166,19 @@ def mobility(study: Study) -> MobilityAnswer:
         impacts = solution.impacts
     except InputError as error:
         reason = str(error)
-    return MobilityAnswer(
+    return answers.MobilityAnswer(
         solution=solution, mobility=found, rigid=rigid, impacts=impacts, impacts_reason=reason
     )
 
 
-def stability(study: Study, runner: Runner) -> StabilityAnswer:
+def stability(study: Study, runner: Runner) -> answers.StabilityAnswer:
     """Critical friction against restitution factor."""
     solution = solve(study)
     warn_of_extrapolation(solution)
     cage, settings = _cage_of(solution), solution.stability
     runner.expect(lambda: expected_curve(cage, settings, jobs=runner.jobs, band=True))
     return made_into(
-        lambda curve: StabilityAnswer(solution=solution, cage=cage, curve=curve),
+        lambda curve: answers.StabilityAnswer(solution=solution, cage=cage, curve=curve),
         lambda: stability_curve(cage, settings, runner=runner),
     )
 
@@ -214,7 +193,7 @@ def map(
     runs: int = 16,
     kick: str | MetrePerSecond | None = None,
     adaptive: bool = False,
-) -> MapAnswer:
+) -> answers.MapAnswer:
     """Verdicts in the plane of two parameters of a study.
 
     Parameters
@@ -248,18 +227,100 @@ def map(
     cage = _cage_of(solution)
     runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
     return made_into(
-        lambda found: MapAnswer(solution=solution, cage=cage, map=found),
+        lambda found: answers.MapAnswer(solution=solution, cage=cage, map=found),
         lambda: stability_map(asked, runner=runner),
     )
 
 
-def rank(study: Study, runner: Runner) -> RankingAnswer:
+def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
+    """Speed of a kick that a study may have, from text with a unit or a number [m/s]."""
+    speed = parse(kick, "m/s", "--kick") if isinstance(kick, str) else float(kick)
+    if not LEAST_KICK < speed < MOST_KICK:
+        rule = f"must be > {LEAST_KICK:g} and < {MOST_KICK:g} [m/s]"
+        raise InputError("--kick", rule, f"{speed:g}", NO_KICK)
+    return speed
+
+
+def warn_of_extrapolation(solution: Solution) -> None:
+    """Warn where the friction of the cage comes from tests at other conditions."""
+    friction, own = solution.friction, cage_candidate(solution.study)
+    if friction is not None and own is not None and friction.law is not None and friction.extrapolation:
+        place = environment_of(solution.study.ranking) if solution.study.ranking else ""
+        warnings.warn(
+            f"Pocket friction {friction.mean:.3g} of {own.name} in {place}, extrapolated beyond the "
+            f"tests: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction overrides it.",
+            ValidityWarning,
+            stacklevel=3,
+        )
+
+
+def simulate(
+    study: Study,
+    *,
+    kick: str | MetrePerSecond | None = None,
+    run: int = 0,
+    restitution_factor: str | Ratio | None = None,
+) -> answers.SimulationAnswer | answers.SpaceSimulationAnswer:
+    """Follow one run of the ensemble in plane or space, by default the first from the reference kick.
+
+    Parameters
+    ----------
+    kick : str or float, optional
+        Initial disturbance, text with a unit or [m/s].
+    run : int
+        Which run of the ensemble.
+    restitution_factor : str or float, optional
+        Damp the races so that eta is this, as at a point of a map; by default that of the study.
+    """
+    if not 0 <= run <= MOST_RUNS:
+        raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(run))
+    given = None if kick is None else kick_speed(kick)
+    solution = solve(study)
+    cage, settings = solution.cage, solution.stability
+    if restitution_factor is not None:
+        text = str(restitution_factor).strip()
+        eta = float(text) if re.fullmatch(NUMBER, text) else nan
+        if not 0.0 <= eta <= 1.0:
+            rule = "must be a number from 0 to 1"
+            raise InputError("--restitution-factor", rule, printable(str(restitution_factor)))
+        cage = cage_at(cage, eta, cage.ball_cage_friction)
+    warn_of_extrapolation(solution)
+    speed = settings.middle_kick if given is None else given
+    samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
+    asked: dict[str, Any] = {
+        "kick": speed,
+        "run": run,
+        "seed": settings.seed,
+        "duration": settings.duration,
+        "ball_scatter": settings.ball_scatter,
+        "samples": int(min(max(samples, FEWEST_SHOWN[cage.space is not None]), MOST_SHOWN)),
+    }
+    answer: answers.SimulationAnswer | answers.SpaceSimulationAnswer
+    if cage.space is not None:
+        course = simulate_in_space(cage, **asked)
+        found = analyse(cage, course, capacity=transmitted_force(solution))
+        force, offset = course.largest_contact_force, found.largest_offset
+        answer = answers.SpaceSimulationAnswer(
+            solution=solution, cage=cage, history=course, analysis=found, kick=speed, run=run
+        )
+    else:
+        history = follow(cage, **asked)
+        force = float(abs(history.contact_force).max())
+        offset = float((history.position**2).sum(axis=1).max() ** 0.5)
+        answer = answers.SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
+    made_of = cage_candidate(study)
+    for note in beyond_motion(solution, [Moved(made_of.name if made_of else "The cage", force, offset)]):
+        warnings.warn(note, ValidityWarning, stacklevel=2)
+    return answer
+
+
+def rank(study: Study, runner: Runner) -> answers.RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
     solution, cage = _reference(study)
     _warn_if_overdamped(solution.restitution)
     runner.expect(lambda: expected_ranking(study, jobs=runner.jobs))
     return made_into(
-        lambda found: RankingAnswer(solution=solution, cage=cage, ranking=found),
+        lambda found: answers.RankingAnswer(solution=solution, cage=cage, ranking=found),
         lambda: rank_materials(study, runner=runner),
     )
 
@@ -277,7 +338,7 @@ def _cage_of(solution: Solution) -> PlanarCage:
     return solution.cage_with(friction.mean if friction else 0.0)
 
 
-def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> SensitivityAnswer:
+def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> answers.SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate.
 
     Parameters
@@ -294,7 +355,7 @@ def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> Sens
     uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
     runner.expect(lambda: expected_uncertain(study, samples, jobs=runner.jobs))
     return made_into(
-        lambda found: SensitivityAnswer(
+        lambda found: answers.SensitivityAnswer(
             solution=solution,
             cage=cage,
             uncertain=found,

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.cage import Judgement
-from separatrix.present.walk import field_units
-from separatrix.ranking import Ranked
-from separatrix.workbook_looks import (
+from separatrix.present.nodes import field_units
+from separatrix.ranking.records import Ranked
+from separatrix.workbook_files import (
     BAND,
     HEADING,
     SMALL,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Document = Mapping[str, Any]
 
 VERDICT_FILLS = {"STABLE": "CCE3F0", "UNSTABLE": "F7DFCC", "UNDECIDED": "FAECCC"}
-"""Light tints of the colours that the figures give the verdicts."""
+"""Light tints of the colours of the verdicts in the figures."""
 
 SIGNED = "+0.000;-0.000;0.000"
 LOWEST = "probability_lowest_friction"
@@ -90,22 +90,15 @@ EVIDENCE = (
 ALWAYS, WRAPS = ("rank", "name", "verdict"), ("extrapolation", "reason")
 OVERALL = "overall"
 OWN_SHEETS = (OVERALL, "stability curve", "evidence", "inputs", "materials", "frictions", "about")
-"""Names of sheets that no environment takes."""
+"""Names of sheets that are not available to an environment."""
 
 
 def results_workbook(document: Document, path: Path) -> None:
     """Write a ranking, as `rank.json` holds it, as a workbook.
 
     One sheet for all environments and one for each, the stability curve, the evidence of the verdicts, the
-    inputs with where each was given, the materials and frictions with their sources, and what made the
-    answer. The same document gives the same bytes.
-
-    Parameters
-    ----------
-    document : mapping
-        What ``separatrix rank --json`` prints.
-    path : Path
-        The file to write.
+    inputs with their origins, the materials and frictions with their sources, and the settings of the answer.
+    The same document makes the same bytes.
     """
     book, study = new_workbook(), document["study"]
     _candidates(book, OVERALL, document[OVERALL], COLUMNS)
@@ -152,7 +145,7 @@ def _candidates(
 
 
 def _completed(row: Document) -> Document:
-    """Return a candidate with the ends of its margin, and with words where a number cannot be.
+    """Return a candidate with the ends of its margin, and with words in place of absent numbers.
 
     The margin is the threshold less the restitution factor of the bearing, and so are its ends.
     """
@@ -169,7 +162,7 @@ def _completed(row: Document) -> Document:
     return found
 
 
-def _cell(value: Any, column: Column) -> Cell:
+def _cell(value: object, column: Column) -> Cell:
     if isinstance(value, list):
         value = "; ".join(map(str, value)) or None
     elif isinstance(value, float):
@@ -186,7 +179,7 @@ def _cell(value: Any, column: Column) -> Cell:
 
 
 def _others(rows: Sequence[Document]) -> Iterator[Column]:
-    """Yield columns for what the document says of a candidate beyond the tables above, in SI units."""
+    """Yield columns for quantities of a candidate that are not in the tables above, in SI units."""
     known = {column.key for column in (*COLUMNS, *EVIDENCE)} | {"within_reach"}
     units = field_units(Judgement) | field_units(Ranked)
     for key in dict.fromkeys(key for row in rows for key in row if key not in known):
@@ -273,7 +266,7 @@ def _chart(sheet: Worksheet, points: int, candidates: int) -> ScatterChart:
     return chart
 
 
-# Inputs with their origins, materials and frictions with their sources, and what made the answer.
+# Inputs with their origins, materials and frictions with their sources, and the settings.
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 ROLES = {
@@ -303,13 +296,12 @@ def _inputs(study: Document) -> Iterator[list[Cell]]:
 
 
 def _materials(study: Document) -> Iterator[tuple[object, ...]]:
-    used: list[tuple[str, Any]] = [
-        (role, (study.get(section) or {}).get(key)) for (section, key), role in ROLES.items()
-    ]
-    used = [(role, one) for role, one in used if one and one.get("name") is not None]
+    used = [(role, (study.get(section) or {}).get(key)) for (section, key), role in ROLES.items()]
     candidates = (study.get("ranking") or {}).get("candidates", ())
-    used += [(f"candidate {one['name']}", one["material"]) for one in candidates if one.get("material")]
+    used += [(f"candidate {one['name']}", one.get("material")) for one in candidates]
     for role, one in used:
+        if not one or one.get("name") is None:
+            continue
         modulus = one["elastic_modulus"]["value"]
         numbers = one["poisson_ratio"]["value"], one["density"]["value"]
         words = one.get("confidence"), one.get("source")

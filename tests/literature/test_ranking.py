@@ -14,7 +14,8 @@ import pytest
 
 from separatrix.cage import Verdict
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.ranking import NotMeasured, Ranked, rank
+from separatrix.ranking.rank import rank
+from separatrix.ranking.records import NotMeasured, Ranked
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study

@@ -6,6 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from separatrix.cage import Cause, Ensemble, History, PlanarCage, RunOutcome, follow
+from separatrix.limits.curve import Tracer, rising, threshold_factors
+from separatrix.limits.response import GrowthCounter
+from separatrix.runner import Runner
 from separatrix.study import BallBearing, Guidance, Material, PocketShape
 
 AT_REST = PlanarCage(
@@ -102,3 +105,11 @@ def ensemble(rows: object, balls: int = AT_REST.ball_count, **evidence: object) 
     impacts = np.zeros((*outcome.shape, balls), dtype=np.int64)
     given = {"kicks": KICKS[: len(outcome)], "pocket_impacts": impacts, "duration": 0.3}
     return Ensemble(outcome=outcome, **{**spread, **given, **evidence})
+
+
+def threshold_points(cage, settings, jobs=1):
+    """Critical frictions, without their band, from a restitution factor of 0 to 1, where they are wanted."""
+    runner = Runner(jobs=jobs)
+    tracer = Tracer(GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False)
+    found = runner.work_out(tracer.point, tracer.first, into=dict, more=tracer.more)
+    return rising(found.values())

@@ -19,7 +19,7 @@ from separatrix.cage import (
 )
 from separatrix.cage.hard import next_impact
 from separatrix.cage.records import records
-from separatrix.limits import closed_hard_limit
+from separatrix.limits.point import closed_hard_limit
 from separatrix.study import StabilitySettings
 
 START = 0.5 * CAGE.mass * 0.5**2

@@ -13,7 +13,7 @@ from cages import SMALL as CAGE
 from separatrix.cage import linear_critical_friction, run_ensemble, run_hard_ensemble, whirl_probability
 from separatrix.cage.closed_forms import time_unit
 from separatrix.cage.ending import BEAT, LONGEST
-from separatrix.limits import cage_at
+from separatrix.limits.response import cage_at
 from separatrix.study import StabilitySettings
 
 MASS, STIFFNESS, HALF_PLAY = CAGE.mass, CAGE.ball_cage_stiffness, CAGE.half_play

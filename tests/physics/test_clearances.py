@@ -14,7 +14,7 @@ from separatrix.chain.solution import solve
 from separatrix.distribution import Uniform
 from separatrix.draws import sample
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.ranking.second import pocket_of, with_other_ball
+from separatrix.ranking.reason import pocket_of, with_other_ball
 from separatrix.study import CageDesign, ClearanceState, Guidance, Material
 from separatrix.study_file import read_study
 from separatrix.study_numbers import with_distributions, with_values

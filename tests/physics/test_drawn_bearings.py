@@ -9,8 +9,8 @@ from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import sample
-from separatrix.ranking import rank
 from separatrix.ranking.drawn import Case, drawn_bearings
+from separatrix.ranking.rank import rank
 from separatrix.runner import Runner
 from separatrix.study import Candidate, Friction
 from separatrix.study_file import read_study

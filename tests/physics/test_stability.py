@@ -5,19 +5,12 @@ from itertools import pairwise
 
 import pytest
 from cages import SMALL as CAGE
+from cages import threshold_points
 
 from separatrix.cage import drift_law, judge, run_ensemble, wilson_interval
-from separatrix.limits import (
-    GrowthCounter,
-    cage_at,
-    critical_friction,
-    curve_of_points,
-    hard_limit,
-    linear_limit,
-    restitution_threshold,
-    stability_curve,
-    threshold_points,
-)
+from separatrix.limits.curve import curve_of_points, restitution_threshold, stability_curve
+from separatrix.limits.point import critical_friction, hard_limit, linear_limit
+from separatrix.limits.response import GrowthCounter, cage_at
 from separatrix.present.text.stability import drift_note
 from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
@@ -38,7 +31,7 @@ def test_the_curve_without_clearance_brackets_the_linear_limit():
 @pytest.fixture(scope="module")
 def points():
     """Critical frictions from 0 to 1, where they are wanted."""
-    return threshold_points(CAGE, SETTINGS, runner=Runner(jobs=2))
+    return threshold_points(CAGE, SETTINGS, jobs=2)
 
 
 @pytest.mark.parametrize("friction", [0.09, 0.13])
@@ -61,9 +54,7 @@ def test_the_followed_curve_equals_a_dense_one(points):
     Of nine 95 % intervals on either side one may miss (probability of two or more below 1 %).
     """
     given = tuple((i + 0.5) / 10 for i in range(9))
-    dense = threshold_points(
-        CAGE, replace(SETTINGS, seed=17, restitution_factors=given), runner=Runner(jobs=2)
-    )
+    dense = threshold_points(CAGE, replace(SETTINGS, seed=17, restitution_factors=given), jobs=2)
     misses = 0
     for at in dense:
         if at.restitution_factor in given:

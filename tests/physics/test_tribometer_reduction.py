@@ -12,7 +12,7 @@ from synthetic_friction import Recipe, made, recipes
 
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import reduce_log, steady
-from separatrix.friction.reduction.run_in import run_in
+from separatrix.friction.reduction.steady import run_in
 
 LOGS = 200
 CHANCE = 1e-4

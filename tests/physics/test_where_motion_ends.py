@@ -23,7 +23,7 @@ from separatrix.cage.ending import LONGEST
 from separatrix.cage.reason import largest_room
 from separatrix.cage.verdict import kick_counts
 from separatrix.chain.solution import solve
-from separatrix.limits.growth import cage_at
+from separatrix.limits.response import cage_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
 

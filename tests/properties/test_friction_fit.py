@@ -4,10 +4,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from separatrix.friction.file import friction_text, read_friction
+from separatrix.friction.file import FrictionTest, friction_text, read_friction
 from separatrix.friction.fit import fit_friction
-from separatrix.friction.records import FrictionTest
-from separatrix.ranking.lowest import lowest_of
+from separatrix.ranking.records import lowest_of
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)

@@ -73,8 +73,7 @@ def test_every_draw_lies_in_its_distribution(samples, seed):
     for i, one in enumerate(draws.inputs):
         assert draws.values[:, i].min() >= one.distribution.low
         assert draws.values[:, i].max() <= one.distribution.high
-    assert set(draws.column("bearing.ball_count")) <= {12.0, 13.0}
-    assert draws.is_balanced == (samples in (1, 2, 4, 8, 16, 32, 64, 128))
+    assert set(draws.values[:, draws.names.index("bearing.ball_count")]) <= {12.0, 13.0}
 
 
 def test_the_error_of_a_mean_falls_faster_than_its_number_to_the_power_0_9():
@@ -151,7 +150,6 @@ def test_a_friction_that_tests_foretell_is_drawn_about_its_median():
     found = np.log(one.distribution.quantile(levels) / 0.08)
     assert found == pytest.approx([-1.0, -0.5, 0.0, 0.5, 1.0], abs=1e-5)  # the cut at 5 standard deviations
     assert one.central == 0.08
-    assert one.deviation == pytest.approx(0.5 * 0.08, rel=1e-12)
 
 
 def test_tests_that_tell_nothing_are_refused():

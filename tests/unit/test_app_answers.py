@@ -14,14 +14,13 @@ from fastapi.testclient import TestClient
 from raw_logs import anton_paar
 from test_cli_answers import SMALL
 
-from separatrix.app.files import Folder
 from separatrix.app.jobs import Job, Jobs
-from separatrix.app.page import TEMPLATES, Page
+from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.server import application, made_ready
 from separatrix.app.worker import Task
 from separatrix.chain.solution import Solution, solve
 from separatrix.figures.space import is_in_space
-from separatrix.limits.map_parameters import varied
+from separatrix.limits.map_records import varied
 from separatrix.present import load
 from separatrix.study_file import read_study
 

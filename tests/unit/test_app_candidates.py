@@ -8,9 +8,8 @@ from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
 from separatrix.app import candidates, draft
-from separatrix.app.candidate_form import PROPERTIES
 from separatrix.app.editing import edited_by
-from separatrix.app.form import form
+from separatrix.app.form import PROPERTIES, form
 from separatrix.app.server import application
 from separatrix.errors import InputError
 from separatrix.study_file import read_study

@@ -13,8 +13,8 @@ from separatrix.app.form import form
 from separatrix.app.server import application
 from separatrix.errors import InputError
 from separatrix.study_file import read_study, shipped_studies, template
-from separatrix.study_file.sections import READERS
 from separatrix.study_file.templates import template_keys
+from separatrix.study_file.values import READERS
 
 COMMENTED = """# a study
 title = "One"   # its name

@@ -14,8 +14,7 @@ from urllib.parse import parse_qs, quote, urlsplit
 import pytest
 from test_cli_answers import SMALL
 
-from separatrix.app.guard import MOST_BYTES
-from separatrix.app.server import Server
+from separatrix.app.server import MOST_BYTES, Server
 
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 HOSTILE = f'title = "{SCRIPT}"\n'
@@ -143,8 +142,8 @@ def test_nothing_is_changed_for_another_site(client, folder, origin):
         "/study/linked/secret.toml",
         "/study/..%5csecret.toml",
         "/log/..%2f..%2fsecret.toml",
-        "/static/..%2fguard.py",
-        "/static/%2e%2e/guard.py",
+        "/static/..%2fserver.py",
+        "/static/%2e%2e/server.py",
         "/cage/hostile.toml?point=..%2f..",
     ],
 )

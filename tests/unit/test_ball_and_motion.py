@@ -13,9 +13,9 @@ from separatrix.cage import RunOutcome, SpaceEnsemble, run_ensemble
 from separatrix.cage_body import cage_inertia, ring_body
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError
-from separatrix.limits.growth import cage_at
-from separatrix.ranking import rank
-from separatrix.ranking.second import NOTICED, second_verdict
+from separatrix.limits.response import cage_at
+from separatrix.ranking.rank import rank
+from separatrix.ranking.reason import NOTICED, second_verdict
 from separatrix.runner import Runner
 from separatrix.study import BallModel, MotionModel, PocketShape, StabilitySettings, with_models
 from separatrix.study_file import read_study

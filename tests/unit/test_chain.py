@@ -204,7 +204,7 @@ def test_results_and_report_say_how_far_balls_lead_and_lag():
     assert chain["half_play"] == 3e-4
     assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
     assert dict(basis(STUDY, loaded))["Free balls lead and lag"] == (
-        "up to 63.57 um (pockets 300 um each way); the harmonics used hold 100 % of the speed variance"
+        "up to 63.57 um (pockets 300 um each way); the harmonics used contain 100 % of the speed variance"
     )
     alike = of_cage(STUDY)
     assert (alike.cage.lead_amplitude, alike.solution.orbital_share) == (0.0, None)

@@ -16,7 +16,7 @@ from separatrix import present
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.explore.axes import read_axis
+from separatrix.explore.cases import read_axis
 from separatrix.study_file import read_study
 
 SMALL = """

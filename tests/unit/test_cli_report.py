@@ -21,7 +21,8 @@ from pypdf import PdfReader
 from separatrix import api, present, saving, verbs
 from separatrix.cli import main
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.reporting.kept import Kept, answers, read_document
+from separatrix.reporting.content import answers, read_document
+from separatrix.reporting.record import Kept
 from separatrix.study_file import read_study
 
 HOSTILE = "<script>alert(1)</script> $x$ #strong[x]"
@@ -273,7 +274,7 @@ def test_an_edited_answer_is_refused(folder, capsys):
     rank = json.loads((folder / "rank.json").read_text())
     del rank["pocket"]["slip_speed"], rank["provenance"]
     Path("d", "rank.json").write_text(json.dumps(rank))
-    assert "holds an answer that is not complete; got KeyError('slip_speed')" in refused(
+    assert "contains an incomplete answer; got KeyError('slip_speed')" in refused(
         capsys, "report", "d"
     )
 
@@ -330,7 +331,7 @@ def test_a_study_without_a_cage_has_what_could_be_computed(monkeypatch, capsys):
         ("rank.json", "{", "is not the document of an answer: no valid JSON"),
         ("rank.json", '{"verb": "bearing", "study": {}}', "is not a document of `rank`"),
         ("rank.json", '{"verb": "rank", "study": {"bearing": {}}}', "lacks separatrix_version"),
-        ("notes.txt", "", "holds no answer of separatrix"),
+        ("notes.txt", "", "contains no answer of separatrix"),
     ],
 )
 def test_a_folder_of_something_else_is_refused(name, text, words, capsys):

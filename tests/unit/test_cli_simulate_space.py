@@ -16,9 +16,9 @@ from separatrix import figures, present
 from separatrix.cage import run_ensemble
 from separatrix.cli import main
 from separatrix.figures.animation import animate
+from separatrix.figures.scene import space_scene
 from separatrix.figures.space import in_plane, is_in_space, land_forces
-from separatrix.figures.space_page import page, view, write_page
-from separatrix.figures.space_scene import space_scene
+from separatrix.figures.space_film import page, view, write_page
 
 TITLE = 'A cage in space & <b>"two lands"</b> </script> $1$'
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from separatrix.cli import main
-from separatrix.cli.tribometer import file_name
+from separatrix.cli.without_bearing import file_name
 from separatrix.friction.file import read_friction
 from separatrix.friction.logs.column_map import column_map
 from separatrix.study_file import read_study

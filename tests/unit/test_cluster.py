@@ -11,7 +11,7 @@ from separatrix import cluster as clusters
 from separatrix.chain.solution import solve
 from separatrix.cluster import cluster
 from separatrix.errors import InputError
-from separatrix.limits import stability_curve
+from separatrix.limits.curve import stability_curve
 from separatrix.runner import Runner
 from separatrix.study_file import read_study
 

@@ -14,10 +14,9 @@ import separatrix
 from separatrix import figures
 from separatrix.cage import wilson_interval
 from separatrix.cli import main
-from separatrix.comparing.drawing import pictures
-from separatrix.comparing.noise import difference_interval
-from separatrix.comparing.results import differing, units
+from separatrix.comparing.results import difference_interval, differing, units
 from separatrix.comparing.saved import read_answers
+from separatrix.comparing.shown import pictures
 
 FEW = """extends = "cryogenic-turbopump"
 [stability]

@@ -19,7 +19,7 @@ import pytest
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.notes import noted_warnings
+from separatrix.messages import noted_warnings
 from separatrix.staged import staged, writable_folder
 
 COMMAND = [sys.executable, "-m", "separatrix"]

@@ -9,22 +9,21 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from cages import threshold_points
 from commands import document, refused
 
 from separatrix.app.plotly import spec
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.explore.envelope import duty, orders, time_shares, worst_case
-from separatrix.explore.sweep import sweep
+from separatrix.explore.sweep import duty, orders, sweep, time_shares, worst_case
 from separatrix.figures import draw
-from separatrix.figures.envelope import has_envelope
-from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
+from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import plain
-from separatrix.limits import own_threshold, restitution_threshold, threshold_points
-from separatrix.limits.curve import COARSE
+from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
 from separatrix.present import dataset, load
 from separatrix.reporting.pictures import picture
+from separatrix.reporting.record import Kept
 from separatrix.runner import Runner
 from separatrix.study import ClearanceState
 from separatrix.study_file import read_study
@@ -101,7 +100,7 @@ def test_every_panel_of_the_envelope_has_its_points_to_point_at(answered):
 
 def test_the_report_marks_the_cases_in_its_picture(answered):
     """A mark lies where the picture has its point: higher values higher, and all inside."""
-    (found,) = picture("sweep", load(answered / "sweep.nc"), "envelope", "", "")
+    (found,) = picture(Kept({"verb": "sweep"}, load(answered / "sweep.nc")), "envelope", "", "")
     marks = [one for one in found.hover if "% of the time" in one.text]
     assert [one.text.partition(",")[0] for one in marks] == [f"case {number}" for number in range(4)]
     assert marks[1].y < marks[0].y < marks[2].y == marks[3].y
@@ -125,7 +124,7 @@ def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
     layout = spec(*plots)["layout"]
     assert [layout[name]["anchor"] for name in ("yaxis", "yaxis2", "yaxis3")] == ["x", "x2", "x3"]
     assert layout["xaxis2"]["title"]["text"] == plots[1].x_label
-    (found,) = picture("sweep", data, "sweep", "", "")
+    (found,) = picture(Kept({"verb": "sweep"}, data), "sweep", "", "")
     assert len(found.hover) == 3 * 31  # of 61 every second
 
 

@@ -1,20 +1,19 @@
 """Drawn bearings counted, compared and searched: closed forms, calibration, early ends."""
 
+from dataclasses import dataclass, fields
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.special import expit, ndtr
 
-from separatrix.cage import KickCount, RunOutcome, Verdict, wilson_interval
+from separatrix.cage import KickCount, RunOutcome, SpaceEnsemble, Verdict, wilson_interval
 from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.distribution import LogNormal, Normal
 from separatrix.draws import UncertainInput
 from separatrix.explore import counting
 from separatrix.explore.counting import is_plain, settles_more
-from separatrix.explore.drivers import CHANCE, drivers, fitted
-from separatrix.explore.next_test import next_tests, reducible_shares
-from separatrix.explore.shares import sobol_shares
+from separatrix.explore.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.ranking.drawn import Case
 from separatrix.study import Candidate, Friction
 
@@ -174,6 +173,31 @@ def test_a_kick_that_plainly_settles_more_is_not_run_further():
     assert [settles_more(one, near) for one in near.by_kick] == [False, False]
 
 
+@dataclass(frozen=True)
+class Judged:
+    """What counting reads of a judgement."""
+
+    verdict: Verdict
+    by_kick: tuple[KickCount, ...]
+    worst_kick: float
+
+
+def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatch):
+    """The second block runs the worst kick alone; columns that only space has are as long as the others."""
+
+    def ensemble(_case, kicks, places, _runner):
+        columns = {f.name: np.zeros((len(kicks), len(places))) for f in fields(SpaceEnsemble)}
+        return SpaceEnsemble(**columns | {"kicks": np.array(kicks), "duration": 0.1})
+
+    total = 2 * counting.BLOCK
+    looks = [judged(Verdict.UNDECIDED, 60, 20), judged(Verdict.UNDECIDED, 20), judged(Verdict.UNDECIDED, 40)]
+    looks = iter([Judged(**vars(one)) for one in looks])
+    monkeypatch.setattr(counting, "judge", lambda *_: next(looks))
+    bearings = SimpleNamespace(runs=range(total), kicks=(0.1, 0.2), cage=lambda _: None, ensemble=ensemble)
+    _, found = counting.counted(bearings, None, None)
+    assert found.largest_tilt.shape == found.outcome.shape == (1, total)
+
+
 def test_early_ends_decide_as_all_bearings_would():
     """1000 cases of random true shares: a stopped one has the verdict of its 512 runs, all but a few."""
     random = np.random.default_rng(7)
@@ -203,4 +227,4 @@ def test_outcomes_are_counted_where_they_settle():
         kicks=np.array([0.1, 0.5]),
         outcome=np.array([[0, 0, 0], [RunOutcome.WHIRLS, RunOutcome.SETTLES, RunOutcome.WHIRLS]]),
     )
-    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)) == [False, True, False]
+    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)).tolist() == [0.0, 1.0, 0.0]

@@ -13,7 +13,8 @@ from scipy.integrate import quad
 
 from separatrix.errors import InputError
 from separatrix.figures import animation, motion, scene
-from separatrix.figures.animation import A_TURN, MOST_FRAMES, animate, frame_moments
+from separatrix.figures.animation import animate
+from separatrix.figures.motion import A_TURN, MOST_FRAMES, frame_moments
 
 SMALL, LONG = drawn.run(samples=4), drawn.run(samples=5000)
 SETTLING = drawn.run(samples=5000, outcome="SETTLES")

@@ -7,9 +7,8 @@ import re
 import pytest
 
 from separatrix.figures.drawing import bearing_drawing, guesses, shape_of
-from separatrix.figures.hover import Plot, Series
-from separatrix.figures.style import canvas, settled
-from separatrix.figures.svg import places, svg_of
+from separatrix.figures.hover import Plot, Series, places
+from separatrix.figures.style import canvas, settled, svg_of
 
 
 def study(**cage: float | str | None) -> dict:

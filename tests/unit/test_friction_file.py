@@ -11,9 +11,8 @@ import pytest
 from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.friction.file import friction_text, read_friction
+from separatrix.friction.file import FrictionTest, friction_text, read_friction
 from separatrix.friction.fit import TestedFriction
-from separatrix.friction.records import FrictionTest
 from separatrix.study import Friction, Operation
 from separatrix.study_file import read_study
 

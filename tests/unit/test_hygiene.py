@@ -21,8 +21,7 @@ FORBIDDEN_CALLS = {"print", "eval", "exec", "breakpoint", "input"}
 FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "requests", "urllib", "http", "socket"}
 NETWORK = {
     "cluster.py": {"socket"},  # it reaches the scheduler that a user names
-    "app/server.py": {"socket"},  # it listens on this machine
-    "app/guard.py": {"http", "urllib"},  # names of statuses, and the reading of addresses
+    "app/server.py": {"socket", "http", "urllib"},  # it listens on this machine; statuses, addresses
     "app/page.py": {"urllib"},
 }
 """File -> what it may import of the forbidden modules."""

@@ -9,10 +9,9 @@ import pytest
 
 from separatrix import library
 from separatrix.errors import DataError, InputError, ValidityWarning
-from separatrix.library import Datum, Library, choose
-from separatrix.library.collection import SHIPPED_FILES
-from separatrix.library.fluids import contradictions, fluid_state, other_phase
-from separatrix.library.writing import add_records, as_toml
+from separatrix.library import SHIPPED_FILES, Library, add_records, as_toml
+from separatrix.library.reading import read_library
+from separatrix.library.records import Datum, choose, contradictions, fluid_state, other_phase
 from separatrix.study_file import read_study, resolved
 
 DATA = files("separatrix.library") / "data"
@@ -99,13 +98,13 @@ def case(tmp_path):
 @pytest.mark.parametrize("kind", SHIPPED_FILES)
 def test_a_shipped_file_passes_its_own_check(kind):
     """It is read by the reader of users' files: a source and a confidence for each number, no zero."""
-    assert library.names(kind)
+    assert LIBRARY.names(kind)
     for record in LIBRARY.records(kind).values():
         assert record.kind == kind
         assert len(record.file.checksum) == 64
 
 
-@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SOLIDS for name in library.names(kind)])
+@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SOLIDS for name in LIBRARY.names(kind)])
 def test_every_solid_can_be_built(kind, name):
     """Values in SI, source and confidence as text, a temperature for every number."""
     material = LIBRARY.material(kind, name)
@@ -122,7 +121,7 @@ def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses(
     """Table 1, every line; no maker's sheet of the seven was at hand, so no modulus claims more."""
     for line in PAPER_TABLE_1.strip().splitlines():
         name, composition = line.split(" | ")
-        assert LIBRARY.record("cage material", name).composition == f"{composition} (paper, table 1)"
+        assert LIBRARY.records("cage material")[name].composition == f"{composition} (paper, table 1)"
         confidence = LIBRARY.material("cage material", name).confidence
         assert confidence == "modulus: guess, Poisson's ratio: guess"
     assert LIBRARY.material("film", "PTFE transfer film").confidence.startswith("modulus: guess")
@@ -158,7 +157,7 @@ def test_the_file_of_the_table_names_its_author_and_what_is_missing():
     text = (DATA / "pin-on-disk-77K.toml").read_text(encoding="utf-8")
     for words in ("table 3", "Typed in", "absent", "1 to 5 m/s", "1 to 14 daN", "table 2", "lost"):
         assert words in text
-    assert set(LIBRARY.friction_table("pin-on-disk-77K").friction) == set(library.names("cage material"))
+    assert set(LIBRARY.friction_table("pin-on-disk-77K").friction) == set(LIBRARY.names("cage material"))
 
 
 @pytest.mark.parametrize(
@@ -354,7 +353,7 @@ def test_the_built_in_states_are_those_of_coolprop():
     """Every density, viscosity and heat capacity of the file; it is rounded to 5 digits, so 5e-5."""
     coolprop = pytest.importorskip("CoolProp.CoolProp")
     codes = {"density": "D", "viscosity": "V", "heat_capacity": "C"}
-    for name in library.names("fluid"):
+    for name in LIBRARY.names("fluid"):
         record = LIBRARY.fluid(name)
         boiling = record.data["boiling_temperature"][0].value if "boiling_temperature" in record.data else 0.0
         quality = 0.0 if record.facts["phase"] == "liquid" else 1.0
@@ -403,7 +402,7 @@ def test_a_state_by_coolprop_has_its_phase_and_its_source():
     assert fluid_state(nitrogen, 77.355, 1e5).phase == "gas"
 
 
-@pytest.mark.parametrize("name", library.names("fluid"))
+@pytest.mark.parametrize("name", LIBRARY.names("fluid"))
 def test_a_state_of_a_record_is_its_own_with_and_without_coolprop(name):
     """At a boiling point CoolProp takes the rounded temperature for the other phase, or refuses."""
     record = LIBRARY.fluid(name)
@@ -432,9 +431,9 @@ def test_adding_keeps_what_the_library_holds_byte_for_byte(tmp_path):
     assert len(added.records) == 4
     assert target.read_text().startswith(held)
     assert target.stat().st_mode & 0o777 == 0o640
-    assert len(library.read_library(target).records) == 8
+    assert len(read_library(target).records) == 8
     after = target.read_bytes()
-    with pytest.raises(InputError, match=r"stands in materials\.toml, line"):
+    with pytest.raises(InputError, match=r"is in materials\.toml, line"):
         add_records(source, target)
     assert target.read_bytes() == after
     assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]
@@ -448,7 +447,7 @@ def test_a_library_may_begin_with_words_alone(tmp_path, held):
     source.write_text(OURS)
     add_records(source, target)
     assert target.read_text().startswith(held)
-    assert len(library.read_library(target).records) == 4
+    assert len(read_library(target).records) == 4
 
 
 def test_a_library_that_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatch):
@@ -460,7 +459,7 @@ def test_a_library_that_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatc
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("separatrix.library.writing.Path.write_text", full)
+    monkeypatch.setattr("separatrix.library.Path.write_text", full)
     with pytest.raises(InputError, match=r"cannot be written \(No space left"):
         add_records(source, target)
     assert target.read_text() == OURS
@@ -475,7 +474,7 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]
-    content = library.joined([library.library_of_text(block, "page")])
+    content = library.joined([reading.library_of_text(block, "page")])
     assert content.material("cage material", "Our compound", 77.0).elastic_modulus == 9e9
     keys = [
         *records.PROPERTIES,

@@ -9,7 +9,7 @@ import pytest
 from separatrix import verbs
 from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.ranking.plausible import (
+from separatrix.ranking.reason import (
     Moved,
     beyond_motion,
     pocket_pressure,
@@ -17,8 +17,7 @@ from separatrix.ranking.plausible import (
     within_a_turn,
 )
 from separatrix.study import BallBearing, Operation, Study
-from separatrix.study_file import read_study
-from separatrix.study_file.cautions import beyond_bearings, plausible_cage_masses
+from separatrix.study_file import beyond_bearings, plausible_cage_masses, read_study
 
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage

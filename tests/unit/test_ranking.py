@@ -8,26 +8,27 @@ import numpy as np
 import pytest
 
 from separatrix.cage import CageMotion, Judgement, Verdict, judge
+from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
 from separatrix.draws import Case
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger
-from separatrix.limits import RestitutionThreshold
-from separatrix.ranking import rank, ranks
-from separatrix.ranking.lowest import (
-    LowestFriction,
+from separatrix.limits.curve import RestitutionThreshold
+from separatrix.ranking.rank import _row, rank
+from separatrix.ranking.reason import Pocket, disagreement, reason
+from separatrix.ranking.records import (
     MeanFriction,
+    NotFinished,
+    NotMeasured,
+    Ranked,
+    lowest_among,
+    margin_interval,
     may_be_lower,
     measured,
     overall,
-    probability_lowest,
-    with_scatter,
+    ranks,
+    same_rank,
 )
-from separatrix.ranking.order import margin_interval, same_rank
-from separatrix.ranking.rank import _row
-from separatrix.ranking.reason import disagreement, reason
-from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
-from separatrix.ranking.second import Pocket
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Candidate, Friction, Material, RankingQuestion, StabilitySettings
 from separatrix.study_file import read_study
@@ -133,9 +134,8 @@ def test_outside_the_tests_a_mean_is_known_less_well():
     assert measured(outside).error == pytest.approx(math.hypot(0.003, 0.04))
     assert with_scatter(outside, 0.09) == outside
     other = Friction(mean=0.15, standard_error=0.003)
-    sure, open_ = (probability_lowest({"a": one, "b": other}) for one in (inside, outside))
-    assert sure.tied == ("a",)
-    assert open_.tied == ("a", "b")
+    assert not may_be_lower(measured(other), measured(inside))
+    assert may_be_lower(measured(other), measured(outside))
 
 
 def test_the_papers_word_is_printed_where_it_differs():
@@ -274,10 +274,10 @@ def test_each_candidate_has_the_stiffness_of_its_own_pocket():
 def test_one_measured_friction_alone_has_no_probability_of_being_the_lowest():
     """There is nothing to compare it with; with another, the two add up to 1, however small the means."""
     one = Friction(mean=0.2, standard_deviation=0.05)
-    assert probability_lowest({"A": one, "B": None}) == LowestFriction(probabilities={}, tied=("A",))
-    assert probability_lowest({"A": None}) == LowestFriction(probabilities={}, tied=())
-    found = probability_lowest({"A": one, "B": Friction(mean=1e-200, standard_deviation=0.1)})
-    assert sum(found.probabilities.values()) == pytest.approx(1.0, abs=1e-9)  # of the quadrature
+    assert lowest_among({"A": measured(one)}) == lowest_among({}) == {}
+    small = Friction(mean=1e-200, standard_deviation=0.1)
+    found = lowest_among({"A": measured(one), "B": measured(small)})
+    assert sum(found.values()) == pytest.approx(1.0, abs=1e-9)  # of the quadrature
 
 
 def test_a_study_without_candidates_is_refused():

@@ -10,7 +10,7 @@ from reference_meanings import lines_of
 from reference_tables import VERBS, json_page, keys_without_line, names_of, records_of, study_page
 
 import separatrix
-from separatrix.ranking import Ranked
+from separatrix.ranking.records import Ranked
 
 BY_NAME = {"study", "provenance", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
@@ -132,7 +132,7 @@ def test_every_key_of_a_study_has_a_line():
 def test_a_line_states_unit_dimensions_and_meaning():
     """From the type of a field, the text below it or in the docstring, or the comment beside it."""
     margin = next(one for one in lines_of(Ranked) if one.name == "margin")
-    assert (margin.unit, margin.meaning) == ("-", "Threshold less the chain's restitution factor [-].")
+    assert (margin.unit, margin.meaning) == ("-", "threshold less the restitution factor")
     page = json_page()
     assert all(f"\n## {verb}\n" in page for verb in VERBS)
     assert page.count("(cage-verdict-judgement)=") == 1

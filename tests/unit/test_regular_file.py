@@ -7,9 +7,9 @@ import pytest
 import separatrix
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.friction.logs import tdms
-from separatrix.regular_file import size_of
-from separatrix.workbook_guard import refuse_unsafe
+from separatrix.friction.logs.binary import tdms_tables
+from separatrix.input_files import size_of
+from separatrix.workbook_files import refuse_unsafe
 
 LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))
 CALLS = {
@@ -59,7 +59,7 @@ def folder(tmp_path, monkeypatch):
 def test_no_verb_waits_for_a_pipe(capsys, call, path):
     """By its own name or by a link, in every place where a file is named."""
     line = refusal(capsys, call, path)
-    assert " is not a regular file. Save what it gives to a file, and name that.\n" in line
+    assert " is not a regular file. Save its output to a file, and name that.\n" in line
     assert "p.toml" in line or "link.toml" in line
 
 
@@ -85,7 +85,7 @@ def test_neither_an_ending_nor_a_folder_nor_a_device_makes_a_difference(capsys, 
 
 @pytest.mark.parametrize(
     "read",
-    [separatrix.load, refuse_unsafe, tdms.read_tables],
+    [separatrix.load, refuse_unsafe, tdms_tables],
     ids=["load", "refuse_unsafe", "read_tables"],
 )
 def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder, read):

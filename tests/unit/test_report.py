@@ -13,7 +13,7 @@ from separatrix.present import in_words, whereabouts
 from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
-from separatrix.ranking import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
 from separatrix.reporting.first_page import verdict_sentences
 from separatrix.study import BallModel, MotionModel
 from separatrix.study_file import read_study
@@ -322,7 +322,7 @@ def lines(**changes: object) -> dict[str, str]:
             {},
         ),
         ("Whirl", "1.445 kHz backward; the ball set is at rest", {"whirl_ratio": None}),
-        ("Energy at the end", "0.02 mJ; frame and loads alone can give 1.4 mJ", {}),
+        ("Energy at the end", "0.02 mJ; frame and loads alone can supply 1.4 mJ", {}),
         ("Friction power", "pocket feeds 3 mW, land takes 30 mW", {}),
         ("Rubbing on the land", "5.2 N at 6 m/s, 31.2 mW of heat", {}),
         ("Runs", "64 from each kick, of up to 600 ms", {}),

@@ -6,8 +6,7 @@ import pytest
 
 import separatrix
 from separatrix.reporting.evidence import evidence
-from separatrix.reporting.kept import Kept
-from separatrix.reporting.record import Table
+from separatrix.reporting.record import Kept, Table
 from separatrix.study import MotionModel
 
 WHEEL = separatrix.read_study("momentum-wheel")

@@ -14,10 +14,10 @@ import pytest
 from commands import document, refused
 
 import separatrix
-from separatrix import kept_files
+from separatrix import input_files
 from separatrix.cli import main
 from separatrix.study import with_models
-from separatrix.study_file import kept, provenance_of, read_study
+from separatrix.study_file import provenance, provenance_of, read_study
 from separatrix.study_file.templates import template_workbook
 
 FEW = "[stability]\nruns = 2\nduration = '5 ms'\nkicks = ['0.5 m/s']\nrestitution_factors = [0.3]\n"
@@ -257,7 +257,7 @@ HOSTILE = {
 @pytest.mark.parametrize("kind", HOSTILE)
 def test_a_hostile_answer_is_refused_in_one_line(stored, put, capsys, kind, monkeypatch):
     """Nothing is read or written outside a temporary folder."""
-    monkeypatch.setattr(kept_files, "MOST_BYTES", 100_000 if kind != "large" else 2000)
+    monkeypatch.setattr(input_files, "MOST_BYTES", 100_000 if kind != "large" else 2000)
     spoil, said = HOSTILE[kind]
     asked = next(one for one in ASKED if one[0] == "simulate")
     path = put(changed(stored[asked], lambda answer: spoil(answer["provenance"])))
@@ -334,7 +334,7 @@ def test_an_answer_of_python_is_reproduced(put, capsys):
 def test_files_too_large_or_too_far_apart_are_not_kept(tmp_path, monkeypatch):
     """The answer says so."""
     (tmp_path / "study.toml").write_text(BASE)
-    monkeypatch.setattr(kept, "MOST_BYTES", 10)
+    monkeypatch.setattr(provenance, "MOST_BYTES", 10)
     assert "larger than" in provenance_of(read_study(tmp_path / "study.toml"), "bearing")["reason"]
     monkeypatch.undo()
     folder = tmp_path / "a" / "b"

@@ -15,8 +15,8 @@ from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.explore import sweep
 from separatrix.present import NotFiniteError, dataset, document, load, plain, save, to_dataframe, to_xarray
-from separatrix.present.walk import field_units
-from separatrix.ranking import NotMeasured, Ranked
+from separatrix.present.nodes import field_units
+from separatrix.ranking.records import NotMeasured, Ranked
 from separatrix.study import Guidance
 from separatrix.study_file import read_study
 from separatrix.units import Newton, Ratio, Rows

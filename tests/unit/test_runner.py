@@ -22,7 +22,7 @@ from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger, key_of
-from separatrix.limits import stability_curve
+from separatrix.limits.curve import stability_curve
 from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study_file import read_study
 

@@ -11,21 +11,27 @@ from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.errors import ValidityWarning
-from separatrix.limits import (
+from separatrix.limits import point as limits
+from separatrix.limits.curve import (
+    COARSE,
+    FINEST,
+    Tracer,
+    bends,
+    finer,
+    restitution_threshold,
+    threshold_factors,
+)
+from separatrix.limits.point import CriticalFriction, critical_friction, own_restitution_factor
+from separatrix.limits.response import (
+    LADDER,
     Count,
-    CriticalFriction,
+    Crossing,
     GrowthCounter,
     Response,
     Side,
     cage_at,
-    critical_friction,
-    limits,
-    restitution_threshold,
-    threshold_factors,
+    cell_of,
 )
-from separatrix.limits.curve import COARSE, FINEST, Tracer, bends, finer
-from separatrix.limits.point import own_restitution_factor
-from separatrix.limits.response import LADDER, Crossing, cell_of
 from separatrix.present.text.stability import curve
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings

@@ -12,28 +12,30 @@ from separatrix.cage.verdict import drifts
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger
-from separatrix.limits import cage_at
 from separatrix.limits.map import (
     AGREED,
     PointFinder,
     inference,
     stability_map,
 )
-from separatrix.limits.map_fill import CHECK_EVERY, Filled, fill, near_a_change, rounds
-from separatrix.limits.map_parameters import parameters, value_in, varied
-from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion
-from separatrix.limits.map_rule import (
+from separatrix.limits.map_fill import (
     AGREEING,
+    CHECK_EVERY,
+    Filled,
     Tally,
     changes,
+    fill,
     first_look,
     further,
     margins,
+    near_a_change,
     other_decision_probability,
+    rounds,
     settled,
-    side,
     wrong_side_probability,
 )
+from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion, parameters, side, value_in, varied
+from separatrix.limits.response import cage_at
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Guidance, MotionModel, PocketShape, Wear
 from separatrix.study_file import read_study

@@ -518,7 +518,7 @@ def test_the_page_on_study_files_names_every_section_and_every_unit():
     """The documentation of the contract is complete; the generated page has the keys."""
     from pathlib import Path
 
-    from separatrix.study_file.sections import READERS
+    from separatrix.study_file.values import READERS
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
     for section in READERS:

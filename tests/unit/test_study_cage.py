@@ -8,10 +8,9 @@ import pytest
 from separatrix.cage import ending
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.present.text.study import clearances, shown
+from separatrix.present.text.answer import clearances, shown
 from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
-from separatrix.study_file import read_study, resolved
-from separatrix.study_file.cautions import LONGEST
+from separatrix.study_file import LONGEST, read_study, resolved
 
 BASE = """\
 extends = "cryogenic-turbopump"

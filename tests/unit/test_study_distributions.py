@@ -13,9 +13,9 @@ from separatrix.answers import CheckAnswer
 from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.draws import sample, uncertain_inputs
 from separatrix.errors import InputError
-from separatrix.limits.map_parameters import varied
+from separatrix.limits.map_records import varied
 from separatrix.present import in_words
-from separatrix.ranking.lowest import measured
+from separatrix.ranking.records import measured
 from separatrix.study_file import read_study, resolved
 from separatrix.study_numbers import (
     MOST_DISTRIBUTIONS,

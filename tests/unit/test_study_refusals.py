@@ -8,7 +8,7 @@ import pytest
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study_file import read_study, require
-from separatrix.toml_text import lines_of_keys
+from separatrix.toml_files import lines_of_keys
 
 VALID = """\
 title = "A valid study"
@@ -229,7 +229,7 @@ LONG = {
     "NUL byte": (('"A valid study"', '"A\0"'), ["line 1", "NUL"]),
     "long key twice": (
         ("bore =", ("a." * 1500 + "a = 1\n") * 2 + "bore ="),
-        ["line 11 gives a.a.a.", "a second time"],
+        ["line 11 has a.a.a.", "a second time"],
     ),
     "long hexadecimal ratio": (("race_friction = 0.1", "race_friction = 0x" + "f" * 3900), ["60 digits"]),
     "long hexadecimal count": (("ball_count = 13", "ball_count = 0x" + "f" * 3900), ["60 digits"]),
@@ -307,7 +307,7 @@ def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)
     assert "not a regular file" in refusal(pipe)
-    assert refusal("/dev/null").startswith("/dev/null is not a regular file. Save what it gives")
+    assert refusal("/dev/null").startswith("/dev/null is not a regular file. Save its output")
     assert "does not exist. Shipped examples: ball-218" in refusal(tmp_path / "none.toml")
     assert "Did you mean cryogenic-turbopump?" in refusal("cryogenic_turbopump")
 

@@ -10,7 +10,7 @@ from test_workbook import workbook
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore import expected
-from separatrix.limits.map_parameters import value_in, varied
+from separatrix.limits.map_records import value_in, varied
 from separatrix.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
 from separatrix.study_file import read_study
 from separatrix.study_file.provenance import resolved

@@ -12,7 +12,7 @@ from synthetic_friction import Recipe, made
 from separatrix.figures.tribometer import heading, page
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log, reduction, steady
-from separatrix.friction.reduction.steady import oscillation
+from separatrix.friction.reduction.cycles import oscillation
 from separatrix.present import load, save
 from separatrix.present.tribometer import page_data
 

@@ -12,16 +12,16 @@ import pytest
 from minimal_xlsx import Formula, Shown, workbook
 
 from separatrix import saving
-from separatrix.cli import main, run
+from separatrix.cli import main
 from separatrix.errors import ValidityWarning
 from separatrix.study_file import read_study, shipped_studies
 from separatrix.study_file.cells import COLUMNS, sheets_of
 from separatrix.study_file.document import SECTIONS, load
-from separatrix.study_file.sections import READERS
 from separatrix.study_file.templates import template_keys, template_workbook
+from separatrix.study_file.values import READERS
 from separatrix.units import parse
 from separatrix.workbook import OWN_SHEETS, results_workbook
-from separatrix.workbook_looks import (
+from separatrix.workbook_files import (
     add_sheet,
     new_workbook,
     put,
@@ -173,7 +173,10 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
         (tmp_path / taken).write_text("mine")
     (tmp_path / "link.xlsx").symlink_to("nowhere.xlsx")
     built = []
-    monkeypatch.setattr(run, "_new_study", lambda *, excel: built.append(excel) or b"")
+    monkeypatch.setattr("separatrix.study_file.template", lambda: built.append("text") or "")
+    monkeypatch.setattr(
+        "separatrix.study_file.templates.template_workbook", lambda: built.append("workbook") or b""
+    )
     path = tmp_path / name
     assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2
     line = f"separatrix: {path} exists already. It was not touched; name a new file.\n"
@@ -242,7 +245,7 @@ def test_the_width_beside_a_value_is_what_stands_behind_it_in_text(tmp_path):
 
 def test_a_formula_counts_with_its_saved_value_and_is_named(tmp_path):
     """The value is taken and the study says that it came from a formula, and from which cell."""
-    with pytest.warns(ValidityWarning, match=r"a\.xlsx: the cell holds a formula \(film!B2\)"):
+    with pytest.warns(ValidityWarning, match=r"a\.xlsx: the cell has a formula \(film!B2\)"):
         found = variant(tmp_path / "a.xlsx", ["thickness", Formula("1/2", 0.5), None, "um"])
     assert found.film.thickness == 5e-7
 

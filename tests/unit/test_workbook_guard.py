@@ -8,9 +8,9 @@ import zipfile
 import pytest
 from minimal_xlsx import zipped
 
-from separatrix import workbook_guard
+from separatrix import workbook_files
 from separatrix.errors import InputError
-from separatrix.workbook_guard import MOST_BYTES, MOST_RATIO, refuse_unsafe
+from separatrix.workbook_files import MOST_BYTES, MOST_RATIO, refuse_unsafe
 
 MEMBERS = {"one.xml": b"<a>first</a>" * 50, "folder/two.xml": bytes(range(256)) * 40}
 
@@ -86,16 +86,16 @@ def test_a_hidden_bomb_is_expanded_by_one_piece_at_most(tmp_path, monkeypatch):
     content = zipped({"a": bytes(40_000_000), "noise": noise(4_000)})
     path = written(tmp_path / "hidden.xlsx", patched_directory(content, "a", SIZE, struct.pack("<I", 1_000)))
     sizes = []
-    usual = workbook_guard.zlib.crc32
+    usual = workbook_files.zlib.crc32
 
     def counted(piece, before=0):
         sizes.append(len(piece))
         return usual(piece, before)
 
-    monkeypatch.setattr(workbook_guard.zlib, "crc32", counted)
+    monkeypatch.setattr(workbook_files.zlib, "crc32", counted)
     with pytest.raises(InputError, match="not of the length"):
         refuse_unsafe(path)
-    assert 0 < sum(sizes) <= workbook_guard.PIECE
+    assert 0 < sum(sizes) <= workbook_files.PIECE
 
 
 def twice() -> bytes:
@@ -143,6 +143,6 @@ def test_a_damaged_part_is_refused(tmp_path, name):
 
 def test_too_many_parts_are_refused(tmp_path, monkeypatch):
     """A workbook has hundreds at most."""
-    monkeypatch.setattr(workbook_guard, "MOST_PARTS", 1)
+    monkeypatch.setattr(workbook_files, "MOST_PARTS", 1)
     with pytest.raises(InputError, match="at most 1 parts; got 2"):
         refuse_unsafe(written(tmp_path / "many.xlsx", GOOD))

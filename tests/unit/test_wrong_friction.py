@@ -3,9 +3,8 @@
 import pytest
 
 from separatrix.errors import InputError
-from separatrix.friction.file import read_friction
+from separatrix.friction.file import FrictionTest, read_friction
 from separatrix.friction.fit import fit_friction
-from separatrix.friction.records import FrictionTest
 from separatrix.study_file import read_study
 
 GOOD = {

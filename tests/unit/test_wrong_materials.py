@@ -7,7 +7,8 @@ import pytest
 
 from separatrix.cli import main
 from separatrix.errors import InputError
-from separatrix.library import joined, read_library
+from separatrix.library import joined
+from separatrix.library.reading import read_library
 from separatrix.study_file import read_study
 
 RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
@@ -70,11 +71,11 @@ MATERIAL: "5 GPa", => "5 GPa", temperature = 77, :: needs a unit of temperature
 MATERIAL: "5 GPa", => "5 GPa", temperature = ["300 K", "77 K"], :: must give the lower end first
 MATERIAL: "5 GPa", => "5 GPa", temperature = ["1 K", "2 K", "3 K"],
     :: one quantity or a list of the lowest and the highest
-MATERIAL: "5 GPa", => "5 GPa", range = ["6 GPa", "9 GPa"], :: must hold the value between its ends
+MATERIAL: "5 GPa", => "5 GPa", range = ["6 GPa", "9 GPa"], :: must have the value between its ends
 MATERIAL: "5 GPa", => "5 GPa", range = ["1 GPa"], :: a list of the lowest and the highest value
 MATERIAL: "5 GPa", => "5 GPa", pressure = 5, :: needs a unit of pressure
 MATERIAL: "5 GPa", => "5 GPa", medium = 5, :: medium must be text
-MATERIAL: DATUM => [] :: must hold 1 to 100 data
+MATERIAL: DATUM => [] :: must be 1 to 100 data
 MATERIAL:  => composition = ["PEEK"]\n :: composition must be text
 MATERIAL:  => replaces = "yes"\n :: must be true or false, without quotes
 MATERIAL:  => replaces = true\n :: replaces a cage material that is not shipped
@@ -111,9 +112,9 @@ TABLE: environments => enviroments :: Did you mean environments?
 OTHERS = {
     "an empty file": ("", "is empty"),
     "only a comment": ("# nothing\n", "is empty"),
-    "no record": ('title = "Ours"\n', "holds no record"),
+    "no record": ('title = "Ours"\n', "has no record"),
     "no TOML": ("[cage_material\n", "is not valid TOML"),
-    "a section of lists": ("[[film]]\nname = 1\n", "must hold records"),
+    "a section of lists": ("[[film]]\nname = 1\n", "must contain records"),
     "a record without header": ("[cage_material]\nOurs = 5\n", "must be a record: keys with values; got 5"),
     "no modulus": (f'[film."F"]\n{RATIO}\n', "lacks: elastic_modulus"),
     "no Poisson's ratio": (f'[film."F"]\n{MODULUS}\n', "lacks: poisson_ratio"),
@@ -230,7 +231,7 @@ def test_one_name_in_two_libraries_is_refused(tmp_path):
     for name in ("materials.toml", "materials/more.toml"):
         (tmp_path / name).write_text(MATERIAL)
     (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
-    with pytest.raises(InputError, match=r"more.toml, line 1.* stands in materials.toml, line 1 too"):
+    with pytest.raises(InputError, match=r"more.toml, line 1.* is in materials.toml, line 1 too"):
         read_study(tmp_path / "case.toml")
 
 
@@ -260,9 +261,9 @@ CALLS = {
     "a file that is no TOML": (["add", "new.toml", "--to", "ours.txt"], "must end in .toml"),
     "a folder that is missing": (["add", "new.toml", "--to", "no/ours.toml"], "a folder that does not exist"),
     "a library added to itself": (["add", "new.toml", "--to", "new.toml"], "is the file to add itself"),
-    "a name that is there": (["add", "new.toml", "--to", "materials.toml"], "stands in materials.toml"),
-    "a name that stands beside": (["add", "new.toml", "--to", "other/materials.toml"], "stands in more.toml"),
-    "a name that stands above": (["add", "new.toml", "--to", "materials/x.toml"], "stands in materials.toml"),
+    "a name that is there": (["add", "new.toml", "--to", "materials.toml"], "is in materials.toml"),
+    "a name that stands beside": (["add", "new.toml", "--to", "other/materials.toml"], "is in more.toml"),
+    "a name that stands above": (["add", "new.toml", "--to", "materials/x.toml"], "is in materials.toml"),
     "a library to add to that is wrong": (
         ["add", "new.toml", "--to", "slip.toml"],
         "is not a kind of record",

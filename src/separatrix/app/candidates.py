@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, MutableMapping, MutableSequence
+from typing import TypeGuard
 
 import tomlkit
 from tomlkit.items import Array, InlineTable
 
-from separatrix.app.draft import MEND, parsed, put, typed
+from separatrix.app.draft import MEND, TomlTable, parsed, put, typed
 from separatrix.errors import InputError
-from separatrix.toml_text import lines_of_keys
+from separatrix.toml_files import lines_of_keys
 
 SECTION, KEY = "ranking", "candidates"
 AT = f"[{SECTION}] {KEY}"
@@ -20,7 +20,7 @@ TEXTS = ("name", "source", "confidence")
 """Parts that are text even if they look like a number or a list."""
 
 
-def is_measured(friction: Any) -> bool:
+def is_measured(friction: object) -> TypeGuard[Mapping[str, object]]:
     """Whether a friction is a table of a mean with its scatter, rather than a number or a distribution."""
     return isinstance(friction, Mapping) and not {"between", "samples"} & set(friction)
 
@@ -39,19 +39,16 @@ def changed(text: str, number: int, path: tuple[str, ...], value: str) -> str:
         ``("friction", environment, "count")``.
     value : str
         As typed; an empty one removes the part, and the table that would be empty then.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, or does not have this candidate as a table.
     """
     document = parsed(text)
     items = _items(document)
-    if not 0 <= number < len(items) or not isinstance(items[number], Mapping):
+    item = items[number] if 0 <= number < len(items) else None
+    if not isinstance(item, MutableMapping):
         raise InputError(f"{AT}[{number + 1}]", "is not a table", cure=MEND)
-    item = items[number]
-    if path[0] == "friction" and path[-1] == "mean" and not is_measured(_friction(item, path[1])):
-        path = path[:2]
+    if path[0] == "friction" and path[-1] == "mean":
+        frictions = item.get("friction")
+        if not (isinstance(frictions, Mapping) and is_measured(frictions.get(path[1]))):
+            path = path[:2]
     if not value.strip():
         _remove(item, path)
     elif path[-1] in TEXTS and path[:-1] != ("friction",):
@@ -61,19 +58,8 @@ def changed(text: str, number: int, path: tuple[str, ...], value: str) -> str:
     return tomlkit.dumps(document)
 
 
-def _friction(item: Any, environment: str) -> Any:
-    found = item.get("friction")
-    return found.get(environment) if isinstance(found, Mapping) else None
-
-
 def added(text: str, name: str) -> str:
-    """Return the text with one more candidate, behind the others or at the end; it has only a name yet.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, there is no name, or `candidates` is not a list of tables.
-    """
+    """Return the text with one more candidate, behind the others or at the end; it has only a name yet."""
     if not name.strip():
         raise InputError(AT, "needs a name for the new candidate")
     document, data = parsed(text), tomllib.loads(text)
@@ -82,7 +68,7 @@ def added(text: str, name: str) -> str:
     last = _lines_of(text, len(items) - 1) if items else None
     at = len(lines) if last is None else last.stop
     found = "\n".join([*lines[:at], "", HEADER, tomlkit.dumps(new).rstrip(), *lines[at:], ""])
-    if _holds(found, data, [*_plain_items(data), new]):
+    if _has(found, data, [*data.get(SECTION, {}).get(KEY, ()), new]):
         return found
     if not isinstance(items, Array):
         raise InputError(AT, "is not a list of tables", cure=MEND)
@@ -93,13 +79,7 @@ def added(text: str, name: str) -> str:
 
 
 def removed(text: str, number: int) -> str:
-    """Return the text without a candidate; comments below it, which are about what follows, stay.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, or does not have this candidate.
-    """
+    """Return the text without a candidate; comments below it, which are about what follows, stay."""
     document, data = parsed(text), tomllib.loads(text)
     items = _items(document)
     if not 0 <= number < len(items):
@@ -110,8 +90,8 @@ def removed(text: str, number: int) -> str:
         while behind and not behind[0].strip() and not (before and before[-1].strip()):
             del behind[0]
         found = "\n".join([*before, *behind]).rstrip("\n") + "\n"
-        rest = [item for i, item in enumerate(_plain_items(data)) if i != number]
-        if _holds(found, data, rest):
+        rest = [item for i, item in enumerate(data[SECTION][KEY]) if i != number]
+        if _has(found, data, rest):
             return found
     del items[number]
     if not items:
@@ -119,17 +99,13 @@ def removed(text: str, number: int) -> str:
     return tomlkit.dumps(document)
 
 
-def _items(document: Any) -> Any:
+def _items(document: TomlTable) -> MutableSequence[object]:
     """Return the candidates of a document; an empty list where it has none."""
     section = document.get(SECTION, {})
     items = section.get(KEY, []) if isinstance(section, Mapping) else None
     if not isinstance(items, list):
         raise InputError(AT, "is not a list of tables", cure=MEND)
     return items
-
-
-def _plain_items(data: dict[str, Any]) -> list[Any]:
-    return list(data.get(SECTION, {}).get(KEY, []))
 
 
 def _lines_of(text: str, number: int) -> range | None:
@@ -152,7 +128,7 @@ def _is_inside(one: str, path: str) -> bool:
     return one.startswith(f"{path}.") or (one.startswith(f"{above}.") and not inside.isdigit())
 
 
-def _holds(text: str, data: dict[str, Any], items: list[Any]) -> bool:
+def _has(text: str, data: Mapping[str, Mapping[str, object]], items: list[object]) -> bool:
     """Whether a text has these candidates, and the rest as in `data`."""
     try:
         found = tomllib.loads(text)
@@ -163,7 +139,7 @@ def _holds(text: str, data: dict[str, Any], items: list[Any]) -> bool:
     return {SECTION: {}, **found} == {**data, SECTION: section}
 
 
-def _set(item: Any, path: tuple[str, ...], value: Any) -> None:
+def _set(item: TomlTable, path: tuple[str, ...], value: object) -> None:
     """Set a part; a friction that was a number becomes the mean beside its scatter."""
     for depth, key in enumerate(path[:-1]):
         old = item.get(key)
@@ -175,13 +151,14 @@ def _set(item: Any, path: tuple[str, ...], value: Any) -> None:
     put(item, path[-1], value)
 
 
-def _remove(item: Any, path: tuple[str, ...]) -> None:
+def _remove(item: TomlTable, path: tuple[str, ...]) -> None:
     """Remove a part, and the tables that are empty then; a mean that is left alone becomes a number."""
     tables = [item]
     for key in path[:-1]:
-        tables.append(tables[-1].get(key))
-        if not isinstance(tables[-1], Mapping):
+        inner = tables[-1].get(key)
+        if not isinstance(inner, MutableMapping):
             return
+        tables.append(inner)
     tables[-1].pop(path[-1], None)
     for table, key in zip(reversed(tables[:-1]), reversed(path[:-1]), strict=True):
         if not table[key] and "#" not in table[key].as_string():

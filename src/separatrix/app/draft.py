@@ -6,7 +6,7 @@ import hashlib
 import re
 import threading
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, MutableMapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,18 +17,20 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
 from separatrix.errors import InputError
-from separatrix.notes import grouped, noted_warnings
-from separatrix.regular_file import reading_only_in
+from separatrix.input_files import reading_only_in
+from separatrix.messages import grouped, noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
-from separatrix.study_file.document import Document, load
-from separatrix.study_file.offered import NOTHING, Offered, offered_by
-from separatrix.study_file.templates import is_name
-from separatrix.toml_text import MOST_BYTES, read_text
+from separatrix.study_file.document import load
+from separatrix.study_file.templates import NOTHING, Offered, is_name, offered_by
+from separatrix.toml_files import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
 
 DRAFT = ".{}.draft"
 """Name of the draft of a study, beside it: a server that is killed loses no edit."""
+
+TomlTable = MutableMapping[str, Any]
+"""A table of tomlkit, whose items keep their comments."""
 
 ONE_AT_A_TIME = threading.Lock()
 """What studies note on the way is collected by one thread."""
@@ -43,7 +45,7 @@ _NUMBER = re.compile(rf"\s*{NUMBER}\s*")
 class Fault:
     """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message.
 
-    `inside` is the rest of its path, for a key that holds tables: ``[2].friction."air, 440C".mean``.
+    `inside` is the rest of its path, for a key with tables: ``[2].friction."air, 440C".mean``.
     """
 
     section: str
@@ -60,7 +62,7 @@ class Checked:
     study: Study | None
     faults: tuple[Fault, ...]
     notes: tuple[str, ...] = ()
-    inherited: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    inherited: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     """Values by section and key, those of the file that it extends among them."""
 
     offered: Offered = NOTHING
@@ -135,36 +137,27 @@ def check(study: Path, root: Path) -> Checked:
     return Checked(text=text, study=found, faults=(), notes=noted, inherited=inherited, offered=offered)
 
 
-def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, Any]], Offered]:
-    """Return what a study has from the one that it extends, and the names that it may use."""
+def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], Offered]:
+    """Return the values of a study that extends another by section and key, and the names that it may use."""
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
             found = load(path)
-            return _given(found), offered_by(found)
+            sections = {"": found.top, **found.sections} if "extends" in found.top else {}
+            given = {
+                name: {key: value for key, value in values.items() if not isinstance(value, InputError)}
+                for name, values in sections.items()
+            }
+            return given, offered_by(found)
     except InputError:  # shown among the faults
         return {}, NOTHING
 
 
-def _given(found: Document) -> dict[str, dict[str, Any]]:
-    """Return the values of a study that extends another, with those of the other, by section and key."""
-    if "extends" not in found.top:
-        return {}
-    sections = {"": found.top, **found.sections}
-    return {
-        name: {key: value for key, value in values.items() if not isinstance(value, InputError)}
-        for name, values in sections.items()
-    }
-
-
 def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
-    """Return each fault with the key that it is about."""
     faults = []
     for one in error.problems or (error,):
-        message = str(one).replace(path.name, study.name)
-        at = _KEY.search(one.path)
-        section, key = (at["section"], at["key"] or "") if at else ("", "")
-        inside = one.path[at.end() :] if at else ""
-        faults.append(Fault(section=section, key=key, message=message, inside=inside))
+        message, at = str(one).replace(path.name, study.name), _KEY.search(one.path)
+        where = (at["section"], at["key"] or "", one.path[at.end() :]) if at else ("", "", "")
+        faults.append(Fault(section=where[0], key=where[1], inside=where[2], message=message))
     return faults
 
 
@@ -179,20 +172,13 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         Of the study; an empty section is above the first one.
     value : str
         As typed: a number, a quantity, a word, or a list or table as TOML writes it.
-
-    Raises
-    ------
-    InputError
-        The text is not valid TOML, so that it has to be mended as text first.
     """
     document = parsed(text)
-    table: Any = document
-    if section:
-        if section not in document:
-            document.add(section, tomlkit.table())
-        table = document[section]
-        if not isinstance(table, Mapping):
-            raise InputError(f"[{section}]", "is not a section", cure=MEND)
+    if section and section not in document:
+        document.add(section, tomlkit.table())
+    table = document[section] if section else document
+    if not isinstance(table, MutableMapping):
+        raise InputError(f"[{section}]", "is not a section", cure=MEND)
     if not value.strip():
         if key in table:
             del table[key]
@@ -209,7 +195,7 @@ def parsed(text: str) -> TOMLDocument:
         raise InputError("The text", f"is not valid TOML: {error}", cure=MEND) from None
 
 
-def put(table: Any, key: str, value: Any) -> None:
+def put(table: TomlTable, key: str, value: object) -> None:
     """Set a key; comments behind its old value and in its old list stay."""
     old = table.get(key)
     if isinstance(old, Array) and isinstance(value, list) and _same_list(old, value):
@@ -230,7 +216,7 @@ def put(table: Any, key: str, value: Any) -> None:
     body.extend(reversed(behind))
 
 
-def _same_list(old: Array, value: list[Any]) -> bool:
+def _same_list(old: Array, value: list[object]) -> bool:
     """Make a list another one by removing and adding items; return whether that was enough."""
     for item in [item for item in old.unwrap() if item not in value]:
         old.remove(item)
@@ -244,14 +230,15 @@ def with_unit(value: str, unit: str) -> str:
     return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
 
 
-def typed(value: str, *, is_name: bool = False) -> Any:
+def typed(value: str, *, is_name: bool = False) -> object:
     """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
     value = value.strip()
     if not is_name and _NUMBER.fullmatch(value):
         return float(value) if re.search(r"[.eE]", value) else int(value)
     if value[0] in "[{":
         try:
-            return tomllib.loads(f"value = {value}")["value"]
+            found: object = tomllib.loads(f"value = {value}")["value"]
+            return found
         except (ValueError, RecursionError):
             raise InputError(shown(value), "is not a list or table of TOML") from None
     return value

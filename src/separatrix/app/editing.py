@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from tomlkit.exceptions import TOMLKitError
 
 from separatrix.app import candidates, draft
-from separatrix.app.fields import as_typed
-from separatrix.app.form import form
-from separatrix.app.page import Page, form_of
+from separatrix.app.form import as_typed, form
+from separatrix.app.page import Form, Page
 from separatrix.errors import InputError
 from separatrix.questions import VERBS, Verb, verb_named
 from separatrix.study import BallModel, MotionModel, Study
 from separatrix.study_file import shipped_studies, template
 from separatrix.units import printable
 
-Form = Annotated[dict[str, str], Depends(form_of)]
 TYPED = {"points": int, "runs": int, "run": int, "samples": int}
 """Options that are whole numbers."""
 
@@ -30,28 +28,33 @@ def routes(page: Page) -> APIRouter:
     """Return the routes of the studies."""
     router = APIRouter(default_response_class=HTMLResponse)
 
+    def edit_again(name: str, path: Path, problem: str = "") -> Response:
+        checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
+        return page.html("editor.html", **_editor(name, path, checked, problem))
+
+    def all_jobs() -> Response:
+        return page.html("jobs.html", jobs=page.jobs.all())
+
     @router.get("/")
     def studies() -> Response:
-        rows = [summary(page, name) for name in page.folder.studies()]
+        rows = [_summary(page, name) for name in page.folder.studies()]
         return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
 
     @router.post("/new")
     def new(sent: Form) -> Response:
         name = f"{sent.get('name', '').strip().removesuffix('.toml')}.toml"
-        path, base = page.folder.new(name), sent.get("base", "")
-        text = (
-            shipped_studies()[base].read_text(encoding="utf-8") if base in shipped_studies() else template()
-        )
+        path, base = page.folder.new(name), shipped_studies().get(sent.get("base", ""))
+        text = template() if base is None else base.read_text(encoding="utf-8")
         with path.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)
-        return _to(f"/study/{page.folder.name(path)}")
+        return RedirectResponse(f"/study/{page.folder.name(path)}", status_code=303)
 
     @router.get("/study/{name:path}")
     def study(name: str) -> Response:
         path = page.folder.study(name)
-        shown = editor(page, name, path)
-        found = shown["checked"].study if shown["checked"] else None
-        return page.html("study.html", title=page.title(name), **shown, **running(page, name, found))
+        checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
+        shown = {**_editor(name, path, checked), **_running(page, name, checked.study if checked else None)}
+        return page.html("study.html", title=page.title(name), **shown)
 
     @router.post("/edit/{name:path}")
     def edit(name: str, sent: Form) -> Response:
@@ -68,58 +71,48 @@ def routes(page: Page) -> APIRouter:
                 problem = str(error)
             except TOMLKitError as error:  # TOML in an order that tomlkit does not take
                 problem = f"The form cannot change this text: {error} {draft.MEND}"
-        return page.html("editor.html", **editor(page, name, path, problem))
+        return edit_again(name, path, problem)
 
     @router.post("/save/{name:path}")
     def save(name: str) -> Response:
         path = page.folder.study(name)
         draft.save(path)
-        return page.html("editor.html", **editor(page, name, path))
+        return edit_again(name, path)
 
     @router.post("/discard/{name:path}")
     def discard(name: str) -> Response:
         path = page.folder.study(name)
         draft.draft_path(path).unlink(missing_ok=True)
-        return page.html("editor.html", **editor(page, name, path))
+        return edit_again(name, path)
 
     @router.post("/run/{name:path}")
     def run(name: str, sent: Form) -> Response:
         path, verb = page.folder.study(name), verb_named(sent.get("verb", ""))
         draft.save_to_run(path, page.folder.root)
         place = page.folder.answers(name)
-        page.jobs.ask(verb.name, path, place, name=name, question=question_of(page, name, verb, sent))
-        return page.html("jobs.html", jobs=page.jobs.all())
+        page.jobs.ask(verb.name, path, place, name=name, question=_question(page, name, verb, sent))
+        return all_jobs()
 
-    @router.get("/jobs")
-    def jobs() -> Response:
-        return page.html("jobs.html", jobs=page.jobs.all())
+    router.get("/jobs")(all_jobs)
 
     @router.post("/jobs/{number}/cancel")
     def cancel(number: int) -> Response:
         page.jobs.cancel(number)
-        return page.html("jobs.html", jobs=page.jobs.all())
+        return all_jobs()
 
     @router.post("/jobs/forget")
     def forget() -> Response:
         page.jobs.forget_ended()
-        return page.html("jobs.html", jobs=page.jobs.all())
+        return all_jobs()
 
     @router.post("/jobs/{number}/resume")
     def resume(number: int) -> Response:
         job = page.jobs.job(number)
         if job is None:
-            raise InputError("The job", "is not known any more", cure="Run the verb again: it resumes too.")
-        task = job.task
-        page.jobs.ask(
-            task.verb,
-            task.study,
-            task.folder,
-            name=job.study,
-            title=job.title,
-            question=task.question,
-            values=task.values,
-        )
-        return page.html("jobs.html", jobs=page.jobs.all())
+            raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
+        task, more = job.task, {"name": job.study, "title": job.title}
+        page.jobs.ask(task.verb, task.study, task.folder, question=task.question, values=task.values, **more)
+        return all_jobs()
 
     return router
 
@@ -128,7 +121,8 @@ def edited_by(text: str, sent: dict[str, str]) -> str:
     """Return the text of a study with what one part of the form changes in it."""
     if "added" in sent:
         return candidates.added(text, sent["added"])
-    number = _number(sent.get("candidate", sent.get("removed", "")))
+    digits = sent.get("candidate", sent.get("removed", ""))
+    number = int(digits) if re.fullmatch("[0-9]{1,8}", digits) else -1
     if "removed" in sent:
         return candidates.removed(text, number)
     value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
@@ -144,18 +138,8 @@ def edited_by(text: str, sent: dict[str, str]) -> str:
     return draft.edited(text, section, key, value)
 
 
-def _number(text: str) -> int:
-    return int(text) if text.isascii() and text.isdigit() and len(text) < 9 else -1
-
-
-def _to(place: str) -> Response:
-    """Lead the browser to another page, asked by htmx or by itself."""
-    return RedirectResponse(place, status_code=303)
-
-
-def summary(page: Page, name: str) -> dict[str, Any]:
-    """Return what the list shows of a study: its answers, and the verdicts of its ranking."""
-    ranked = page.document(name, "rank") or {}
+def _summary(page: Page, name: str) -> dict[str, object]:
+    ranked = page.document(page.folder.answers(name), "rank") or {}
     overall = ranked.get("overall") or []
     counts = {
         verdict: sum(row.get("verdict") == verdict for row in overall) for verdict in ("STABLE", "UNSTABLE")
@@ -172,21 +156,18 @@ def summary(page: Page, name: str) -> dict[str, Any]:
     }
 
 
-def editor(page: Page, name: str, path: Path, problem: str = "") -> dict[str, Any]:
-    """Return what the form and the text beside it show."""
-    if path.suffix != ".toml":
-        return {"name": name, "checked": None, "sections": (), "problem": "", "has_draft": False}
-    checked = draft.check(path, page.folder.root)
+def _editor(name: str, path: Path, checked: draft.Checked | None, problem: str = "") -> dict[str, object]:
+    """Return what the form and the text beside it show; nothing of a workbook, which is not `checked`."""
     return {
         "name": name,
         "checked": checked,
-        "sections": form(checked),
-        "problem": problem,
-        "has_draft": draft.draft_path(path).is_file(),
+        "sections": form(checked) if checked else (),
+        "problem": problem if checked else "",
+        "has_draft": checked is not None and draft.draft_path(path).is_file(),
     }
 
 
-def running(page: Page, name: str, found: Study | None) -> dict[str, Any]:
+def _running(page: Page, name: str, found: Study | None) -> dict[str, object]:
     """Return what the panel of verbs shows; `lacking` are sections that a verb needs and a study lacks."""
     lacking = {
         verb.name: [section for section in verb.needs if found and getattr(found, section) is None]
@@ -203,9 +184,9 @@ def running(page: Page, name: str, found: Study | None) -> dict[str, Any]:
     }
 
 
-def question_of(page: Page, study: str, verb: Verb, sent: dict[str, str]) -> dict[str, Any]:
+def _question(page: Page, study: str, verb: Verb, sent: dict[str, str]) -> dict[str, object]:
     """Return the options of a verb of a study as a form gives them; empty ones have their defaults."""
-    question: dict[str, Any] = {}
+    question: dict[str, object] = {}
     for name in (*verb.question, *(("motion", "ball") if verb.moves_a_cage else ())):
         text = sent.get(name, "").strip()
         if not text or name == "animate":
@@ -217,7 +198,7 @@ def question_of(page: Page, study: str, verb: Verb, sent: dict[str, str]) -> dic
         elif name in ("adaptive", "verdicts", "margins"):
             question[name] = True
         elif name in TYPED:
-            if not text.isascii() or not text.isdigit() or len(text) > 9:
+            if not re.fullmatch("[0-9]{1,9}", text):
                 raise InputError(f"--{name}", "must be a whole number", got=f'"{printable(text)}"')
             question[name] = int(text)
         else:

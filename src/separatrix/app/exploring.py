@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import xarray as xr
 from fastapi import APIRouter, Request
@@ -14,18 +13,18 @@ from fastapi.responses import HTMLResponse, JSONResponse, Response
 
 from separatrix.app import draft
 from separatrix.app.page import Page
-from separatrix.app.plotly import spec
+from separatrix.app.plotly import Spec, spec
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError
-from separatrix.figures.hover import Series, stability_plot
+from separatrix.figures.hover import stability_plot
 from separatrix.figures.style import VERMILION
-from separatrix.limits.map_parameters import parameters, value_in, varied
+from separatrix.input_files import reading_only_in
+from separatrix.limits.curve import restitution_threshold
+from separatrix.limits.map_records import parameters, value_in, varied
 from separatrix.limits.point import CriticalFriction
 from separatrix.limits.response import Side
-from separatrix.limits.threshold import restitution_threshold
-from separatrix.notes import noted_warnings
-from separatrix.regular_file import reading_only_in
+from separatrix.messages import noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.units import format_quantity
@@ -64,9 +63,8 @@ def routes(page: Page) -> APIRouter:
         if study.cage is None:
             raise InputError(f"{name}: the sliders", "need the section [cage]", cure="Add it to the inputs.")
         answers = page.answered(name)
-        return page.html(
-            "explore.html", name=name, title=study.title, sliders=sliders(study), answers=answers
-        )
+        found = sliders(study)
+        return page.html("explore.html", name=name, title=study.title, sliders=found, answers=answers)
 
     @router.get("/explored/{name:path}")
     def explored(request: Request, name: str) -> Response:
@@ -83,14 +81,12 @@ def routes(page: Page) -> APIRouter:
         if not values:
             raise InputError("The curve", "is that of the study")
         place = _place(page, name, values)
-        words = ", ".join(key.rpartition(".")[2].replace("_", " ") for key in values)
-        title = f"stability, other {words}"
+        title = f"stability, other {', '.join(map(_label, values))}"
         for job in page.jobs.all():  # an older place of the same slider is of no use any more
             if job.is_active and job.study == name and job.title == title and job.task.values != values:
                 page.jobs.cancel(job.number)
-        job = page.jobs.ask(
-            "stability", page.folder.study(name), place, name=name, title=title, values=values
-        )
+        path = page.folder.study(name)
+        job = page.jobs.ask("stability", path, place, name=name, title=title, values=values)
         return JSONResponse({"job": job.number})
 
     return router
@@ -102,7 +98,6 @@ def _study(page: Page, name: str) -> Study:
 
 
 def _values(request: Request) -> dict[str, float]:
-    """Return the values of the sliders that were moved, in SI."""
     try:
         return {key: float(value) for key, value in request.query_params.items() if key in SLIDERS}
     except ValueError:
@@ -116,15 +111,14 @@ def sliders(study: Study) -> list[Slider]:
     if study.cage is not None:
         values[POCKET_FRICTION] = _friction(solve(study))
     return [
-        Slider(
-            key,
-            key.rpartition(".")[2].replace("_", " "),
-            value,
-            format_quantity(value, units.get(key, "-"), 3),
-        )
+        Slider(key, _label(key), value, format_quantity(value, units.get(key, "-"), 3))
         for key, value in values.items()
         if value is not None and value > 0.0
     ]
+
+
+def _label(key: str) -> str:
+    return key.rpartition(".")[2].replace("_", " ")
 
 
 def _friction(solution: Solution) -> float | None:
@@ -137,63 +131,42 @@ def _place(page: Page, name: str, values: dict[str, float]) -> Path:
     return page.folder.answers(name) / EXPLORED / mark
 
 
-def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) -> dict[str, Any]:
+def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) -> dict[str, object]:
     """Return eta, the margins on the finished curve that fits best, and the figure."""
-    eta, damping = solution.restitution.restitution_factor, solution.restitution.race_damping
+    study, eta = solution.study, solution.restitution.restitution_factor
     of_curve = {key: value for key, value in values.items() if key in OF_THE_CURVE}
     own, other = page.folder.answers(name), _place(page, name, of_curve)
     is_refined = bool(of_curve) and (other / "stability.nc").is_file()
     places = [*([(other, "stability")] if is_refined else []), (own, "stability"), (own, "rank")]
-    curves = ((page.dataset(at / f"{verb}.nc"), page.document_in(at, verb)) for at, verb in places)
+    curves = ((page.dataset(at / f"{verb}.nc"), page.document(at, verb)) for at, verb in places)
     data, document = next(((a, b) for a, b in curves if a is not None and b is not None), (None, None))
     friction, threshold = _friction(solution), None
     if document is not None and friction is not None:
-        threshold = restitution_threshold(_points(document), friction).value
+        rows = document.get("stability", document)["curve"]
+        curve = [CriticalFriction(**{**row, "side": row["side"] and Side[row["side"]]}) for row in rows]
+        threshold = restitution_threshold(curve, friction).value
+    words = "not known" if threshold is None else f"{threshold:.2f}"
+    made_of, environment = cage_candidate(study), environment_of(study.ranking) if study.ranking else ""
     return {
-        "values": {one.key: one.text for one in sliders(solution.study)},
+        "values": {one.key: one.text for one in sliders(study)},
         "eta": f"{eta:.3f}",
-        "damping": format_quantity(damping, "N s/m", 3),
+        "damping": format_quantity(solution.restitution.race_damping, "N s/m", 3),
         "friction": "not known" if friction is None else f"{friction:.3g}",
-        "threshold": _threshold(threshold),
+        "threshold": "1 (not reached)" if threshold is not None and threshold >= 1.0 else words,
         "margin": "not known" if threshold is None else f"{threshold - eta:+.2f}",
         "is_refined": not of_curve or is_refined,
         "has_curve": data is not None,
-        "whose": _whose(solution.study),
+        "whose": ", ".join(one for one in (made_of.name if made_of else "", environment) if one),
         "figure": None if data is None else _figure(data, eta, friction),
     }
 
 
-def _whose(study: Study) -> str:
-    made_of = cage_candidate(study)
-    place = environment_of(study.ranking) if study.ranking else None
-    return ", ".join(one for one in (made_of.name if made_of else "", place or "") if one)
-
-
-def _points(document: Mapping[str, Any]) -> list[CriticalFriction]:
-    """Return the points of the curve of a saved answer to `stability` or `rank`."""
-    rows = document.get("stability", document)["curve"]
-    return [CriticalFriction(**{**row, "side": row["side"] and Side[row["side"]]}) for row in rows]
-
-
-def _threshold(value: float | None) -> str:
-    if value is None:
-        return "not known"
-    return "1 (not reached)" if value >= 1.0 else f"{value:.2f}"
-
-
-def _figure(data: xr.Dataset, eta: float, friction: float | None) -> dict[str, Any]:
-    """Return the stability curve with the changed bearing on it."""
-    plot = stability_plot(data)
-    figure = spec(plot)
+def _figure(data: xr.Dataset, eta: float, friction: float | None) -> Spec:
+    """Return the stability curve with the changed bearing on it, a point that the sliders move."""
+    figure = spec(stability_plot(data))
     figure["layout"]["shapes"] = []
     if friction is not None:
-        here = Series(name="with the sliders", kind="points", x=(eta,), y=(friction,), colour=VERMILION)
-        trace = spec_of(here)
-        figure["data"].append(trace)
+        look = {"color": VERMILION, "size": 15, "symbol": "star", "line": {"width": 1, "color": "white"}}
+        here = {"name": "with the sliders", "x": (eta,), "y": (friction,), "mode": "markers", "marker": look}
+        figure["data"].append({**here, "hoverinfo": "name"})
     return figure
-
-
-def spec_of(one: Series) -> dict[str, Any]:
-    """Return the trace of the one point that the sliders move."""
-    look = {"color": one.colour, "size": 15, "symbol": "star", "line": {"width": 1, "color": "white"}}
-    return {"name": one.name, "x": one.x, "y": one.y, "mode": "markers", "marker": look, "hoverinfo": "name"}

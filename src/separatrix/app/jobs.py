@@ -6,13 +6,13 @@ import multiprocessing
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from separatrix.app.worker import CANCEL, END, Report, Task, work
+from separatrix.app.worker import CANCEL, END, Task, work
 from separatrix.errors import InputError
 
 WAITING, RUNNING = "waiting", "running"
@@ -58,15 +58,6 @@ class Job:
         return 0.0 if self.started is None else (self.ended or time.monotonic()) - self.started
 
 
-@dataclass(slots=True)
-class _State:
-    jobs: dict[int, Job] = field(default_factory=dict)
-    last: int = 0
-    process: BaseProcess | None = None
-    pipe: Connection | None = None
-    is_closed: bool = False
-
-
 class Jobs:
     """The queue and its process, which is started with the first job and again if it was killed.
 
@@ -76,7 +67,10 @@ class Jobs:
     def __init__(self, root: Path) -> None:
         self.root = root
         self.after: Callable[[Task], None] = lambda _: None
-        self._lock, self._state = threading.Lock(), _State()
+        self._lock, self._last, self._is_closed = threading.Lock(), 0, False
+        self._jobs: dict[int, Job] = {}
+        self._process: BaseProcess | None = None
+        self._pipe: Connection | None = None
 
     def ask(
         self,
@@ -86,20 +80,13 @@ class Jobs:
         *,
         name: str,
         title: str = "",
-        question: Mapping[str, Any] | None = None,
+        question: Mapping[str, object] | None = None,
         values: Mapping[str, float] | None = None,
     ) -> Job:
-        """Put a question into the queue; the same one that still waits or runs is not asked twice.
-
-        Raises
-        ------
-        InputError
-            Too many wait.
-        """
+        """Put a question into the queue unless the same one is active already; refused if too many wait."""
         with self._lock:
-            state = self._state
             asked = Task(
-                number=state.last + 1,
+                number=self._last + 1,
                 verb=verb,
                 study=study,
                 folder=folder,
@@ -107,53 +94,52 @@ class Jobs:
                 question=dict(question or {}),
                 values=dict(values or {}),
             )
-            active = [job for job in state.jobs.values() if job.is_active]
+            active = [job for job in self._jobs.values() if job.is_active]
             for job in active:
                 if replace(job.task, number=asked.number) == asked:
                     return job
             if len(active) >= MOST_WAITING:
-                raise InputError("The queue", f"holds {MOST_WAITING} jobs", cure="Wait, or cancel some.")
-            state.last += 1
-            state.jobs[asked.number] = job = Job(task=asked, study=name, title=title or verb)
-            ended = [number for number, one in state.jobs.items() if not one.is_active]
+                raise InputError("The queue", f"has {MOST_WAITING} jobs", cure="Wait, or cancel some.")
+            self._last += 1
+            self._jobs[asked.number] = job = Job(task=asked, study=name, title=title or verb)
+            ended = [number for number, one in self._jobs.items() if not one.is_active]
             for number in ended[: max(0, len(ended) - MOST_KEPT)]:
-                del state.jobs[number]
+                del self._jobs[number]
             self._feed()
             return job
 
     def all(self) -> list[Job]:
         """Return the jobs, the newest first."""
         with self._lock:
-            return sorted(self._state.jobs.values(), key=lambda job: -job.number)
+            return sorted(self._jobs.values(), key=lambda job: -job.number)
 
     def job(self, number: int) -> Job | None:
         """Return a job by its number; None if there is none."""
         with self._lock:
-            return self._state.jobs.get(number)
+            return self._jobs.get(number)
 
     def cancel(self, number: int) -> None:
         """End a job: one that runs keeps what it finished."""
         with self._lock:
-            job = self._state.jobs.get(number)
+            job = self._jobs.get(number)
             if job is None or not job.is_active:
                 return
             if job.state == WAITING:
                 self._change(number, state="cancelled", message="Cancelled before it began.")
-            elif self._state.pipe is not None:
+            elif self._pipe is not None:
                 self._change(number, message="Cancelling: the runs in hand are finished first.")
-                self._state.pipe.send(CANCEL)
+                self._pipe.send(CANCEL)
 
     def forget_ended(self) -> None:
         """Drop the jobs that have ended from the list; their answers stay."""
         with self._lock:
-            jobs = self._state.jobs
-            self._state.jobs = {number: job for number, job in jobs.items() if job.is_active}
+            self._jobs = {number: job for number, job in self._jobs.items() if job.is_active}
 
     def close(self) -> None:
         """End the process; the job in hand writes what it finished."""
         with self._lock:
-            self._state.is_closed = True
-            process, pipe = self._state.process, self._state.pipe
+            self._is_closed = True
+            process, pipe = self._process, self._pipe
         if process is not None and pipe is not None:
             try:
                 pipe.send(END)
@@ -164,17 +150,16 @@ class Jobs:
 
     def _feed(self) -> None:
         """Hand the first waiting job to the process, if none is in hand."""
-        state = self._state
-        if state.is_closed or any(job.state == RUNNING for job in state.jobs.values()):
+        if self._is_closed or any(job.state == RUNNING for job in self._jobs.values()):
             return
-        first = next((job for job in state.jobs.values() if job.state == WAITING), None)
+        first = next((job for job in self._jobs.values() if job.state == WAITING), None)
         if first is None:
             return
-        if state.process is None or not state.process.is_alive():
+        if self._process is None or not self._process.is_alive():
             self._start()
-        if state.pipe is not None:
+        if self._pipe is not None:
             self._change(first.number, state=RUNNING, started=time.monotonic())
-            state.pipe.send(first.task)
+            self._pipe.send(first.task)
 
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
@@ -182,42 +167,35 @@ class Jobs:
         process = context.Process(target=work, args=(theirs,), name="separatrix worker", daemon=True)
         process.start()
         theirs.close()
-        self._state.process, self._state.pipe = process, ours
+        self._process, self._pipe = process, ours
         threading.Thread(target=self._listen, args=(ours,), daemon=True).start()
 
     def _listen(self, pipe: Connection) -> None:
-        """Take in what the process reports, until it ends."""
         while True:
             try:
-                report = pipe.recv()
+                number, changes = pipe.recv()
             except (EOFError, OSError):
-                report = None
-            with self._lock:
-                if report is None:
+                with self._lock:
                     self._lost(pipe)
-                    return
-                self._take_in(report)
-
-    def _take_in(self, report: Report) -> None:
-        known = ("state", "done", "total", "expected", "message")
-        new = {name: value for name in known if (value := getattr(report, name)) is not None}
-        if report.state is not None and report.state not in ACTIVE:
-            new["ended"] = time.monotonic()
-            if (job := self._state.jobs.get(report.number)) is not None:
-                threading.Thread(target=self.after, args=(job.task,), daemon=True).start()
-        self._change(report.number, **new)
-        self._feed()
+                return
+            with self._lock:
+                if changes.get("state", RUNNING) not in ACTIVE:
+                    changes["ended"] = time.monotonic()
+                    if (job := self._jobs.get(number)) is not None:
+                        threading.Thread(target=self.after, args=(job.task,), daemon=True).start()
+                self._change(number, **changes)
+                self._feed()
 
     def _lost(self, pipe: Connection) -> None:
         """Note that the process has ended in the middle of a job, and go on with the next."""
-        if self._state.pipe is pipe:
-            self._state.process = self._state.pipe = None
-        for job in [job for job in self._state.jobs.values() if job.state == RUNNING]:
-            words = "The computing process ended; the terminal of `separatrix app` may say why. "
+        if self._pipe is pipe:
+            self._process = self._pipe = None
+        for job in [job for job in self._jobs.values() if job.state == RUNNING]:
+            words = "The computing process ended; the terminal of `separatrix app` may show why. "
             words += "Finished runs are kept: resume to go on."
             self._change(job.number, state="failed", message=words, ended=time.monotonic())
         self._feed()
 
     def _change(self, number: int, **new: Any) -> None:
-        if number in self._state.jobs:
-            self._state.jobs[number] = replace(self._state.jobs[number], **new)
+        if number in self._jobs:
+            self._jobs[number] = replace(self._jobs[number], **new)

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Request
+import xarray as xr
+from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, JSONResponse, Response
 
 from separatrix.app import draft
-from separatrix.app.files import LOGS, Folder
-from separatrix.app.page import Page, form_of
+from separatrix.app.page import LOGS, Folder, Form, Page
+from separatrix.app.plotly import Spec, upright
 from separatrix.errors import InputError
 from separatrix.figures.style import BLUE, GREY, VERMILION
 from separatrix.friction.file import friction_text
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
-from separatrix.notes import noted_warnings
-from separatrix.present.text.tribometer import tribometer as in_words
-from separatrix.present.tribometer import page_data
+from separatrix.messages import noted_warnings
+from separatrix.present.tribometer import in_words, page_data
 from separatrix.units import format_number
 
-Form = Annotated[dict[str, str], Depends(form_of)]
 UNITS = {"time": "s", "distance": "m", "cycles": ""}
 """Axis along which running-in is cut -> its unit."""
 
@@ -43,35 +41,35 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/logs", response_class=HTMLResponse)
     def logs() -> Response:
-        return page.html("logs.html", names=names_of(place))
+        return page.html("logs.html", names=_names(place))
 
     @router.put("/logs/{name}", response_class=HTMLResponse)
     async def drop(name: str, request: Request) -> Response:
         content = await request.body()
         await run_in_threadpool(_keep, uploads(), name, content)
-        return page.html("log_list.html", names=names_of(place))
+        return page.html("log_list.html", names=_names(place))
 
     @router.get("/log/{name}", response_class=HTMLResponse)
     def log(name: str, run_in: str = "") -> Response:
-        found = reduced(uploads().inside(name), run_in)
+        found = _reduced(uploads().inside(name), run_in)
         words = in_words(found, written=None, plots=None)
-        tests = [test(one) for one in found.reductions]
+        tests = [_test(one) for one in found.reductions]
         return page.html("log.html", name=name, tests=tests, words=words, run_in=run_in)
 
     @router.get("/log-figure/{name}/{number}")
     def figure(name: str, number: int, run_in: str = "") -> Response:
-        found = reduced(uploads().inside(name), run_in).reductions
+        found = _reduced(uploads().inside(name), run_in).reductions
         if not 0 <= number < len(found):
             raise InputError(name, "has no such test")
-        return JSONResponse(trace(found[number]))
+        return JSONResponse(_trace(found[number]))
 
     @router.post("/logs-friction", response_class=HTMLResponse)
     def friction(sent: Form) -> Response:
         path = page.folder.new(f"{sent.get('name', '').strip().removesuffix('.toml')}.toml")
         stated = {key: words for key in STATED if (words := sent.get(key, "").strip())}
         given = ColumnMap(test=stated)
-        files = [uploads().inside(name) for name in names_of(place)]
-        found = reduced(files, "", complete=True, column_map=given)
+        files = [uploads().inside(name) for name in _names(place)]
+        found = _reduced(files, "", complete=True, column_map=given)
         if found.friction_tests is None:
             cure = "State material, counterface and medium beside the name."
             raise InputError("The logs", "do not all state their materials", cure=cure)
@@ -81,8 +79,7 @@ def routes(page: Page) -> APIRouter:
     return router
 
 
-def names_of(place: Path) -> list[str]:
-    """Return the names of the logs in a folder."""
+def _names(place: Path) -> list[str]:
     if not place.is_dir():
         return []
     files = (path for path in place.iterdir() if path.is_file() and not path.name.startswith("."))
@@ -97,7 +94,7 @@ def _keep(folder: Folder, name: str, content: bytes) -> None:
     folder.new(name).write_bytes(content)
 
 
-def reduced(
+def _reduced(
     paths: Path | list[Path], run_in: str, *, complete: bool = False, column_map: ColumnMap | None = None
 ) -> ReducedLogs:
     """Return what logs show; `run_in` is where running-in ends, or empty to find it."""
@@ -105,8 +102,7 @@ def reduced(
         return tribometer(paths, run_in=run_in or None, complete=complete, column_map=column_map)
 
 
-def test(one: Reduction) -> dict[str, Any]:
-    """Return what the page shows of a test beside its figure."""
+def _test(one: Reduction) -> dict[str, object]:
     found, unit = one.test, UNITS[one.test.run_in_axis]
     low, high = found.interval
     return {
@@ -121,11 +117,14 @@ def test(one: Reduction) -> dict[str, Any]:
     }
 
 
-def trace(one: Reduction) -> dict[str, Any]:
+def _trace(one: Reduction) -> Spec:
     """Return the figure of a test: friction with its extremes, the cut of running-in, the steady mean."""
     data, found = page_data(one), one.test
     unit = UNITS[found.run_in_axis]
-    along = data["trace"].values.tolist()
+    along, at = data["trace"].values.tolist(), found.run_in_end
+    cut = {"color": VERMILION, "width": 2, "dash": "dash"}
+    cut_words = {"text": "running-in ends", "textangle": -90}
+    mean = {"x0": at, "x1": found.steady_end, "y0": found.friction, "y1": found.friction}
     label = f"{found.run_in_axis} [{unit}]" if unit else found.run_in_axis
     return {
         "data": [*_lines(along, data)],
@@ -137,29 +136,18 @@ def trace(one: Reduction) -> dict[str, Any]:
             "margin": {"l": 60, "r": 20, "t": 20, "b": 50},
             "legend": {"orientation": "h", "y": -0.25},
             "shapes": [
-                _upright(found.run_in_end, VERMILION, "running-in ends"),
-                _mean(found.run_in_end, found.steady_end, found.friction),
+                {"type": "line", "line": cut, "label": cut_words, **upright(at)},
+                {"type": "line", "line": {"color": VERMILION, "width": 1.5}, **mean},
             ],
         },
-        "cut": {"at": found.run_in_end, "unit": unit},
+        "cut": {"at": at, "unit": unit},
     }
 
 
-def _lines(along: list[float], data: Any) -> Iterator[dict[str, Any]]:
+def _lines(along: list[float], data: xr.Dataset) -> Iterator[Spec]:
     for name, words, look in (
         ("trace_low", "lowest", {"color": GREY, "width": 0.7}),
         ("trace_high", "highest", {"color": GREY, "width": 0.7}),
         ("trace_mean", "mean", {"color": BLUE, "width": 1.5}),
     ):
         yield {"x": along, "y": data[name].values.tolist(), "name": words, "mode": "lines", "line": look}
-
-
-def _upright(at: float, colour: str, words: str) -> dict[str, Any]:
-    line = {"color": colour, "width": 2, "dash": "dash"}
-    ends = {"x0": at, "x1": at, "y0": 0, "y1": 1, "yref": "paper"}
-    return {"type": "line", "line": line, "label": {"text": words, "textangle": -90}, **ends}
-
-
-def _mean(start: float, end: float, friction: float) -> dict[str, Any]:
-    line = {"color": VERMILION, "width": 1.5}
-    return {"type": "line", "line": line, "x0": start, "x1": end, "y0": friction, "y1": friction}

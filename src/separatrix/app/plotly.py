@@ -53,7 +53,10 @@ def spec(*plots: Plot) -> Spec:
             axis |= {"tickvals": [*range(len(names))], "ticktext": names, "automargin": True}
         for one in plot.series:
             if one.kind == "upright":
-                layout["shapes"].append(_upright(one))
+                line = {"color": one.colour, "width": 1.5, "dash": "dash"}
+                label = {"text": _plain(one.name), "textangle": -90, "font": {"size": 11}}
+                label |= {"textposition": "end", "yanchor": "top"}
+                layout["shapes"].append({"type": "line", "line": line, "label": label, **upright(one.x[0])})
             own = {"yaxis": f"y{number}", "legend": f"legend{number}"}
             own |= {"xaxis": f"x{number}"} if own_x else {}
             data += [trace | own for trace in _traces(one, across=bool(plot.y_names))]
@@ -89,8 +92,10 @@ def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
         }
     elif one.kind == "band":
         edge = {"mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "x": one.x}
+        red, green, blue = (int(one.colour[i : i + 2], 16) for i in (1, 3, 5))
+        faint = f"rgba({red},{green},{blue},0.18)"
         yield edge | {"y": one.low, "showlegend": False}
-        yield edge | {"y": one.high, "fill": "tonexty", "name": base["name"], "fillcolor": _faint(one.colour)}
+        yield edge | {"y": one.high, "fill": "tonexty", "name": base["name"], "fillcolor": faint}
     elif one.kind == "line":
         yield base | {"mode": "lines", "line": {"color": one.colour, "width": 2}} | _interval(one, across)
     elif one.kind == "bars":
@@ -101,7 +106,6 @@ def _traces(one: Series, *, across: bool) -> Iterator[Spec]:
 
 
 def _interval(one: Series, across: bool) -> Spec:
-    """Return the bars of the interval of each point."""
     if not one.low or not one.high:
         return {}
     values = one.x if across else one.y
@@ -121,20 +125,6 @@ def _less(a: float | None, b: float | None) -> float | None:
     return None if a is None or b is None else a - b
 
 
-def _upright(one: Series) -> Spec:
-    line = {"color": one.colour, "width": 1.5, "dash": "dash"}
-    label = {
-        "text": _plain(one.name),
-        "textangle": -90,
-        "font": {"size": 11},
-        "textposition": "end",
-        "yanchor": "top",
-    }
-    at = {"x0": one.x[0], "x1": one.x[0], "y0": 0, "y1": 1, "yref": "paper"}
-    return {"type": "line", "line": line, "label": label, **at}
-
-
-def _faint(colour: str) -> str:
-    """Return a colour of the palette, mostly transparent."""
-    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
-    return f"rgba({red},{green},{blue},0.18)"
+def upright(at: object) -> Spec:
+    """Return the ends of a line over the whole height of a figure."""
+    return {"x0": at, "x1": at, "y0": 0, "y1": 1, "yref": "paper"}

@@ -1,33 +1,33 @@
-"""Routes of the answers: tables, figures to hover over, files, the moving cage, a point of a map."""
+"""Routes of the answers: tables, figures, files, the moving cage, a point of a map, report, comparison."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from markupsafe import Markup
 
-from separatrix.app.files import ANSWER_SUFFIXES
-from separatrix.app.motion import motion
-from separatrix.app.page import Page, form_of
+from separatrix.app import draft
+from separatrix.app.page import ANSWER_SUFFIXES, Form, Page
 from separatrix.app.plotly import spec
+from separatrix.app.worker import REPORT
+from separatrix.comparing.pair import compared
+from separatrix.comparing.saved import VERBS, read_answers
+from separatrix.comparing.shown import in_words, input_words, pair_words, result_words, shown_rows
 from separatrix.errors import InputError
-from separatrix.figures.envelope import has_envelope
-from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
+from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
+from separatrix.figures.scene import scene
 from separatrix.figures.space import is_in_space
-from separatrix.figures.space_page import view as space_view
-from separatrix.figures.style import study_of
-from separatrix.limits.map_parameters import KICK, RESTITUTION
+from separatrix.figures.space_film import view as space_view
+from separatrix.figures.style import OUTCOMES, study_of
+from separatrix.limits.map_records import KICK, RESTITUTION
 from separatrix.questions import verb_named
-from separatrix.units import format_number, printable, shown
-
-Form = Annotated[dict[str, str], Depends(form_of)]
+from separatrix.units import Array, format_number, printable, shown
 
 PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
     "traction": {"curves": traction_plot},
@@ -50,12 +50,15 @@ FIGURES_OF = {
 }
 """Verb -> how the names of its figures begin, if not as the verb."""
 
-SHOWN = (".png",)
 POINT = "points"
 """Folder of the runs at points of a map, in that of the answers."""
 
 SHOWN_INLINE = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".txt": "text/plain"}
 """Files that the browser shows; all others it keeps."""
+
+MOST_MOMENTS = 1500
+DIGITS = 5
+"""Of the moving cage: moments, spread evenly, and significant digits of a place in the picture."""
 
 
 def routes(page: Page) -> APIRouter:
@@ -64,18 +67,19 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/answer/{verb}/{name:path}", response_class=HTMLResponse)
     def answer(verb: str, name: str, environment: int = 0) -> Response:
-        found = page.document(name, verb_named(verb).name)
+        found = page.document(page.folder.answers(name), verb_named(verb).name)
         if found is None:
             raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
         place = page.folder.answers(name)
+        text = place / f"{verb}.txt"
         return page.html(
             "answer.html",
             name=name,
             verb=verb,
             found=found,
-            text=_text(place / f"{verb}.txt"),
+            text=text.read_text(encoding="utf-8") if text.is_file() else "",
             plots=_plots(page.dataset(place / f"{verb}.nc") if verb == "sweep" else None, verb),
-            pictures=_files(place, verb, SHOWN),
+            pictures=_files(place, verb, (".png",)),
             files=_files(place, verb, ANSWER_SUFFIXES),
             folder=page.folder.name(place),
             environment=environment,
@@ -100,21 +104,18 @@ def routes(page: Page) -> APIRouter:
         if not path.is_file() or path.suffix not in ANSWER_SUFFIXES:
             raise InputError(shown(name), "is not a file of an answer")
         kind = SHOWN_INLINE.get(path.suffix)
-        if kind is None:
-            return FileResponse(path, filename=path.name)
-        return FileResponse(path, media_type=kind)
+        return FileResponse(path, media_type=kind, filename=None if kind else path.name)
 
     @router.get("/cage/{name:path}", response_class=HTMLResponse)
     def cage(name: str, point: str = "") -> Response:
         data = _run(page, name, point)
         view = Markup(space_view(data)) if is_in_space(data) else None  # noqa: S704 - its texts are escaped
         found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}
-        words = str(data.attrs.get("title", name))
         return page.html(
             "cage.html",
             name=name,
             point=point,
-            title=words,
+            title=str(data.attrs.get("title", name)),
             found=found,
             view=view,
             answers=page.answered(name),
@@ -125,7 +126,7 @@ def routes(page: Page) -> APIRouter:
         data = _run(page, name, point)
         if is_in_space(data):
             raise InputError(name, "moves in space", cure="The page of its cage has its data.")
-        return JSONResponse(motion(data))
+        return JSONResponse(_motion(data))
 
     @router.post("/point/{name:path}", response_class=HTMLResponse)
     def point(name: str, sent: Form) -> Response:
@@ -136,13 +137,40 @@ def routes(page: Page) -> APIRouter:
         values = {str(data[f"{axis}_parameter"].values): _nearest(data, axis, sent) for axis in "xy"}
         folder = "_".join(f"{key.rpartition('.')[2]}-{format_number(v, 4)}" for key, v in values.items())
         place = page.folder.answers(name) / POINT / printable(folder, 100).replace("/", "-")
-        question: dict[str, Any] = {"kick": values.pop(KICK, float(data["kick"])), **_models(data)}
+        cage = study_of(data).get("cage", {})  # simulated with the models of motion and ball of its map
+        question: dict[str, object]
+        question = {name: str(cage[name]["value"]) for name in ("motion", "ball") if name in cage}
+        question["kick"] = values.pop(KICK, float(data["kick"]))
         if RESTITUTION in values:
             question["restitution_factor"] = values.pop(RESTITUTION)
         page.jobs.ask(
             "simulate", path, place, name=name, title=f"simulate {folder}", question=question, values=values
         )
         return page.html("jobs.html", jobs=page.jobs.all())
+
+    @router.post("/report/{name:path}", response_class=HTMLResponse)
+    def report(name: str) -> Response:
+        path = page.folder.study(name)
+        draft.save_to_run(path, page.folder.root)
+        page.jobs.ask(REPORT, path, page.folder.answers(name), name=name)
+        return page.html("jobs.html", jobs=page.jobs.all())
+
+    @router.get("/report/{name:path}", response_class=HTMLResponse)
+    def written(name: str) -> Response:
+        place = page.folder.answers(name)
+        files = [file for file in ("report.html", "report.pdf") if (place / file).is_file()]
+        if not files:
+            cure = "Make it on the page of the study."
+            raise InputError(f"{name}: report", "is not written yet", cure=cure)
+        return page.html("report.html", name=name, files=files, folder=page.folder.name(place))
+
+    @router.get("/compare", response_class=HTMLResponse)
+    def compare(first: str = "", second: str = "", verb: str = "") -> Response:
+        names = [name for name in page.folder.studies() if page.answered(name)]
+        found: dict[str, object] = {"verbs": [], "verb": verb, "comparison": None}
+        if first and second:
+            found = _compared(page.folder.answers(first), page.folder.answers(second), verb)
+        return page.html("compare.html", names=names, first=first, second=second, **found)
 
     return router
 
@@ -156,12 +184,7 @@ def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
     return [*PLOTS.get(verb, {})]
 
 
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8") if path.is_file() else ""
-
-
 def _files(place: Path, verb: str, suffixes: tuple[str, ...]) -> list[str]:
-    """Return the names of the files of an answer."""
     if not place.is_dir():
         return []
     stems = FIGURES_OF.get(verb, (f"{verb}-",))
@@ -183,12 +206,6 @@ def _run(page: Page, name: str, point: str) -> xr.Dataset:
     return data
 
 
-def _models(data: xr.Dataset) -> dict[str, str]:
-    """Return the models of motion and ball that a map was made with: its points are simulated with them."""
-    cage = study_of(data).get("cage", {})
-    return {name: str(cage[name]["value"]) for name in ("motion", "ball") if name in cage}
-
-
 def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:
     """Return the value of the map's axis next to the place that was clicked, in SI."""
     from separatrix.figures.map import axis_values
@@ -198,3 +215,66 @@ def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:
     except ValueError:
         raise InputError(axis, "must be a number") from None
     return float(data[axis].values[int(np.argmin(np.abs(axis_values(data, axis) - at)))])
+
+
+def _motion(data: xr.Dataset) -> dict[str, object]:
+    """Return sizes and moments of a simulated run in the plane, from its dataset.
+
+    Lengths are shares of the pitch radius, as movements are drawn: `enlarged` times too large.
+    """
+    count = data.sizes["time"]
+    pick = np.unique(np.linspace(0, count - 1, min(MOST_MOMENTS, count)).round().astype(int))
+    seen = scene(data, pick)
+    largest = float(max(seen.force.max(initial=0.0), seen.land_force.max(initial=0.0)))
+    return {
+        "time": _digits(data["time"].values[pick]),
+        "radius": 1.0,
+        "ball": seen.ball / seen.radius,
+        "half_width": seen.half_width / seen.radius,
+        "angles": _digits(seen.angles),
+        "walls": _digits(seen.walls),
+        "land": None if not np.isfinite(seen.land) else seen.land / seen.radius,
+        "offset": _digits(seen.offset / seen.radius),
+        "turn": _digits(seen.turn),
+        "lead": _digits(seen.lead),
+        "force": _digits(np.abs(seen.force)),
+        "land_force": _digits(np.abs(seen.land_force)),
+        "largest_force": largest,
+        "true_offset": _digits(np.hypot(*data["position"].values[pick].T)),
+        "enlarged": seen.enlarged,
+        "outcome": OUTCOMES.get(str(data["outcome"].values), str(data["outcome"].values)),
+    }
+
+
+def _digits(values: Array) -> object:
+    """Return numbers with few digits: the picture has fewer."""
+    scale = 10.0 ** (DIGITS - 1 - np.floor(np.log10(np.maximum(np.abs(values), 1e-12))))
+    found: object = (np.round(values * scale) / scale).tolist()
+    return found
+
+
+def _compared(first: Path, second: Path, verb: str) -> dict[str, object]:
+    """Return the comparison of two folders of answers, by one verb that both have."""
+    for place in (first, second):
+        if not place.is_dir():
+            raise InputError(place.name, "has no answers yet", cure="Run a verb of it.")
+    pair = [read_answers(place) for place in (first, second)]
+    shared = [one for one in VERBS if all(one in found for found in pair)]
+    if not shared:
+        names = f"{first.name} and {second.name}"
+        raise InputError(names, "have no answer of one verb", cure="Run one of both.")
+    chosen = verb if verb in shared else shared[0]
+    found = compared(pair[0][chosen], pair[1][chosen])
+    own = found.environment or ""
+    return {
+        "verbs": shared,
+        "verb": chosen,
+        "comparison": found,
+        "text": in_words(found, full=True),
+        "verdicts": [(row.place, row.name, *pair_words(row)) for row in found.verdicts],
+        "rows": [result_words(row, own) for row in shown_rows(found)],
+        "inputs": [
+            (at.key, *(input_words(one, at.unit) for one in (at.first, at.second)))
+            for at in found.differences
+        ],
+    }

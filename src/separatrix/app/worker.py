@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import _thread
-import os
 import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from pathlib import Path
 from queue import SimpleQueue
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.errors import InputError, SeparatrixError
 from separatrix.units import Second
 
 if TYPE_CHECKING:
-    from separatrix.questions import Verb
+    from separatrix.questions import Computed, Verb
     from separatrix.study import Study
 
 REPORT = "report"
@@ -31,6 +31,10 @@ INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on."
 
 EVERY = 0.2
 """Least time between two reports of progress [s]."""
+
+
+Send = Callable[..., None]
+"""Sends the page what has changed of a job, by the names of `separatrix.app.jobs.Job`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,38 +50,26 @@ class Task:
     study: Path
     folder: Path
     root: Path
-    question: Mapping[str, Any] = field(default_factory=dict)
+    question: Mapping[str, object] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Report:
-    """How far a task is: the fields that are not None have changed."""
-
-    number: int
-    state: str | None = None
-    done: int | None = None
-    total: int | None = None
-    expected: float | None = None
-    message: str | None = None
-
-
 class Reporter:
-    """Tells the page how far a long job is, and what it will take."""
+    """Reports how far a long job is, and what time it will take."""
 
-    def __init__(self, number: int, send: Callable[[Report], None]) -> None:
-        self.number, self.send, self._last = number, send, 0.0
+    def __init__(self, send: Send) -> None:
+        self.send, self._last = send, 0.0
 
     def __call__(self, done: int, total: int) -> None:
         """Report the points done, now and then and at the end."""
         now = time.monotonic()
         if done == total or now - self._last > EVERY:
             self._last = now
-            self.send(Report(number=self.number, done=done, total=total))
+            self.send(done=done, total=total)
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:  # noqa: ARG002
         """Report the time that the work is expected to take."""
-        self.send(Report(number=self.number, expected=float(estimate())))
+        self.send(expected=float(estimate()))
 
 
 def work(pipe: Connection) -> None:
@@ -106,9 +98,9 @@ def work(pipe: Connection) -> None:
 
     threading.Thread(target=listen, daemon=True).start()
 
-    def send(report: Report) -> None:
+    def send(number: int, **changes: object) -> None:
         try:
-            pipe.send(report)
+            pipe.send((number, changes))
         except OSError:  # the page is gone; the task ends by itself
             in_hand.clear()
 
@@ -117,15 +109,14 @@ def work(pipe: Connection) -> None:
             task = waiting.get()
             if task is None:
                 return
-            _report_end(task, in_hand, send)
+            _compute(task, in_hand, partial(send, task.number))
         except KeyboardInterrupt:  # a cancel of a task that had just ended
             in_hand.clear()
 
 
-def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) -> None:
-    """Compute a task and report how it ended."""
+def _compute(task: Task, in_hand: list[int], send: Send) -> None:
     in_hand.append(task.number)
-    send(Report(number=task.number, state="running"))
+    send(state="running")
     try:
         state, message = _answered(task, send)
     except KeyboardInterrupt:
@@ -134,91 +125,64 @@ def _report_end(task: Task, in_hand: list[int], send: Callable[[Report], None]) 
         problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
         state, message = "refused", "\n".join(str(one) for one in problems)
     in_hand.clear()
-    end = Report(number=task.number, state=state, message=message)
     try:
-        send(end)
-    except KeyboardInterrupt:  # as above; the page must hear the end
-        send(end)
+        send(state=state, message=message)
+    except KeyboardInterrupt:  # as above; the page must receive the end
+        send(state=state, message=message)
 
 
-def _answered(task: Task, send: Callable[[Report], None]) -> tuple[str, str]:
+def _answered(task: Task, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
-    from separatrix.limits.map_parameters import varied
-    from separatrix.notes import noted_warnings
-    from separatrix.questions import verb_named
-    from separatrix.regular_file import reading_only_in
-    from separatrix.study_file import read_study, require
+    from separatrix.input_files import reading_only_in
+    from separatrix.limits.map_records import varied
+    from separatrix.messages import grouped, noted_warnings
+    from separatrix.present import document
+    from separatrix.questions import asked_study, computed, verb_named
+    from separatrix.saving import save_answer
+    from separatrix.study_file import read_study
 
     question = dict(task.question)
-    models = {name: question.pop(name) for name in ("motion", "ball") if question.get(name)}
+    models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
     with noted_warnings() as notes, reading_only_in(task.root):
-        study = read_study(task.study, models)
-        if task.verb == REPORT:
-            return _reported(task, study, notes, send)
-        verb = verb_named(task.verb)
-        require(study, verb.name, *verb.needs)
+        verb = None if task.verb == REPORT else verb_named(task.verb)
+        study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
         study = varied(study, task.values) if task.values else study
-        return _written(verb, study, question, notes, task, send)
+        task.folder.mkdir(parents=True, exist_ok=True)
 
+        def compute(one: Verb) -> Computed:
+            progress = Reporter(send)
+            return computed(one, study, question, folder=task.folder, progress=progress)
 
-def _written(
-    verb: Verb,
-    study: Study,
-    question: Mapping[str, Any],
-    notes: list[str],
-    task: Task,
-    send: Callable[[Report], None],
-) -> tuple[str, str]:
-    """Compute and write the answer of a verb."""
-    from separatrix.notes import grouped
-    from separatrix.present import document
-    from separatrix.questions import computed
-    from separatrix.saving import save_answer
-
-    task.folder.mkdir(parents=True, exist_ok=True)
-    progress = Reporter(task.number, send)
-    found = computed(verb, study, question, jobs=_threads(), folder=task.folder, progress=progress)
-    send(Report(number=task.number, message="Drawing the figures and writing the files."))
-    answer = document(verb.name, found.record, found.study, grouped(notes))
-    save_answer(task.folder, found.record, found.study, answer)
-    if found.is_complete:
+        if verb is None:
+            return _reported(task, study, notes, compute, send)
+        found = compute(verb)
+        send(message="Drawing the figures and writing the files.")
+        answer = document(verb.name, found.record, found.study, grouped(notes))
+        save_answer(task.folder, found.record, found.study, answer)
+        if not found.is_complete:
+            return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken
-    return INTERRUPTED
 
 
-def _reported(task: Task, study: Study, notes: list[str], send: Callable[[Report], None]) -> tuple[str, str]:
+def _reported(
+    task: Task,
+    study: Study,
+    notes: list[str],
+    compute: Callable[[Verb], Computed],
+    send: Send,
+) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.notes import grouped, noted_warnings
-    from separatrix.questions import computed, verb_named
-    from separatrix.reporting.content import report_of
-    from separatrix.reporting.kept import Kept, answers_of, keep
-    from separatrix.staged import staged
+    from separatrix.reporting.content import answers_of, keeping, report_of
+    from separatrix.reporting.formats import write
 
-    def compute(verb: str) -> Kept:
-        send(Report(number=task.number, message=f"Computing {verb} for the report."))
-        progress = Reporter(task.number, send)
-        with noted_warnings() as own:
-            made = computed(
-                verb_named(verb), study, {}, jobs=_threads(), folder=task.folder, progress=progress
-            )
-        return keep(verb, made, [*notes, *grouped(own)], task.folder)
+    def announced(verb: Verb) -> Computed:
+        send(message=f"Computing {verb.name} for the report.")
+        return compute(verb)
 
-    task.folder.mkdir(parents=True, exist_ok=True)
-    found, missing, complete = answers_of(study, task.folder, compute)
-    if not complete:
+    found, missing, is_complete = answers_of(study, task.folder, keeping(announced, notes, task.folder))
+    if not is_complete:
         return INTERRUPTED
-    send(Report(number=task.number, message="Writing the report."))
-    made = report_of(found, missing)
-    contents = {"report.html": made.html().encode()}
-    if find_spec("typst") is not None:
-        contents["report.pdf"] = made.pdf()
-    with staged(task.folder) as stage:
-        for name, content in contents.items():
-            (stage / name).write_bytes(content)
+    send(message="Writing the report.")
+    write(report_of(found, missing), task.folder, with_pdf=find_spec("typst") is not None)
     return "finished", ""
-
-
-def _threads() -> int:
-    """Return the threads of a task: one for each processor that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

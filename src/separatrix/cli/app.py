@@ -1,26 +1,26 @@
-"""The commands: one entry of the table of verbs becomes one command with its options."""
+"""The command line: its commands with their help, `new` and `app` among them, and the form of a refusal."""
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Sequence
+import contextlib
+import json as plain_json
+import webbrowser
+from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from separatrix.cli import comparing, materials, reproducing
-from separatrix.cli import contact as one_contact
-from separatrix.cli import page as the_page
 from separatrix.cli import report as reporting
-from separatrix.cli.console import Interruptible, answer, complain, interrupted
-from separatrix.cli.run import Options, check_animation, make_study, run
-from separatrix.cli.tribometer import TribometerOptions, tribometer
-from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, named, threads
+from separatrix.cli import saved_answers, without_bearing
+from separatrix.cli.console import answer, complain
+from separatrix.cli.verbs import ANSWERED, Json, command_of, whole_number
 from separatrix.errors import InputError, SeparatrixError
-from separatrix.questions import VERBS, Verb
+from separatrix.questions import VERBS
+from separatrix.staged import refuse_existing, write_new
 
-ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
+FAULT, WRONG_INPUT = 1, 2
 
 HELP = """Will the cage of this dry-lubricated ball bearing run stably, and which cage material is best?
 
@@ -28,139 +28,15 @@ STUDY is the path of a study file, or the name of a shipped study. Begin with:
 
 separatrix rank cryogenic-turbopump
 """
-
-
-def _command(verb: Verb) -> Callable[..., int]:
-    """Return the function behind the command of one verb; its signature is made from the table."""
-
-    def command(**given: Any) -> int:
-        question = {name: given[name] for name in verb.question}
-        animate = question.pop("animate", None)
-        if animate is not None:
-            check_animation(animate, writes=not given["json"] or given["out"] is not None)
-        if "vary" in question:
-            question["vary"] = tuple(question["vary"] or ())
-            question["cases"] = named(question["cases"], "--cases", "a file")
-        named(given.get("cluster"), "--cluster", "a scheduler, or local:N")
-        options = Options(
-            json=given["json"],
-            out=folder(given["out"]),
-            quiet=given["quiet"],
-            jobs=threads(given["jobs"]),
-            full=given.get("full", False),
-            cluster=given.get("cluster"),
-            animate=animate,
-            models={name: given[name] for name in ("motion", "ball") if given.get(name) is not None},
-            question=question,
-        )
-        kept = verb.keeps_runs and not (options.json and options.out is None)
-        ended = "runs that were finished are kept." if kept else "no file was written."
-        return _interruptible(lambda: run(verb, given["study"], options), ended)
-
-    named_only = inspect.Parameter.KEYWORD_ONLY
-    command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-        [
-            inspect.Parameter(
-                name,
-                named_only,
-                annotation=kind,
-                default=inspect.Parameter.empty if default is ... else default,
-            )
-            for name, (kind, default) in ((one, OPTIONS[one]) for one in verb.options)
-        ]
-    )
-    return command
-
-
-def _interruptible(work: Callable[[], int], ended: str) -> int:
-    """Do the work and return its exit status; here an interrupt ends it, for typer would swallow it."""
-    try:
-        with Interruptible():
-            return work()
-    except KeyboardInterrupt:
-        return interrupted(ended)
-
-
-def _compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or file of an answer.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same verb.")],
-    full: Annotated[bool, typer.Option("--full", help=FULL_HELP)] = False,
-    json: Json = False,
-    out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No effect: there is no progress bar.")] = False,  # noqa: ARG001
-) -> int:
-    return comparing.compare(first, second, folder(out), as_json=json, full=full)
-
-
-def _reproduce(
-    path: Annotated[Path, typer.Argument(metavar="RESULT", help=reproducing.PATH_HELP)],
-    json: Json = False,
-    quiet: Quiet = False,
-    jobs: Jobs = None,
-) -> int:
-    def work() -> int:
-        return reproducing.reproduce(path, as_json=json, quiet=quiet, jobs=threads(jobs))
-
-    return _interruptible(work, "no answer is compared.")
-
-
-def _report(
-    asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=reporting.ASKED_HELP)],
-    second: Annotated[
-        str | None, typer.Argument(metavar="[STUDY|FOLDER]", help=reporting.SECOND_HELP, show_default=False)
-    ] = None,
-    pdf: Annotated[bool, typer.Option("--pdf", help=reporting.PDF_HELP)] = False,
-    json: Json = False,
-    out: Annotated[str | None, typer.Option(metavar="DIR", help=reporting.OUT_HELP)] = None,
-    quiet: Quiet = False,
-    jobs: Jobs = None,
-) -> int:
-    options = reporting.ReportOptions(out=folder(out), pdf=pdf, json=json, quiet=quiet, jobs=threads(jobs))
-    return _interruptible(lambda: reporting.report(asked, second, options), "no report was written.")
-
-
-def _contact(
-    path: Annotated[Path, typer.Argument(metavar="FILE", help=one_contact.FILE_HELP)],
-    json: Json = False,
-    out: Annotated[str | None, typer.Option(metavar="DIR", help=one_contact.OUT_HELP)] = None,
-    quiet: Quiet = False,
-) -> int:
-    def work() -> int:
-        return one_contact.contact(path, folder(out), as_json=json, quiet=quiet)
-
-    return _interruptible(work, "no file was written.")
-
-
-MAP_HELP = "Column map (TOML) for what the logs do not state."
-PLOTS_HELP = "Folder of a page for each test [default: beside the friction file]."
-RUN_IN_HELP = 'Where running-in ends, for instance "200 m" [default: found].'
-FILES_HELP = "Raw tribometer logs, or folders of them; the format is recognised."
-FRICTION_HELP = "Friction file to write, say friction.toml [default: none]."
-JOIN_HELP = "The logs of one folder are strokes or parts of one test."
-
-
-def _tribometer(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES...", help=FILES_HELP)],
-    out: Annotated[str | None, typer.Option(metavar="FILE", help=FRICTION_HELP)] = None,
-    column_map: Annotated[Path | None, typer.Option("--map", metavar="FILE", help=MAP_HELP)] = None,
-    plots: Annotated[str | None, typer.Option(metavar="DIR", help=PLOTS_HELP)] = None,
-    run_in: Annotated[str | None, typer.Option(metavar="END", help=RUN_IN_HELP)] = None,
-    join: Annotated[bool, typer.Option("--join", help=JOIN_HELP)] = False,
-    json: Json = False,
-    quiet: Quiet = False,
-    jobs: Jobs = None,
-) -> int:
-    asked = TribometerOptions(
-        out=named(out, "--out", "a file"),
-        map=column_map,
-        plots=named(plots, "--plots", "a folder"),
-        run_in=run_in,
-        join=join,
-        json=json,
-        quiet=quiet,
-        jobs=threads(jobs),
-    )
-    return _interruptible(lambda: tribometer(files, asked), "no friction file was written.")
+PAGE = "Open the page: edit, run and look at the studies of a folder in a browser."
+PAGE_EPILOG = (
+    "It is served on 127.0.0.1 only, to who has the link that is printed; nothing leaves this machine. Jobs "
+    "keep their finished runs: a page that is ended in the middle of one goes on when it is asked again. "
+    'Needs the extra app: pip install "separatrix[app]".'
+)
+FOLDER_HELP = "Where the studies are [default: here]."
+NEEDED = ("fastapi", "uvicorn", "plotly", "tomlkit")
+MOST_PORT = 65535
 
 
 def _new(
@@ -169,9 +45,54 @@ def _new(
         bool, typer.Option("--excel", help="A workbook, .xlsx, in place of a text file.")
     ] = False,
     json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
 ) -> int:
-    return make_study(path, excel=excel, as_json=json, quiet=quiet)
+    from separatrix.study_file.document import WORKBOOK_ENDINGS
+
+    ending = path.suffix.casefold()
+    if path.is_dir():
+        cure = f'Name a file: "{path / ("my-bearing.xlsx" if excel else "my-bearing.toml")}".'
+        raise InputError(str(path), "is a folder", cure=cure)
+    if excel and ending != ".xlsx":
+        better = path.with_suffix(".xlsx") if ending in WORKBOOK_ENDINGS else f"{path}.xlsx"
+        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{better}".')
+    if ending in WORKBOOK_ENDINGS and not excel:
+        cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
+        raise InputError(str(path), "is the name of a workbook", cure=cure)
+    refuse_existing(path)
+    from separatrix.study_file import template, templates
+
+    write_new(path, templates.template_workbook() if excel else template().encode())
+    if json:
+        answer(plain_json.dumps({"path": str(path)}) + "\n")
+    elif not quiet:
+        answer(f"{path} is written. Fill it in, then: separatrix check {path}\n")
+    return ANSWERED
+
+
+def _page(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help=FOLDER_HELP, show_default=False)] = Path(
+        "."
+    ),
+    port: Annotated[int | None, whole_number("Port to listen on [default: any that is free].")] = None,
+    open_it: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
+) -> int:
+    if not folder.is_dir():
+        raise InputError(str(folder), "is not a folder", cure="Name the folder of your studies.")
+    if port is not None and not 1 <= port <= MOST_PORT:
+        raise InputError("--port", f"must lie between 1 and {MOST_PORT}", got=str(port))
+    if lacking := [name for name in NEEDED if find_spec(name) is None]:
+        cure = 'Install the extra: pip install "separatrix[app]".'
+        raise InputError("separatrix app", f"needs {', '.join(lacking)}", cure=cure)
+    from separatrix.app.server import Server
+
+    server = Server(folder.resolve(), port=port or 0)
+    answer(f"The page of {folder.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
+    if open_it:
+        webbrowser.open(server.link)
+    with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
+        server.serve_until_ended()
+    return ANSWERED
 
 
 def _application() -> typer.Typer:
@@ -180,19 +101,22 @@ def _application() -> typer.Typer:
     app.callback(invoke_without_command=True, help=HELP)(_start)
     app.command("new", help="Write a commented study file to fill in.")(_new)
     for verb in VERBS:
-        app.command(verb.name, help=verb.help, epilog=verb.epilog)(_command(verb))
-    app.command(
-        "tribometer",
-        help="Friction with its scatter from raw logs of tests.",
-        epilog="What is read is shown before it is trusted: without --out nothing is written. A file that "
-        "exists is never overwritten.",
-    )(_tribometer)
-    app.command("contact", help=one_contact.HELP, epilog=one_contact.EPILOG)(_contact)
-    app.command("compare", help=comparing.HELP, epilog=comparing.EPILOG)(_compare)
-    app.command("reproduce", help=reproducing.HELP, epilog=reproducing.EPILOG)(_reproduce)
-    app.command("report", help=reporting.HELP, epilog=reporting.EPILOG)(_report)
-    app.command("app", help=the_page.HELP, epilog=the_page.EPILOG)(the_page.page)
-    app.add_typer(materials.application(), name="materials", help=materials.HELP)
+        app.command(verb.name, help=verb.help, epilog=verb.epilog)(command_of(verb))
+    for name, command, text, epilog in (
+        (
+            "tribometer",
+            without_bearing.tribometer,
+            without_bearing.TRIBOMETER,
+            without_bearing.TRIBOMETER_EPILOG,
+        ),
+        ("contact", without_bearing.contact, without_bearing.CONTACT, without_bearing.CONTACT_EPILOG),
+        ("compare", saved_answers.compare, saved_answers.COMPARE, saved_answers.COMPARE_EPILOG),
+        ("reproduce", saved_answers.reproduce, saved_answers.REPRODUCE, saved_answers.REPRODUCE_EPILOG),
+        ("report", reporting.report, reporting.HELP, reporting.EPILOG),
+        ("app", _page, PAGE, PAGE_EPILOG),
+    ):
+        app.command(name, help=text, epilog=epilog)(command)
+    app.add_typer(without_bearing.materials_application(), name="materials", help=without_bearing.MATERIALS)
     return app
 
 
@@ -212,7 +136,7 @@ def _start(
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
-    """Run the command line; return its exit status, as `separatrix.cli.main` says."""
+    """Run the command line; return its exit status, that of `separatrix.cli.main`."""
     command = typer.main.get_command(_application())
     try:
         status = command.main(arguments, prog_name="separatrix", standalone_mode=False)

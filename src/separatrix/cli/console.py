@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import _thread
 import contextlib
+import functools
+import json
 import math
 import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from types import TracebackType
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, ParamSpec, TextIO
 
 from separatrix.errors import InputError
-from separatrix.plain_text import harmless, one_line
+from separatrix.messages import harmless, one_line
 
 if TYPE_CHECKING:
     from separatrix.units import Second
+
+Given = ParamSpec("Given")
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
@@ -25,7 +29,7 @@ INTERRUPTED = 130
 LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
 
-WORTH_SAYING: Second = 5.0
+WORTH_PRINTING: Second = 5.0
 """An expected time below this is not printed."""
 
 FIRST_PART = 0.05
@@ -42,7 +46,7 @@ def complain(message: str) -> None:
 
 
 def interrupted(what: str) -> int:
-    """Say in one line that the work was interrupted, and return the exit status for it."""
+    """Report in one line that the work was interrupted, and return the exit status for it."""
     complain(f"interrupted; {what}")
     return INTERRUPTED
 
@@ -77,6 +81,23 @@ class Interruptible:
             raise KeyboardInterrupt from error
 
 
+def interruptible(ended: str) -> Callable[[Callable[Given, int]], Callable[Given, int]]:
+    """Let an interrupt end a command with one line, `ended`: typer would swallow the interrupt."""
+
+    def decorate(command: Callable[Given, int]) -> Callable[Given, int]:
+        @functools.wraps(command)
+        def decorated(*args: Given.args, **options: Given.kwargs) -> int:
+            try:
+                with Interruptible():
+                    return command(*args, **options)
+            except KeyboardInterrupt:
+                return interrupted(ended)
+
+        return decorated
+
+    return decorate
+
+
 def write(stream: TextIO | None, text: str) -> None:
     """Write harmless text to a stream in whatever encoding it has; None (a closed stream) swallows it."""
     if stream is None:
@@ -91,12 +112,15 @@ def answer(text: str) -> None:
     try:
         write(sys.stdout, text)
     except OSError as error:
-        with contextlib.suppress(
-            OSError, ValueError
-        ):  # so that the interpreter's last flush has no complaint
+        with contextlib.suppress(OSError, ValueError):  # else the interpreter's last flush would complain
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):
             raise InputError("Standard output", f"cannot be written ({error.strerror or error})") from error
+
+
+def answer_json(document: Mapping[str, object]) -> None:
+    """Write a document to standard output."""
+    answer(json.dumps(document, indent=1, allow_nan=False) + "\n")
 
 
 class Life:
@@ -112,7 +136,7 @@ class Life:
         """Take in how far the work is; without an estimate beforehand its first part gives one."""
         self.done, self.total = done, total
         passed = time.monotonic() - self.begun
-        if not self.expected and passed > WORTH_SAYING and FIRST_PART * total <= done < total:
+        if not self.expected and passed > WORTH_PRINTING and FIRST_PART * total <= done < total:
             self.expected = True
             complain(f"{self.title} takes about {in_words(passed * total / done)}.")
 
@@ -120,7 +144,7 @@ class Life:
         """Print what the work will take, unless that is too short to matter."""
         seconds, self.expected = estimate(), True
         self.started = time.monotonic()  # what was compiled for the estimate is not part of a step
-        if seconds >= WORTH_SAYING:
+        if seconds >= WORTH_PRINTING:
             complain(f"{self.title} takes {'at most ' if at_most else ''}about {in_words(seconds)}.")
 
     def line(self) -> str:
@@ -135,10 +159,10 @@ class Life:
 
 
 class Silent(Life):
-    """Says nothing, as `--quiet` asks."""
+    """Prints nothing, as `--quiet` requires."""
 
     def __call__(self, done: int, total: int) -> None:
-        """Tell nobody."""
+        """Print nothing."""
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Estimate nothing."""
@@ -146,7 +170,7 @@ class Silent(Life):
 
 @contextlib.contextmanager
 def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
-    """Yield what the work tells how far it is: a bar on a terminal that goes away at the end, else lines."""
+    """Yield what shows how far the work is: on a terminal a bar that disappears at the end, else lines."""
     if quiet or sys.stderr is None:
         yield Silent(title)
         return
@@ -170,7 +194,7 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
 
 @contextlib.contextmanager
 def _lines(title: str) -> Iterator[Life]:
-    """A plain line now and then, by a thread of its own: the work may be silent for long."""
+    """Print a line now and then, from a separate thread: the work may report nothing for long."""
     life, over = Life(title), threading.Event()
 
     def speak() -> None:
@@ -187,7 +211,7 @@ def _lines(title: str) -> Iterator[Life]:
 
 
 def in_words(seconds: Second) -> str:
-    """Return a time as it is said: 40 s, 3 min, 1.5 h."""
+    """Return a time in a unit that suits it: 40 s, 3 min, 1.5 h."""
     if seconds < 99.5:
         return f"{float(f'{seconds:.2g}'):g} s"
     minutes = float(f"{seconds / 60.0:.2g}")

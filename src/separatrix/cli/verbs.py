@@ -1,18 +1,30 @@
-"""The options of the commands, and the reading of those that name threads, folders and files."""
+"""The command of each verb of a study, with its options: read, compute, print, write."""
 
 from __future__ import annotations
 
-import os
+import contextlib
+import inspect
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from separatrix.cli.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
 from separatrix.errors import InputError
-from separatrix.explore.axes import DEFAULT_X, DEFAULT_Y
+from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y
+from separatrix.ledger import NAME as LEDGER
+from separatrix.messages import grouped, noted_warnings
+from separatrix.questions import Computed, Verb, asked_study, computed, processors
+from separatrix.staged import writable_folder
 from separatrix.units import shown
 
+if TYPE_CHECKING:
+    from separatrix.study import Study
+
+ANSWERED = 0
 MOST_JOBS = 1024
+ANIMATIONS = ("gif", "mp4")
 AXIS = "LOW..HIGH[unit][:N][:log]"
 
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
@@ -29,10 +41,12 @@ def whole(option: typer.CallbackParam, value: str | None) -> int | None:
         raise InputError(option.opts[0], "must be a whole number", shown(value), cure) from None
 
 
-WHOLE: dict[str, Any] = {"metavar": "N", "parser": str, "callback": whole}
-"""Of every option that takes a whole number: typer leaves it as text, `whole` reads it."""
+def whole_number(text: str) -> Any:
+    """Return an option that takes a whole number: typer leaves it as text, `whole` reads it."""
+    return typer.Option(metavar="N", parser=str, callback=whole, help=text)
 
-Jobs = Annotated[int | None, typer.Option(**WHOLE, help="Threads [default: one for each processor].")]
+
+Jobs = Annotated[int | None, whole_number("Threads [default: one for each processor].")]
 
 ANIMATE_HELP = "Also write an animation."
 FULL_HELP = "The whole answer, not only what fits a screen."
@@ -42,26 +56,29 @@ MARGINS_HELP = "Compute threshold and margin of every case, too."
 ADAPTIVE_HELP = "Run only points near a change of the answer; infer the others, and check some of them."
 CASES_HELP = "CSV: parameters in its first row, then a case a row; with time_share a duty cycle."
 CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
-MOTION_HELP = "Where the cage moves [default: as the study says, or in the plane]."
-BALL_HELP = "What a ball does that is pushed [default: as the study says, or a damper]."
+MOTION_HELP = "Where the cage moves [default: as in the study, or in the plane]."
+BALL_HELP = "What a ball does that is pushed [default: as in the study, or a damper]."
 KICK_HELP = 'For instance "0.5 m/s" [default: the reference kick of the study].'
 ETA_HELP = "Damp the races so that eta is this, as at a point of a map [default: that of the study]."
 STUDY_HELP = "A study file or workbook, or the name of a shipped study."
 
-OPTIONS: dict[str, tuple[Any, Any]] = {
+OPTIONS: dict[str, tuple[object, object]] = {
     "study": (Annotated[str, typer.Argument(metavar="STUDY", help=STUDY_HELP)], ...),
     "x": (Annotated[str, typer.Option("--x", metavar="AXIS", help=f"PARAM={AXIS}.")], DEFAULT_X),
-    "y": (Annotated[str, typer.Option("--y", metavar="AXIS", help="The same, upward.")], DEFAULT_Y),
-    "points": (Annotated[int, typer.Option(**WHOLE, help="Values of an axis that says no number.")], 100),
-    "runs": (Annotated[int, typer.Option(**WHOLE, help="Most runs of a point.")], 16),
+    "y": (
+        Annotated[str, typer.Option("--y", metavar="AXIS", help="Vertical axis, same syntax as --x.")],
+        DEFAULT_Y,
+    ),
+    "points": (Annotated[int, whole_number("Points per axis, unless the axis states a number.")], 100),
+    "runs": (Annotated[int, whole_number("Most runs of a point.")], 16),
     "kick": (Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)], None),
     "adaptive": (Annotated[bool, typer.Option("--adaptive", help=ADAPTIVE_HELP)], False),
     "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
     "ball": (Annotated[str | None, typer.Option(metavar="damper|traction", help=BALL_HELP)], None),
-    "run": (Annotated[int, typer.Option("--run", **WHOLE, help="Which run of the ensemble.")], 0),
+    "run": (Annotated[int, whole_number("Which run of the ensemble.")], 0),
     "restitution_factor": (Annotated[str | None, typer.Option(metavar="ETA", help=ETA_HELP)], None),
     "animate": (Annotated[str | None, typer.Option(metavar="gif|mp4", help=ANIMATE_HELP)], None),
-    "samples": (Annotated[int, typer.Option(**WHOLE, help="Bearings drawn, a power of two.")], 512),
+    "samples": (Annotated[int, whole_number("Bearings drawn, a power of two.")], 512),
     "vary": (Annotated[list[str] | None, typer.Option("--vary", metavar="AXIS", help=VARY_HELP)], None),
     "cases": (Annotated[str | None, typer.Option(metavar="FILE", help=CASES_HELP)], None),
     "verdicts": (Annotated[bool, typer.Option("--verdicts", help=VERDICTS_HELP)], False),
@@ -77,16 +94,15 @@ OPTIONS: dict[str, tuple[Any, Any]] = {
 
 
 def threads(jobs: int | None) -> int:
-    """Return the number of threads asked for, or one for each processor that this process may use."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Return the number of threads of an option, or one for each processor that this process may use."""
     if jobs is not None and not 1 <= jobs <= MOST_JOBS:
-        cure = f"Leave it out for one thread on each of the {cores} processors."
+        cure = f"Leave it out for one thread on each of the {processors()} processors."
         raise InputError("--jobs", f"must lie between 1 and {MOST_JOBS}", got=str(jobs), cure=cure)
-    return jobs or cores
+    return jobs or processors()
 
 
 def folder(out: str | None) -> Path | None:
-    """Return the folder asked for; an empty name, as from an unset variable, is refused."""
+    """Return the folder of an option; an empty name, as from an unset variable, is refused."""
     if out is not None and not out.strip():
         raise InputError("--out", "needs the name of a folder", got='""', cure="The current one is .")
     return None if out is None else Path(out)
@@ -97,3 +113,130 @@ def named(text: str | None, option: str, what: str) -> Path | None:
     if text is not None and (not text.strip() or "\0" in text):
         raise InputError(option, f"needs the name of {what}", got='""')
     return None if text is None else Path(text)
+
+
+def command_of(verb: Verb) -> Callable[..., int]:
+    """Return the function behind the command of a verb; its signature is made from the table."""
+
+    def command(**given: Any) -> int:
+        return run(verb, **given)
+
+    command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+        [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                annotation=kind,
+                default=inspect.Parameter.empty if default is ... else default,
+            )
+            for name, (kind, default) in ((one, OPTIONS[one]) for one in verb.options)
+        ]
+    )
+    return command
+
+
+def run(
+    verb: Verb,
+    study: str,
+    *,
+    json: bool,
+    out: str | None,
+    quiet: bool,
+    jobs: int | None,
+    full: bool = False,
+    cluster: str | None = None,
+    animate: str | None = None,
+    motion: str | None = None,
+    ball: str | None = None,
+    **question: Any,
+) -> int:
+    """Answer one question and return the exit status."""
+    if animate is not None:
+        _check_animation(animate, writes=not json or out is not None)
+    if "vary" in question:
+        question["vary"] = tuple(question["vary"] or ())
+        question["cases"] = named(question["cases"], "--cases", "a file")
+    named(cluster, "--cluster", "a scheduler, or local:N")
+    place, count = folder(out), threads(jobs)
+    models = {name: one for name, one in (("motion", motion), ("ball", ball)) if one is not None}
+    is_kept = verb.keeps_runs and not (json and out is None)
+
+    @interruptible("runs that were finished are kept." if is_kept else "no file was written.")
+    def work() -> int:
+        with noted_warnings() as notes, contextlib.ExitStack() as stack:
+            asked = asked_study(verb, study, models)
+            to = Path(asked.name) if place is None and verb.writes_files and not json else place
+            if to is not None:
+                stack.enter_context(writable_folder(to))
+            found = computed_with_progress(
+                verb, asked, question, quiet=quiet, jobs=count, folder=to, cluster=cluster
+            )
+            _deliver(verb, found, grouped(notes), to, json=json, quiet=quiet, full=full, animate=animate)
+        if found.is_complete:
+            return ANSWERED
+        more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
+        return interrupted(f"the answer has what was finished, and is marked complete: false.{more}")
+
+    return work()
+
+
+def computed_with_progress(
+    verb: Verb,
+    study: Study,
+    question: Mapping[str, object],
+    *,
+    quiet: bool,
+    jobs: int,
+    folder: Path | None,
+    cluster: str | None = None,
+) -> Computed:
+    """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
+    with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
+        found = computed(verb, study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+    if found.runs_taken and not quiet:
+        kept = f"{folder}/{LEDGER}"
+        complain(f"{found.runs_taken} runs were taken from {kept}, where an earlier call had kept them.")
+    return found
+
+
+def _deliver(
+    verb: Verb,
+    found: Computed,
+    notes: list[str],
+    folder: Path | None,
+    *,
+    json: bool,
+    quiet: bool,
+    full: bool,
+    animate: str | None,
+) -> None:
+    """Write the answer, then the files, which take as long again, and print where they are."""
+    from separatrix.present import document, in_words, whereabouts
+
+    made = document(verb.name, found.record, found.study, notes)
+    if json:
+        answer_json(made)
+    else:
+        asked = (verb.name, found.record, found.study, list(made["warnings"]))
+        answer(in_words(*asked, full=full, quiet=quiet))
+    if folder is None:
+        return
+    from separatrix.saving import save_answer
+
+    with progress_bar("animation", quiet=quiet or animate is None) as progress:
+        save_answer(folder, found.record, found.study, made, animation=animate, progress=progress)
+    if not json and not quiet:
+        overview = verb.name == "rank" and bool(made["complete"])
+        answer("\n" + whereabouts(verb.name, str(folder), overview=overview))
+
+
+def _check_animation(kind: str, *, writes: bool) -> None:
+    """Refuse an animation of another kind, or without a folder or an encoder for it."""
+    if kind not in ANIMATIONS:
+        raise InputError("--animate", f"must be {' or '.join(ANIMATIONS)}", got=f'"{kind}"')
+    if not writes:
+        raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
+    if kind == "mp4":
+        from separatrix.figures.animation import video_encoder
+
+        video_encoder()

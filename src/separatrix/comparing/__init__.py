@@ -1,1 +1,1 @@
-"""Saved answers: read, held against the same question answered again, and put side by side."""
+"""Saved answers: read, compared with the same question answered again, and put side by side."""

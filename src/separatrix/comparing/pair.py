@@ -1,13 +1,21 @@
-"""Two answers of one verb compared."""
+"""Two answers of one verb compared: inputs, verdicts, results; or, of one question, whether they agree."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
 
-from separatrix.comparing.inputs import FRICTION, all_inputs, differences, of_study
-from separatrix.comparing.records import Comparison, Named
+from separatrix.comparing.records import (
+    DIFFERENT,
+    EXACT,
+    ROUNDED,
+    Agreement,
+    Comparison,
+    Difference,
+    Differing,
+    Named,
+    is_number,
+)
 from separatrix.comparing.results import differing, of_dataset, of_document, order
 from separatrix.comparing.saved import VERBS, Saved
 from separatrix.errors import InputError
@@ -15,15 +23,25 @@ from separatrix.units import printable
 
 MOST_ROWS = 2000
 
+FRICTION = "cage.ball_cage_friction"
+"""Key of the pocket friction, which a study may leave to its candidates."""
+
+BESIDE = ("record", "table", "other_tests", "distribution")
+"""Parts of a resolved study that are not inputs: whole records of the library."""
+
+Input = tuple[object, str | None]
+"""Value of an input, and its unit."""
+
+ROUNDING = 1e-9
+"""Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
+
+MOST_SHOWN = 20
+IGNORED = ("separatrix_version", "provenance")
+"""Keys of a document that are not the answer."""
+
 
 def pair_of(first: Mapping[str, Saved], second: Mapping[str, Saved]) -> tuple[Saved, Saved, tuple[str, ...]]:
-    """Answers of the first verb that both have, and the other verbs that they share.
-
-    Raises
-    ------
-    InputError
-        They share no verb.
-    """
+    """Answers of the first verb that both have, and the other verbs that they share; refused without one."""
     shared = [verb for verb in VERBS if verb in first and verb in second]
     if not shared:
         names = [next(iter(one.values())).path for one in (first, second)]
@@ -45,9 +63,9 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
         raise InputError(second.path, f"must be an answer of {verb}, as {first.path} is", got=second.verb)
     studies = [_study(one) for one in (first, second)]
     if first.document is not None and second.document is not None:
-        nodes = [of_document(one.document or {}) for one in (first, second)]
+        nodes = [of_document(one) for one in (first.document, second.document)]
     elif first.data is not None and second.data is not None:
-        nodes = [of_dataset(one.data) for one in (first, second) if one.data is not None]
+        nodes = [of_dataset(one) for one in (first.data, second.data)]
     else:
         cure = "Name the folders, or two files of one kind."
         raise InputError(second.path, f"must have a {'document' if first.document else 'dataset'}", cure=cure)
@@ -72,33 +90,64 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
     )
 
 
-def _study(saved: Saved) -> dict[str, Any]:
-    """Return the resolved study of an answer."""
+def differences(first: Mapping[str, Input], second: Mapping[str, Input]) -> Iterator[Difference]:
+    """Yield each input that differs between two sets of them."""
+    for key in {**first, **second}:
+        a, b = first.get(key, (None, None)), second.get(key, (None, None))
+        if a[0] != b[0]:
+            yield Difference(key=key, first=a[0], second=b[0], unit=a[1] or b[1])
+
+
+def of_study(node: Mapping[str, object], path: str = "") -> Iterator[tuple[str, Input]]:
+    """Yield name, value and unit of every input of a resolved study; of an uncertain one its distribution."""
+    if "value" in node:
+        known, unit = node.get("distribution"), node.get("unit")
+        words = known.get("written") or known.get("words") if isinstance(known, Mapping) else None
+        is_plain = not words and isinstance(unit, str)
+        yield path, (words or node["value"], str(unit) if is_plain else None)
+        return
+    if path and isinstance(node.get("name"), str):
+        yield path, (node["name"], None)
+    for key, item in node.items():
+        if isinstance(item, Mapping) and key not in BESIDE:
+            yield from of_study(item, f"{path}.{key}" if path else key)
+        elif key == "candidates" and isinstance(item, list):
+            for one in (one for one in item if isinstance(one, Mapping)):
+                yield from _of_candidate(one)
+
+
+def _of_candidate(candidate: Mapping[str, object]) -> Iterator[tuple[str, Input]]:
+    friction, material = candidate.get("friction"), candidate.get("material")
+    for environment, measured in friction.items() if isinstance(friction, Mapping) else ():
+        if isinstance(measured, Mapping):
+            yield f"friction of {candidate.get('name')} in {environment}", (measured.get("mean"), "-")
+    if isinstance(material, Mapping):
+        yield from of_study(material, f"material of {candidate.get('name')}")
+
+
+def _study(saved: Saved) -> Mapping[str, object]:
     try:
-        given = saved.document["study"] if saved.document is not None else _attribute(saved, "study")
-        study = dict(given)
-        if dict(of_study(study)):
+        study = _part(saved, "study")
+        if isinstance(study, dict) and dict(of_study(study)):
             return study
     except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
         pass
     raise InputError(saved.path, "contains a study that separatrix did not write")
 
 
-def _attribute(saved: Saved, name: str) -> Any:
+def _part(saved: Saved, name: str) -> object:
+    """Return a key of an answer; that of a dataset is text in JSON."""
+    if saved.document is not None:
+        return saved.document.get(name)
     return json.loads(saved.data.attrs.get(name, "null")) if saved.data is not None else None
 
 
-def _head(saved: Saved) -> Mapping[str, Any]:
-    if saved.document is not None:
-        return saved.document
-    return saved.data.attrs if saved.data is not None else {}
-
-
 def _named(saved: Saved) -> Named:
-    head = _head(saved)
+    data: Mapping[str, object] = {} if saved.data is None else saved.data.attrs
+    head = data if saved.document is None else saved.document
     try:
-        seed = int(head["seed"])
-    except (KeyError, TypeError, ValueError, OverflowError):
+        seed = int(str(head["seed"]))
+    except (KeyError, ValueError):
         raise InputError(saved.path, "lacks its seed") from None
     title = head.get("title")
     if not isinstance(title, str) or not title.strip():
@@ -106,26 +155,74 @@ def _named(saved: Saved) -> Named:
     return Named(path=saved.path, title=printable(title, 200), seed=seed)
 
 
-def _inputs(saved: Saved, study: Mapping[str, Any]) -> dict[str, tuple[Any, str | None]]:
+def _inputs(saved: Saved, study: Mapping[str, object]) -> dict[str, Input]:
     """Inputs of an answer; of a simulation also kick and run, and the friction that it took."""
+    found = dict(sorted(of_study(study), key=lambda pair: pair[0]))
     if saved.verb == "simulate":
-        known = {key: _single(saved, key) for key in ("kick", "run")}
-        taken = {f"--{key}": (value, "m/s" if key == "kick" else None) for key, value in known.items()}
-        return all_inputs(study, {}, {**taken, FRICTION: (_single(saved, "ball_cage_friction", "cage"), "-")})
+        taken: dict[str, Input] = {
+            "--kick": (_single(saved, "kick"), "m/s"),
+            "--run": (_single(saved, "run"), None),
+            FRICTION: (_single(saved, "ball_cage_friction", "cage"), "-"),
+        }
+        return found | {key: value for key, value in taken.items() if value[0] is not None}
     try:
-        kept = saved.document.get("provenance") if saved.document else _attribute(saved, "provenance")
+        kept = _part(saved, "provenance")
     except ValueError:
         kept = None
     command = kept.get("command") if isinstance(kept, dict) else None
     options = command.get("question") if isinstance(command, dict) else None
-    return all_inputs(study, options if isinstance(options, dict) else {}, {})
+    given = options.items() if isinstance(options, dict) else ()
+    return found | {f"--{name}": (value, None) for name, value in given}
 
 
-def _single(saved: Saved, name: str, section: str = "") -> Any:
+def _single(saved: Saved, name: str, section: str = "") -> object:
     """Return one number of an answer; None if it lacks it."""
     if saved.document is not None:
-        node = saved.document.get(section, {}) if section else saved.document
-        return node.get(name) if isinstance(node, dict) else None
-    key = f"{section}_{name}" if section else name
-    has = saved.data is not None and key in saved.data and saved.data[key].size == 1
-    return saved.data[key].item() if has and saved.data is not None else None
+        node = saved.document.get(section) if section else saved.document
+        return node.get(name) if isinstance(node, Mapping) else None
+    found = None if saved.data is None else saved.data.get(f"{section}_{name}" if section else name)
+    return found.item() if found is not None and found.size == 1 else None
+
+
+def agreement(stored: Mapping[str, object], computed: Mapping[str, object]) -> Agreement:
+    """Compare two documents, but for the version and the provenance in them."""
+    first, second = ({k: v for k, v in one.items() if k not in IGNORED} for one in (stored, computed))
+    found = list(_differing(first, second, "", None))
+    beyond = [one for one in found if one.relative is None or one.relative > ROUNDING]
+    numbers = [one for one in found if one.relative is not None]
+    largest = max(numbers, key=lambda one: one.relative or 0.0, default=None)
+    return Agreement(
+        agreement=DIFFERENT if beyond else ROUNDED if found else EXACT,
+        largest_difference=None if largest is None else largest.relative,
+        largest_at=None if largest is None else largest.key,
+        differences=tuple(beyond[:MOST_SHOWN]),
+        count=len(beyond),
+    )
+
+
+def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Differing]:
+    """Yield what differs; numbers of a list are compared with the largest of that list."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        for name in {**a, **b}:
+            at = f"{key}.{name}" if key else str(name)
+            if name in a and name in b:
+                yield from _differing(a[name], b[name], at, None)
+            else:
+                yield Differing(
+                    key=at, stored=_short(a.get(name)), computed=_short(b.get(name)), relative=None
+                )
+    elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        size = max((abs(one) for one in (*a, *b) if is_number(one)), default=None)
+        for i, (one, other) in enumerate(zip(a, b, strict=True)):
+            yield from _differing(one, other, f"{key}[{i}]", size)
+    elif a != b or isinstance(a, bool) != isinstance(b, bool):
+        relative = None
+        if is_number(a) and is_number(b):
+            relative = abs(a - b) / (scale or max(abs(a), abs(b)))
+        yield Differing(key=key, stored=_short(a), computed=_short(b), relative=relative)
+
+
+def _short(value: object) -> object:
+    if isinstance(value, Mapping):
+        return f"{len(value)} keys"
+    return f"{len(value)} values" if isinstance(value, list) else value

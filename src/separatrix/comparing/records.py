@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TypeGuard
 
 from separatrix.units import Ratio
 
 Plain = float | int | str | bool | None
 
+EXACT, ROUNDED, DIFFERENT = "bit for bit", "to rounding", "different"
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value of a document is a number; true and false are not."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
 
 class Noise(StrEnum):
-    """What a difference is, held against the scatter of the runs."""
+    """A difference compared with the scatter of the runs."""
 
     BEYOND = "more than counting noise"
     WITHIN = "within counting noise"
@@ -105,3 +113,34 @@ class Comparison:
     left_out: int  # number of rows that were too many to list
     also: tuple[str, ...] = ()  # other verbs that both have
     environment: str | None = None  # the bearing's own, where both rank in the same
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Differing:
+    """A key whose value differs: numbers, texts, or what is there on one side only, in short."""
+
+    key: str
+    stored: object
+    computed: object
+    relative: Ratio | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """How well two documents agree.
+
+    `agreement` is "bit for bit", "to rounding" or "different". `largest_difference` is the largest relative
+    difference of two numbers, at the key `largest_at`; None if no number differs. `differences` are the first
+    of the `count` keys that differ beyond rounding.
+    """
+
+    agreement: str
+    largest_difference: Ratio | None
+    largest_at: str | None
+    differences: tuple[Differing, ...]
+    count: int
+
+    @property
+    def same(self) -> bool:
+        """Whether they are equal, at least to rounding."""
+        return self.agreement != DIFFERENT

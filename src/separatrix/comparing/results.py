@@ -1,24 +1,28 @@
-"""Results of two answers side by side, from their documents or their datasets."""
+"""Results of two answers side by side, and whether they differ by more than the scatter of their runs.
+
+Newcombe's hybrid score interval of the difference of two independent shares takes, at each end, the distances
+of both shares to the ends of their Wilson intervals and adds them as squares (R. G. Newcombe, Interval
+estimation for the difference between independent proportions, Statistics in Medicine 17, 1998, method 10).
+The same with any two 95 % intervals is the method of variance estimates recovery (Zou and Donner, 2008).
+"""
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import types
 from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, get_args, get_type_hints
 
 import numpy as np
 
 from separatrix import answers
 from separatrix.cage import Judgement, KickCount
 from separatrix.cage.verdict import NORMAL_95
-from separatrix.comparing.agreement import is_number
-from separatrix.comparing.noise import difference_interval
-from separatrix.comparing.records import Noise, Plain, Row, Value
+from separatrix.comparing.records import Noise, Plain, Row, Value, is_number
 from separatrix.explore.sweep import Sweep
-from separatrix.present.walk import field_units
+from separatrix.present.nodes import field_units
 from separatrix.units import printable
 
 if TYPE_CHECKING:
@@ -55,7 +59,7 @@ UNCOUNTED_NAMES = frozenset(
 )
 """What is computed without runs: its differences are exact up to the model."""
 
-FROM_RUNS = {one.name for record in (Judgement, KickCount) for one in dataclasses.fields(record)}
+FROM_RUNS = {one.name for record in (Judgement, KickCount) for one in fields(record)}
 BY_LABEL = ("ball", "case", "kick", "restitution_factor")
 BARE = ("environments", "materials")
 GRIDS = ("curve", "linear_limit", "hard_limit", "by_kick")
@@ -64,33 +68,45 @@ GRIDS = ("curve", "linear_limit", "hard_limit", "by_kick")
 MOST_ON_AXIS, MOST_VALUES = 200, 200_000
 
 
-def of_document(document: Mapping[str, Any]) -> Nodes:
+def difference_interval(
+    first: tuple[float, float, float], second: tuple[float, float, float]
+) -> tuple[float, float]:
+    """95 % interval of the second value less the first; each is (value, low, high) with its 95 % interval.
+
+    For Wilson's intervals of two shares this is Newcombe's. It assumes that the two are independent: where
+    both answers draw the same runs, the interval is too wide, if anything.
+    """
+    (a, a_low, a_high), (b, b_low, b_high) = first, second
+    change = b - a
+    return change - math.hypot(b - b_low, a_high - a), change + math.hypot(b_high - b, a - a_low)
+
+
+def of_document(node: Mapping[str, object], place: Place = ()) -> Nodes:
     """Results of a document; arrays of numbers are left out."""
-    return {place: leaves for place, leaves in _nodes(document, ()) if leaves}
-
-
-def _nodes(node: Mapping[str, Any], place: Place) -> Iterator[tuple[Place, dict[str, Plain]]]:
     items = {key: value for key, value in node.items() if key not in NOT_RESULTS}
-    yield place, {key: value for key, value in items.items() if not isinstance(value, list | dict)}
+    leaves = {
+        key: value for key, value in items.items() if value is None or isinstance(value, float | int | str)
+    }
+    found: Nodes = {place: leaves} if leaves else {}
     for key, value in items.items():
         if isinstance(value, dict):
-            yield from _nodes(value, (*place, key))
+            found |= of_document(value, (*place, key))
         elif isinstance(value, list):
-            rows = [one for one in value if isinstance(one, dict)]
-            for i, one in enumerate(rows):
-                yield from _nodes(one, (*place, _label(key, one, i)))
+            for i, one in enumerate(one for one in value if isinstance(one, dict)):
+                found |= of_document(one, (*place, _label(key, one, i)))
+    return found
 
 
-def _label(key: str, row: Mapping[str, Any], number: int) -> str:
-    """Name of a row of a list."""
+def _label(key: str, row: Mapping[str, object], number: int) -> str:
     name, environment = row.get("name"), row.get("environment")
     if isinstance(name, str):
         named = f"{name} in {environment}" if isinstance(environment, str) else name
         return named if key in BARE else f"{key} {named}"
-    if is_number(row.get("x")) and is_number(row.get("y")):
-        return f"x {row['x']:.6g}, y {row['y']:.6g}"
-    known = next((one for one in BY_LABEL if is_number(row.get(one))), None)
-    return f"{key} {number + 1}" if known is None else f"{key} {row[known]:.6g}"
+    x, y = row.get("x"), row.get("y")
+    if is_number(x) and is_number(y):
+        return f"x {x:.6g}, y {y:.6g}"
+    known = next((value for one in BY_LABEL if is_number(value := row.get(one))), None)
+    return f"{key} {number + 1}" if known is None else f"{key} {known:.6g}"
 
 
 def of_dataset(data: xr.Dataset) -> Nodes:
@@ -110,8 +126,7 @@ def of_dataset(data: xr.Dataset) -> Nodes:
             continue
         for at in np.ndindex(*values.shape):
             labels = [_axis(data, str(dim), i) for dim, i in zip(values.dims, at, strict=True)]
-            value: Any = values.values[at]
-            value = value.item() if isinstance(value, np.generic) else value
+            value: Plain = values.values.item(at)
             absent = value == "" or (isinstance(value, float) and not math.isfinite(value))
             found.setdefault((*place, *labels), {})[name] = None if absent else value
     return found
@@ -130,30 +145,18 @@ def differing(verb: str, first: Nodes, second: Nodes) -> Iterator[Row | None]:
     """Yield a row for each result that differs, and None for each that does not."""
     known = units()
     for place in {**first, **second}:
+        words = printable(" / ".join(place), 160)
         if place not in first or place not in second:
-            last = place[-1].partition(" ")[0] if place else ""
-            if last not in GRIDS:
-                here = [Value(value="there" if place in nodes else None) for nodes in (first, second)]
-                yield Row(
-                    place=_words(place),
-                    name="",
-                    unit=None,
-                    first=here[0],
-                    second=here[1],
-                    noise=Noise.CHANGED,
-                )
+            if not place or place[-1].partition(" ")[0] not in GRIDS:
+                one, other = (Value(value="there" if place in nodes else None) for nodes in (first, second))
+                yield Row(place=words, name="", unit=None, first=one, second=other, noise=Noise.CHANGED)
             continue
         a, b = first[place], second[place]
         parts = {part for leaves in (a, b) for name in leaves for part in _parts(name, leaves)}
         for name in {**a, **b}:
             if name not in parts:
-                one, other = _value(name, a), _value(name, b)
                 exact = _is_exact(verb, place, name)
-                yield _row(_words(place), name, known.get(name), one, other, exact=exact)
-
-
-def _words(place: Place) -> str:
-    return printable(" / ".join(place), 160)
+                yield _row(words, name, known.get(name), _value(name, a), _value(name, b), exact=exact)
 
 
 def _parts(name: str, leaves: Mapping[str, Plain]) -> tuple[str, ...]:
@@ -167,15 +170,14 @@ def _value(name: str, leaves: Mapping[str, Plain]) -> Value:
     """Return a number with its interval: the one given, or that of its standard error."""
     value, low, high = leaves.get(name), None, None
     pair = INTERVALS.get(name, (f"{name}_low", f"{name}_high"))
-    ends = [leaves.get(end) for end in pair]
-    error, eta = leaves.get(f"{name}_error"), leaves.get("restitution_factor")
+    error, eta, less = leaves.get(f"{name}_error"), leaves.get("restitution_factor"), 0.0
     if name == "margin" and is_number(eta):  # of the threshold, less the chain's eta
-        ends = [leaves.get(f"restitution_threshold_{end}") for end in ("low", "high")]
-        ends = [end - eta if is_number(end) else None for end in ends]  # type: ignore[operator]
-    if is_number(value) and all(is_number(end) for end in ends):
-        low, high = (float(end) for end in ends)  # type: ignore[arg-type]
+        pair, less = ("restitution_threshold_low", "restitution_threshold_high"), float(eta)
+    ends = [float(end) - less for one in pair if is_number(end := leaves.get(one))]
+    if is_number(value) and len(ends) == 2:
+        low, high = ends
     elif is_number(value) and is_number(error):
-        low, high = (float(value) + sign * NORMAL_95 * float(error) for sign in (-1.0, 1.0))  # type: ignore[arg-type]
+        low, high = (float(value) + sign * NORMAL_95 * float(error) for sign in (-1.0, 1.0))
     runs = leaves.get("runs") if "probability" in name else None
     runs = leaves.get(f"{name.partition('_probability')[0]}_runs", runs) if "_probability" in name else runs
     count = int(runs) if isinstance(runs, int | float) and math.isfinite(runs) else None
@@ -190,21 +192,18 @@ def _row(place: str, name: str, unit: str | None, a: Value, b: Value, *, exact: 
     row = Row(place=place, name=name, unit=unit, first=a, second=b, noise=Noise.CHANGED)
     if not is_number(a.value) or not is_number(b.value):
         return None if a.value == b.value else row
-    one, other = float(a.value), float(b.value)  # type: ignore[arg-type]
+    one, other = float(a.value), float(b.value)
     change, low, high = other - one, None, None
     noise = Noise.EXACT if exact else Noise.UNJUDGED
-    if None not in (a.low, a.high, b.low, b.high):
-        ends = (one, a.low, a.high), (other, b.low, b.high)
-        low, high = difference_interval(*ends)  # type: ignore[arg-type]
+    if a.low is not None and a.high is not None and b.low is not None and b.high is not None:
+        low, high = difference_interval((one, a.low, a.high), (other, b.low, b.high))
         noise = Noise.WITHIN if low <= 0.0 <= high else Noise.EXACT if exact else Noise.BEYOND
     relative = change / abs(one) if one else None
-    return dataclasses.replace(
-        row, change=change, change_low=low, change_high=high, relative=relative, noise=noise
-    )
+    return replace(row, change=change, change_low=low, change_high=high, relative=relative, noise=noise)
 
 
 def _is_exact(verb: str, place: Place, name: str) -> bool:
-    if verb in UNCOUNTED_VERBS or place[:1] in [(one,) for one in UNCOUNTED_PLACES]:
+    if verb in UNCOUNTED_VERBS or (place and place[0] in UNCOUNTED_PLACES):
         return True
     return name not in FROM_RUNS if verb == "sweep" else name in UNCOUNTED_NAMES
 
@@ -233,7 +232,7 @@ def units() -> dict[str, str]:
         waiting += get_args(kind)
         if not isinstance(kind, type) or isinstance(kind, types.GenericAlias) or kind in seen:
             continue
-        if not dataclasses.is_dataclass(kind):
+        if not is_dataclass(kind):
             continue
         seen.add(kind)
         for name, unit in field_units(kind).items():

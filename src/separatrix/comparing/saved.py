@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from separatrix.errors import InputError
-from separatrix.regular_file import size_of, unreadable
-from separatrix.toml_text import path_text
+from separatrix.input_files import size_of, unreadable
+from separatrix.toml_files import path_text
 from separatrix.units import printable, shown
 
 if TYPE_CHECKING:
@@ -24,13 +24,16 @@ VERBS = (
 """Verbs of a study whose answers are read; of a folder with several, two are compared in this order."""
 
 ENDINGS = (".json", ".nc", ".html", ".htm")
-"""Endings of the files that hold answers: documents, datasets, reports."""
+"""Endings of files with answers: documents, datasets, reports."""
 
 MOST_BYTES = 256 * 1024**2
 REPORT = re.compile(
     rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
 )
-"""Where a report holds the documents of its answers."""
+"""The documents of the answers in a report."""
+
+Document = Mapping[str, Any]
+"""An answer as JSON has it; what comes from a file is checked where it is used."""
 
 _MAKE = "Make one with: separatrix rank STUDY --out DIR."
 
@@ -41,7 +44,7 @@ class Saved:
 
     path: str
     verb: str
-    document: Mapping[str, Any] | None = None
+    document: Document | None = None
     data: xr.Dataset | None = None
 
 
@@ -55,19 +58,16 @@ def read_answers(path: Path) -> dict[str, Saved]:
     """
     where = path_text(path)
     if path.is_dir():
-        files = [
-            file for verb in VERBS for end in ("json", "nc") if (file := path / f"{verb}.{end}").exists()
-        ]
-        if not files:
-            raise InputError(where, "does not contain an answer", cure=_MAKE)
         found: dict[str, Saved] = {}
-        for verb in dict.fromkeys(file.stem for file in files):
-            parts = [read_file(file) for file in files if file.stem == verb]
-            document = next((one.document for one in parts if one.document is not None), None)
-            data = next((one.data for one in parts if one.data is not None), None)
+        for verb in VERBS:
+            files = [path / f"{verb}.{end}" for end in ("json", "nc")]
+            parts = [read_file(file) for file in files if file.exists()]
             if any(one.verb != verb for one in parts):
                 raise InputError(path_text(path / verb), "must be an answer of that verb", parts[0].verb)
-            found[verb] = Saved(path=where, verb=verb, document=document, data=data)
+            if parts:
+                found[verb] = Saved(path=where, verb=verb, document=parts[0].document, data=parts[-1].data)
+        if not found:
+            raise InputError(where, "does not contain an answer", cure=_MAKE)
         return found
     if path.suffix.casefold() in ENDINGS[2:]:
         match = REPORT.search(_bytes(path))
@@ -87,8 +87,7 @@ def read_file(path: Path) -> Saved:
     from separatrix.present import load
 
     data = load(path)
-    verb = _verb(data.attrs.get("verb"), where)
-    return Saved(path=where, verb=verb, data=data)
+    return Saved(path=where, verb=_verb(data.attrs.get("verb"), where), data=data)
 
 
 def _document(found: object, where: str, verb: str | None = None) -> Saved:
@@ -117,7 +116,7 @@ def _bytes(path: Path) -> bytes:
         raise unreadable(where, error) from None
 
 
-def _parsed(raw: bytes, where: str) -> dict[str, Any]:
+def _parsed(raw: bytes, where: str) -> dict[str, object]:
     try:
         found = json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:

@@ -27,7 +27,7 @@ from separatrix.contact_file.question import (
     Motion,
 )
 from separatrix.errors import InputError
-from separatrix.toml_text import Kind, label_of, read_text
+from separatrix.toml_files import Kind, label_of, read_text
 from separatrix.units import Array
 
 MM = 1e-3
@@ -60,7 +60,7 @@ ITERATIONS = {0: 5, 1: 0, 2: 9, 3: 9, 4: 7, 5: 13}
 
 @dataclass(slots=True)
 class _Kept:
-    """What a case takes over from the one before where its digits do not give it anew."""
+    """Data of the case before, for a case whose digits do not state them anew."""
 
     setups: dict[object, ContactSetup] = field(default_factory=dict)
     friction: float | None = None
@@ -73,13 +73,7 @@ class _Kept:
 
 
 def read_inp(path: Path) -> ContactQuestion:
-    """Read the cases of an input file of CONTACT.
-
-    Raises
-    ------
-    InputError
-        A file that cannot be read, or the first line that this program does not compute.
-    """
+    """Read the cases of an input file of CONTACT; refused at the first line that is not computed here."""
     label, text = label_of(path), read_text(path, FILE)
     lines = ((n, line.partition("%")[0].split()) for n, line in enumerate(text.split("\n"), 1))
     at, kept, cases = InpLines(label, iter([one for one in lines if one[1]])), _Kept(), list[ContactCase]()
@@ -114,7 +108,8 @@ def _case(at: InpLines, kept: _Kept) -> ContactCase:
     rolls = digit["T"] >= 2
     if digit["C"] == 2:
         if rolls:
-            kept.rolling = tuple(at.numbers("CHI", "DQ", "VELOC")[:2])  # type: ignore[assignment]
+            angle, column, _ = at.numbers("CHI", "DQ", "VELOC")
+            kept.rolling = angle, column
         kept.materials = tuple(at.numbers("POISS1", "POISS2", "GG1", "GG2"))
         if digit["M"] == 4:
             kept.layer = tuple(at.numbers("GG3", "LAYTHK", "TAU_C0", "K_TAU"))
@@ -225,9 +220,8 @@ def _placed(at: InpLines, kept: _Kept, setup: ContactSetup, motion: Motion) -> E
     if kind > 0:
         xl, yl, dx, dy = (value * MM for value in rest)
     else:  # the box of the ellipse, SCALE times as large
-        a, b = (
-            rest[2] * half for half in (setup.problem.ellipse.semi_minor, setup.problem.ellipse.semi_major)
-        )
+        ellipse = setup.problem.ellipse
+        a, b = rest[2] * ellipse.semi_minor, rest[2] * ellipse.semi_major
         xl, yl, dx, dy = -a, -b, 2.0 * a / mx, 2.0 * b / my
     return ExtraSlip(
         along=xl + dx * (np.arange(mx) + 0.5),
@@ -239,7 +233,7 @@ def _placed(at: InpLines, kept: _Kept, setup: ContactSetup, motion: Motion) -> E
 def _setup(at: InpLines, kept: _Kept, load: float, *, is_coated: bool, turned: bool) -> ContactSetup:
     """The contact of a case, under a load [N], or an approach [mm] with a minus sign.
 
-    One that was there before is the same object, so that cases start each other.
+    The contact of an earlier case is the same object, so that cases start each other.
     """
     missing = {"L": kept.friction, "C": kept.materials, "D": kept.area}
     for name, value in missing.items():
@@ -332,10 +326,7 @@ def _motion(
     along, across, spin = given
     forces = digit["F"]
     wanted = (along if forces else None, across if forces == 2 else None)
-    if forces:
-        along = 0.0
-    if forces == 2:
-        across = 0.0
+    along, across = (0.0 if forces else along), (0.0 if forces == 2 else across)
     continues = digit["P"] == 0 and at.case > 1 and digit["T"] in (1, 2)
     if digit["T"] == 2:
         gap, ellipse = setup.gap, setup.problem.ellipse
@@ -343,28 +334,19 @@ def _motion(
         if abs(step / width - max(round(step / width), 1)) > LARGEST_REST:
             rule = f"must be a whole number of columns of {width:.4g} mm"
             raise at.wrong("DQ", rule, f"{step:g}")
+    case = ContactCase(number=at.case, setup=setup, motion=Motion.SHIFT)
     if digit["T"] == 0:  # the normal problem alone
-        return ContactCase(number=at.case, setup=setup, motion=Motion.SHIFT)
+        return case
+    case = replace(case, continues=continues, wanted=wanted)
     if digit["T"] == 1:
-        return ContactCase(
-            number=at.case,
-            setup=setup,
-            motion=Motion.SHIFT,
-            longitudinal_shift=along * MM,
-            lateral_shift=across * MM,
-            turn=0.0 - spin,
-            continues=continues,
-            wanted=wanted,
-        )
-    return ContactCase(
-        number=at.case,
-        setup=setup,
+        shifts = along * MM, across * MM
+        return replace(case, longitudinal_shift=shifts[0], lateral_shift=shifts[1], turn=0.0 - spin)
+    return replace(
+        case,
         motion=Motion.ROLLING if digit["T"] == 3 else Motion.TRANSIENT,
         longitudinal_creep=along,
         lateral_creep=across,
         spin=0.0 - spin / MM,
         distance=step * MM if digit["T"] == 2 else 0.0,
-        continues=continues,
-        wanted=wanted,
         turned=turned,
     )

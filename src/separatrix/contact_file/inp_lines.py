@@ -23,7 +23,7 @@ class InpLines:
     """Words of the line after those that were read."""
 
     def wrong(self, what: str, rule: str, got: str = "", cure: str = "") -> InputError:
-        """Refusal of what is on this line."""
+        """Refusal of a number on this line."""
         return InputError(f"{self.label}, line {self.line}: case {self.case}, {what}", rule, got, cure)
 
     def words(self, what: str) -> list[str]:

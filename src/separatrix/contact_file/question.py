@@ -6,14 +6,17 @@ longitudinal creep (Kalker's spin is phi = -s), and a body 1 that is the faster 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from separatrix.chain.traction.exact.contact import (
+    LARGEST_CREEP,
+    LARGEST_SIDE,
     ContactProblem,
     ContactSolution,
     RollingContact,
@@ -21,13 +24,16 @@ from separatrix.chain.traction.exact.contact import (
     rolling_contact,
 )
 from separatrix.chain.traction.exact.grid import CELLS, Grid, cell_counts
+from separatrix.chain.traction.exact.normal import film_strain
 from separatrix.chain.traction.exact.slope import RaceSlope
 from separatrix.errors import InputError
 from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
 
+LARGEST_STEPS = 5000  # columns rolled in a transient
+
 
 class Motion(Enum):
-    """What the bodies do: roll steadily, shift without rolling, or roll from a start."""
+    """Motion of the bodies: steady rolling, a shift without rolling, or rolling from a start."""
 
     ROLLING = "rolling"
     SHIFT = "shift"
@@ -72,7 +78,7 @@ def mirrored(vectors: Array) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContactSetup:
-    """What touches what on which grid: cells over the Hertz ellipse, or those of a gap.
+    """A contact and its grid: cells over the Hertz ellipse, or those of a gap.
 
     `is_two_way`: pressure and tractions are solved each under the other, in steady rolling.
     """
@@ -146,7 +152,7 @@ class ContactCase:
 class ContactQuestion:
     """Cases in the order of their file.
 
-    `slope` asks for the slope of the traction curve at free rolling, under the spin of the first case;
+    `slope`: also the slope of the traction curve at free rolling, under the spin of the first case;
     `of_contact`: the answer is printed in the units and signs of CONTACT's users.
     """
 
@@ -159,7 +165,7 @@ class ContactQuestion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolvedCase:
-    """A case with its solution, or why it has none; a creep or shift that was found is in the case."""
+    """A case with its solution, or the reason for none; a creep or shift that was found is in the case."""
 
     case: ContactCase
     solution: ContactSolution | None
@@ -186,12 +192,52 @@ class SolvedCase:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactAnswer:
-    """The solved cases of a contact file; the slope if it was wanted, or why there is none."""
+    """The solved cases of a contact file; the slope if the question has it, or the reason for none."""
 
     question: ContactQuestion
     cases: tuple[SolvedCase, ...]
     slope: RaceSlope | None = None
     slope_reason: str = ""
+
+
+def refuse_extremes(problem: ContactProblem, moves: Mapping[str, tuple[float, ...]]) -> None:
+    """Refuse too large a spin, too long a rolling distance, and films that are crushed."""
+    ellipse = problem.ellipse
+    reach = max(ellipse.semi_minor, ellipse.semi_major)
+    for key, power in (("spin", 1), ("curvature", 2)):
+        largest = max((abs(one) for one in moves.get(key, ())), default=0.0) * reach**power
+        if largest > LARGEST_CREEP:
+            rule = f"must make a creep of at most {LARGEST_CREEP:g} at the edge of the contact [-]"
+            raise InputError(f"[motion] {key}", rule, f"{largest:.3g}")
+    longest = max(moves.get("distance", (0.0,)))
+    if longest > LARGEST_STEPS * 2.0 * ellipse.semi_minor / LARGEST_SIDE:
+        most = f"{LARGEST_STEPS * 2e3 * ellipse.semi_minor / LARGEST_SIDE:.3g} mm"
+        cure = "Beyond a few lengths of the contact rolling is steady."
+        raise InputError("[motion] distance", f"must not exceed {most}", f"{1e3 * longest:.3g} mm", cure)
+    strain = film_strain(problem.bodies, ellipse.max_pressure)
+    if strain > 1.0 and not problem.own_pressure:
+        cure = "Set own = true in [pressure] for the lower pressure of the coated bodies, or use less load."
+        raise InputError("[contact] load", "compresses a layer by more than itself", f"{strain:.2g}", cure)
+
+
+def cases_of(
+    setup: ContactSetup, kind: Motion, moves: Mapping[str, tuple[float, ...]]
+) -> tuple[ContactCase, ...]:
+    """Cases of one contact: longitudinal, lateral, spin, curvature, distance, each one value or several."""
+    count = max(map(len, moves.values()))
+    each = {key: value * count if len(value) == 1 else value for key, value in moves.items()}
+    names = {"longitudinal": "longitudinal_creep", "lateral": "lateral_creep"}
+    if kind is Motion.SHIFT:
+        names = {"longitudinal": "longitudinal_shift", "lateral": "lateral_shift", "spin": "turn"}
+    rolled = each.pop("distance", ())
+    cases = []
+    for i in range(count):
+        given: dict[str, Any] = {names.get(key, key): value[i] for key, value in each.items()}
+        if rolled:
+            before = rolled[i - 1] if i > 0 else 0.0
+            given |= {"distance": rolled[i] - before, "continues": i > 0}
+        cases.append(ContactCase(number=i + 1, setup=setup, motion=kind, **given))
+    return tuple(cases)
 
 
 def rolling_cases(
@@ -239,24 +285,11 @@ def rolling_cases(
         together = np.broadcast_arrays(*arrays.values())
     except ValueError:
         shapes = ", ".join(str(values.shape) for values in arrays.values())
-        raise InputError(
-            "rolling_cases", "needs creeps that can be broadcast to each other", shapes
-        ) from None
+        rule = "needs creeps that can be broadcast to each other"
+        raise InputError("rolling_cases", rule, shapes) from None
     b, a = problem.ellipse.semi_minor, problem.ellipse.semi_major
     columns, rows = cell_counts(columns, rows, semi_minor=b, semi_major=a)
     setup = ContactSetup(problem=problem, columns=columns, rows=rows)
-    cases = tuple(
-        ContactCase(
-            number=number,
-            setup=setup,
-            motion=Motion.ROLLING,
-            longitudinal_creep=xi,
-            lateral_creep=eta,
-            spin=s,
-            curvature=q,
-        )
-        for number, (xi, eta, s, q) in enumerate(
-            zip(*(one.ravel().tolist() for one in together), strict=True), 1
-        )
-    )
+    moves = {name: tuple(one.ravel().tolist()) for name, one in zip(given, together, strict=True)}
+    cases = cases_of(setup, Motion.ROLLING, moves)
     return ContactQuestion(name=title, title=title, cases=cases, slope=slope)

@@ -1,4 +1,4 @@
-"""Solve the cases of one contact in their order, also for the creeps at which forces are as wanted."""
+"""Solve the cases of one contact in their order; where forces are stated, find their creeps."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from separatrix.chain.traction.exact.contact import (
     secant,
     solve,
 )
-from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
+from separatrix.chain.traction.exact.slope import traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.chain.traction.exact.two_way import solve_two_way
 from separatrix.contact_file.question import (
@@ -58,19 +58,19 @@ def solve_cases(question: ContactQuestion, progress: Progress | None = None) -> 
         solved.append(state.solved(case))
         if progress is not None:
             progress(len(solved), len(question.cases))
-    slope, reason = _slope(question.cases[0]) if question.slope else (None, "")
-    return ContactAnswer(question=question, cases=tuple(solved), slope=slope, slope_reason=reason)
-
-
-def _slope(case: ContactCase) -> tuple[RaceSlope | None, str]:
-    try:
-        return traction_slope(case.setup.problem, Creep(spin=case.spin, curvature=case.curvature)), ""
-    except ConvergenceError as error:
-        return None, str(error)
+    answer = ContactAnswer(question=question, cases=tuple(solved))
+    if question.slope:
+        first = question.cases[0]
+        try:
+            slope = traction_slope(first.setup.problem, Creep(spin=first.spin, curvature=first.curvature))
+            return replace(answer, slope=slope)
+        except ConvergenceError as error:
+            return replace(answer, slope_reason=str(error))
+    return answer
 
 
 class _State:
-    """What a case takes over from those before: the contact, its tractions, and two solutions near it."""
+    """Data of the cases before, for the next one: the contact, its tractions, and two solutions near it."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -125,32 +125,19 @@ class _State:
         return case, at(case)
 
     def _moved(self, contact: RollingContact, case: ContactCase, start: Array | None) -> ContactSolution:
-        grid = contact.grid
-        if case.motion is Motion.SHIFT:
-            way = rigid_slip(
-                grid, longitudinal=case.longitudinal_shift, lateral=case.lateral_shift, spin=case.turn
-            )
-            way = way if case.extra is None else way + case.extra.on(grid)
-            return shift(contact, way, start=start)
-        if case.setup.is_two_way:
-            setup = case.setup
-            return solve_two_way(
-                setup.problem,
-                longitudinal=case.longitudinal_creep,
-                lateral=case.lateral_creep,
-                spin=case.spin,
-                curvature=case.curvature,
-                columns=setup.columns,
-                rows=setup.rows,
-            )[1]
-        slip = rigid_slip(
-            grid,
-            longitudinal=case.longitudinal_creep,
-            lateral=case.lateral_creep,
-            spin=case.spin,
-            curvature=case.curvature,
-        )
+        grid, setup, shifts = contact.grid, case.setup, case.motion is Motion.SHIFT
+        moves = {
+            "longitudinal": case.longitudinal_shift if shifts else case.longitudinal_creep,
+            "lateral": case.lateral_shift if shifts else case.lateral_creep,
+            "spin": case.turn if shifts else case.spin,
+            "curvature": 0.0 if shifts else case.curvature,
+        }
+        if setup.is_two_way and not shifts:
+            return solve_two_way(setup.problem, columns=setup.columns, rows=setup.rows, **moves)[1]
+        slip = rigid_slip(grid, **moves)
         slip = slip if case.extra is None else slip + case.extra.on(grid)
+        if shifts:
+            return shift(contact, slip, start=start)
         if case.motion is Motion.TRANSIENT:
             return transient(contact, [slip] * round(case.distance / grid.dx), start=start)[-1]
         solution = solve(contact, slip, start=secant(self.known, slip))
@@ -183,9 +170,8 @@ def _with_forces(
     found = root(miss, start, method="hybr", options={"factor": 1.0, "xtol": BALANCED, "eps": 1e-4})
     left = float(np.abs(found.fun).max())
     if left > LARGEST_MISS:
-        raise ConvergenceError(
-            f"The wanted forces were not found (off by {left:.2g}).", int(found.nfev), left
-        )
+        message = f"The wanted forces were not found (off by {left:.2g})."
+        raise ConvergenceError(message, int(found.nfev), left)
     return case.moved(*(scale * found.x).tolist())
 
 

@@ -2,44 +2,170 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 from separatrix.chain.hertz import ContactEllipse, ellipse_of_axes, ellipse_of_curvatures
 from separatrix.chain.traction.exact.bound import FrictionLaw
-from separatrix.chain.traction.exact.contact import LARGEST_CREEP, LARGEST_SIDE, ContactProblem
-from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
+from separatrix.chain.traction.exact.contact import LARGEST_CREEP, LARGEST_SIDE, SMALLEST_SIDE, ContactProblem
+from separatrix.chain.traction.exact.flexibility import NEARLY_INCOMPRESSIBLE, Body, Layer, Solid, solid
 from separatrix.chain.traction.exact.grid import cell_counts
-from separatrix.chain.traction.exact.normal import film_strain
 from separatrix.chain.traction.profile import Profile
-from separatrix.contact_file.keys import LAYER, MOTIONS, SECTIONS
-from separatrix.contact_file.question import ContactCase, ContactQuestion, ContactSetup, Motion
+from separatrix.contact_file.question import ContactQuestion, ContactSetup, Motion, cases_of, refuse_extremes
 from separatrix.errors import InputError, ValidityWarning, noted, together
 from separatrix.library import beside, with_files
 from separatrix.study_file.values import named_material, using
-from separatrix.toml_text import Kind, Places, label_of, places_of, read_toml
-from separatrix.toml_values import Reader, choice, nearest, text
-from separatrix.units import format_quantity, printable, shown
+from separatrix.toml_files import (
+    Kind,
+    Places,
+    Reader,
+    Values,
+    choice,
+    label_of,
+    list_of,
+    nearest,
+    places_of,
+    quantity,
+    ratio,
+    read_toml,
+    text,
+    truth,
+    whole,
+)
+from separatrix.units import NUMBER, format_quantity, parse, printable, shown
+
+Number = TypeVar("Number", float, int)
+Made = TypeVar("Made")
 
 FILE = Kind(noun="a contact file", empty="docs/how-to/contact.md has one to start from.")
-MOST_LAYERS = 4
+MOST_CASES, MOST_LAYERS = 2000, 4
+LARGEST_MODULUS = 1e13  # [Pa]
 LARGEST_STEEPNESS = 0.3  # of the surfaces at the edge of the contact, for which bodies are half-spaces
-LARGEST_STEPS = 5000  # columns rolled in a transient
+
+_PER = re.compile(rf"({NUMBER}) ?(?:rad|1)/([a-z]+)([2²]?)")
+
+
+def per_length(power: int) -> Reader[float]:
+    """Read an inverse length to a power, like "0.2 1/mm", "0.2 rad/mm" or "3 1/mm2", in SI units."""
+    unit = "1/mm" if power == 1 else "1/mm2"
+
+    def read(value: object, where: str) -> float:
+        found = _PER.fullmatch(value.strip()) if isinstance(value, str) and len(value) <= 60 else None
+        if found is None or bool(found[3]) != (power == 2):
+            cure = f'Write it like "0.2 {unit}".'
+            raise InputError(where, f"must be a number in {unit}", shown(value), cure)
+        return float(found[1]) / parse(f"1 {found[2]}", "m", where) ** power
+
+    return read
+
+
+def or_list(reader: Reader[Made]) -> Reader[tuple[Made, ...]]:
+    """Read one value or a list of them: a batch."""
+
+    def read(value: object, where: str) -> tuple[Made, ...]:
+        if not isinstance(value, list):
+            return (reader(value, where),)
+        if not 1 <= len(value) <= MOST_CASES:
+            raise InputError(where, f"must have 1 to {MOST_CASES} values", f"{len(value)}")
+        return list_of(reader)(value, where)
+
+    return read
+
+
+def within(
+    reader: Reader[Number], low: float, high: float, unit: str, *, open_low: bool = False
+) -> Reader[Number]:
+    """Read a number between two bounds."""
+
+    def read(value: object, where: str) -> Number:
+        found = reader(value, where)
+        if not low <= found <= high or (open_low and found == low):
+            ends = f"be above {low:g} and at most {high:g}" if open_low else f"lie from {low:g} to {high:g}"
+            raise InputError(where, f"must {ends} [{unit}]", shown(value))
+        return found
+
+    return read
+
+
+_LENGTH = within(quantity("m"), 0.0, 1e3, "m", open_low=True)
+_MODULUS = within(quantity("Pa"), 0.0, LARGEST_MODULUS, "Pa", open_low=True)
+_CREEP = or_list(within(ratio, -LARGEST_CREEP, LARGEST_CREEP, "-"))
+_COEFFICIENT = within(ratio, 0.0, 100.0, "-")
+_CELLS = within(whole, SMALLEST_SIDE, LARGEST_SIDE, "-")
+_SOLID: dict[str, Reader[object]] = {
+    "material": text,
+    "elastic_modulus": _MODULUS,
+    "shear_modulus": _MODULUS,
+    "poisson_ratio": within(ratio, 0.0, 0.5, "-"),
+}
+BODY = _SOLID | {"layers": lambda value, _: value}
+LAYER: Mapping[str, Reader[object]] = _SOLID | {
+    "thickness": _LENGTH,
+    "poisson_ratio": within(ratio, 0.0, NEARLY_INCOMPRESSIBLE, "-"),
+}
+SECTIONS: Mapping[str, Mapping[str, Reader[object]]] = {
+    "contact": {
+        "load": within(quantity("N"), 0.0, 1e12, "N", open_low=True),
+        **dict.fromkeys(
+            ("semi_axis_rolling", "semi_axis_lateral", "radius_rolling", "radius_lateral"), _LENGTH
+        ),
+    },
+    "body_1": BODY,
+    "body_2": BODY,
+    "friction": {
+        "coefficient": _COEFFICIENT,
+        "across": list_of(quantity("m")),
+        "coefficients": list_of(_COEFFICIENT),
+        "cohesion": within(quantity("Pa"), 0.0, LARGEST_MODULUS, "Pa"),
+        "shear_strength": _MODULUS,
+    },
+    "film": {
+        "thickness": within(quantity("m"), 0.0, 1e3, "m"),
+        "across": list_of(quantity("m")),
+        "thicknesses": list_of(within(quantity("m"), 0.0, 1e3, "m")),
+        "shear_modulus": _MODULUS,
+        "roughness": within(quantity("m"), 0.0, 1e-3, "m"),
+    },
+    "motion": {"kind": choice(Motion)},
+    "grid": {"columns": _CELLS, "rows": _CELLS},
+    "pressure": {"own": truth, "coupled": truth, "two_way": truth},
+}
+"""Sections of a contact file and how each key is read; the keys of [motion] depend on its kind."""
+
+_SHIFT = or_list(within(quantity("m"), -1e3, 1e3, "m"))
+_ROLLS = {
+    "kind": choice(Motion),
+    "longitudinal": _CREEP,
+    "lateral": _CREEP,
+    "spin": or_list(per_length(1)),
+    "curvature": or_list(per_length(2)),
+}
+MOTIONS: Mapping[Motion, Mapping[str, Reader[object]]] = {
+    Motion.ROLLING: _ROLLS | {"slope": truth},
+    Motion.TRANSIENT: _ROLLS | {"distance": or_list(_LENGTH)},
+    Motion.SHIFT: {
+        "kind": choice(Motion),
+        "longitudinal": _SHIFT,
+        "lateral": _SHIFT,
+        "spin": or_list(within(quantity("rad"), -1e3, 1e3, "rad")),
+    },
+}
 
 
 @dataclass(slots=True)
 class _File:
-    """Sections of the file, read key by key; what is wrong is collected."""
+    """Sections of the file, read key by key; faults are collected."""
 
-    data: dict[str, Any]
+    data: dict[str, object]
     places: Places
     problems: list[InputError] = field(default_factory=list)
 
-    def section(self, name: str, readers: Mapping[str, Reader], *, needed: bool = False) -> dict[str, Any]:
+    def section(self, name: str, readers: Mapping[str, Reader[object]], *, needed: bool = False) -> Values:
         """Values of a section that could be read; None is a value that was refused."""
         given = self.data.get(name, {} if not needed else None)
         if not isinstance(given, dict):
@@ -49,10 +175,10 @@ class _File:
         return self.table(given, f"[{name}] ", readers, f"[{name}]")
 
     def table(
-        self, given: Mapping[str, Any], prefix: str, readers: Mapping[str, Reader], what: str
-    ) -> dict[str, Any]:
-        """Values of a table, whose keys are `what`'s."""
-        found: dict[str, Any] = {}
+        self, given: Mapping[str, object], prefix: str, readers: Mapping[str, Reader[object]], what: str
+    ) -> Values:
+        """Values of a table, which a refusal calls `what`."""
+        found: Values = {}
         for key, value in given.items():
             at = f"{prefix}{printable(key)}"
             with noted(self.problems):
@@ -62,10 +188,6 @@ class _File:
                 found[key] = readers[key](value, at)
         return found
 
-    def lacks(self, where: str, *keys: str) -> None:
-        """Note that keys are missing."""
-        self.problems.append(InputError(where, f"lacks: {', '.join(keys)}"))
-
     def refuse(self) -> None:
         """Raise everything that is wrong, each fault in its place."""
         if self.problems:
@@ -73,13 +195,7 @@ class _File:
 
 
 def read_contact_toml(path: Path) -> ContactQuestion:
-    """Read a contact file.
-
-    Raises
-    ------
-    InputError
-        Everything that is wrong, a line each: place, rule, value, cure.
-    """
+    """Read a contact file; a refusal has everything that is wrong, a line each."""
     data, lines = read_toml(path, FILE)
     file = _File(data, places_of(label_of(path), data, lines))
     for name in data:
@@ -117,12 +233,12 @@ def read_contact_toml(path: Path) -> ContactQuestion:
     columns, rows = cell_counts(grid.get("columns"), grid.get("rows"), semi_minor=b, semi_major=a)
     setup = ContactSetup(problem=problem, columns=columns, rows=rows, is_two_way=is_two_way)
     with noted(file.problems):
-        _check_size(problem, moves)
+        refuse_extremes(problem, moves)
     file.refuse()
-    return ContactQuestion(name=path.stem, title=title, cases=_cases(setup, motion, moves), slope=slope)
+    return ContactQuestion(name=path.stem, title=title, cases=cases_of(setup, motion, moves), slope=slope)
 
 
-def _solid(file: _File, given: Mapping[str, Any], where: str, kind: str) -> Solid | None:
+def _solid(file: _File, given: Values, where: str, kind: str) -> Solid | None:
     """Elastic solid of a body or a layer; None where it was refused."""
     if None in given.values():
         return None
@@ -147,11 +263,8 @@ def _body(file: _File, name: str) -> Body | None:
     base = None
     if isinstance(file.data.get(name), dict):
         base = _solid(file, given, f"[{name}]", "bearing material")
-    if (
-        not isinstance(listed, list)
-        or len(listed) > MOST_LAYERS
-        or not all(isinstance(x, dict) for x in listed)
-    ):
+    is_list = isinstance(listed, list) and all(isinstance(item, dict) for item in listed)
+    if not is_list or len(listed) > MOST_LAYERS:
         rule = f"must be at most {MOST_LAYERS} tables, headed [[{name}.layers]], the outermost first"
         file.problems.append(InputError(f"[{name}] layers", rule))
         return None
@@ -161,7 +274,7 @@ def _body(file: _File, name: str) -> Body | None:
         found = file.table(item, f"{where}.", LAYER, "a layer")
         thickness = found.pop("thickness", 0.0)
         if thickness == 0.0:
-            file.lacks(where, "thickness")
+            file.problems.append(InputError(where, "lacks: thickness"))
         made = _solid(file, found, where, "film")
         if made is not None and thickness:
             with noted(file.problems):
@@ -169,11 +282,10 @@ def _body(file: _File, name: str) -> Body | None:
     return None if base is None or len(file.problems) > before else Body(base=base, layers=tuple(layers))
 
 
-def _profile(file: _File, given: dict[str, Any], section: str, one: str, many: str) -> float | Profile | None:
+def _profile(file: _File, given: Values, section: str, one: str, many: str) -> float | Profile | None:
     """A number, or a profile across the contact; None where it was refused or there is none."""
     if one in given and not {"across", many} & set(given):
-        number: float | None = given[one]
-        return number
+        return float(given[one]) if given[one] is not None else None
     if one in given or ("across" in given) != (many in given):
         rule = f"needs either {one}, or across and {many}"
         file.problems.append(InputError(f"[{section}]", rule, ", ".join(given)))
@@ -190,7 +302,7 @@ def _friction(file: _File) -> FrictionLaw | None:
     limits = {key: given.pop(key) for key in ("cohesion", "shear_strength") if key in given}
     if not given:
         if isinstance(file.data.get("friction"), dict):
-            file.lacks("[friction]", "coefficient")
+            file.problems.append(InputError("[friction]", "lacks: coefficient"))
         return None
     mu = _profile(file, given, "friction", "coefficient", "coefficients")
     if mu is None or None in limits.values():
@@ -202,27 +314,25 @@ def _film(file: _File) -> tuple[float | Profile, float]:
     """Compliance L = h/G of a film in series [m/Pa], and length of roughness [m]; 0 without."""
     given = file.section("film", SECTIONS["film"])
     roughness = given.pop("roughness", 0.0) or 0.0
-    return (_compliance(file, given) if given else 0.0), roughness
-
-
-def _compliance(file: _File, given: dict[str, Any]) -> float | Profile:
+    if not given:
+        return 0.0, roughness
     modulus = given.pop("shear_modulus", 0.0)
     if modulus == 0.0:
-        file.lacks("[film]", "shear_modulus")
+        file.problems.append(InputError("[film]", "lacks: shear_modulus"))
     if not given:
-        file.lacks("[film]", "thickness")
+        file.problems.append(InputError("[film]", "lacks: thickness"))
     h = _profile(file, given, "film", "thickness", "thicknesses") if given else None
     if h is None or not modulus:
-        return 0.0
+        return 0.0, roughness
     if isinstance(h, Profile):
-        return Profile(across=h.across, values=tuple(one / modulus for one in h.values))
-    return h / float(modulus)
+        return Profile(across=h.across, values=tuple(one / modulus for one in h.values)), roughness
+    return h / modulus, roughness
 
 
 def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEllipse | None:
     given = file.section("contact", SECTIONS["contact"], needed=True)
-    if isinstance(file.data.get("contact"), dict) and "load" not in file.data["contact"]:
-        file.lacks("[contact]", "load")
+    if isinstance(written := file.data.get("contact"), dict) and "load" not in written:
+        file.problems.append(InputError("[contact]", "lacks: load"))
     shape = sorted(key for key in given if key != "load")
     names = [[f"{name}_{side}" for side in ("lateral", "rolling")] for name in ("semi_axis", "radius")]
     if given and shape not in names:
@@ -243,10 +353,11 @@ def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEll
             value = format_quantity(found.max_pressure, "Pa", 3)
             cure = f"The modulus of the pair is {format_quantity(modulus, 'Pa', 3)}."
             raise InputError("[contact]", "needs a pressure below the modulus of the pair", value, cure)
-        steepest = max(
-            found.semi_minor * found.curvature_rolling, found.semi_major * found.curvature_transverse
+        along, across = (
+            found.semi_minor * found.curvature_rolling,
+            found.semi_major * found.curvature_transverse,
         )
-        if steepest > LARGEST_STEEPNESS:
+        if (steepest := max(along, across)) > LARGEST_STEEPNESS:
             said = f"a half axis of the contact is {steepest:.2g} of the radius of the gap there; "
             limit = f"half-spaces describe the bodies to about {LARGEST_STEEPNESS:g}."
             warnings.warn(said + limit, ValidityWarning, stacklevel=2)
@@ -257,21 +368,21 @@ def _ellipse(file: _File, bodies: tuple[Body | None, Body | None]) -> ContactEll
 def _motion(file: _File) -> tuple[Motion, dict[str, tuple[float, ...]], bool]:
     """Kind of motion; its values, lists of one length or of one value; whether the slope is wanted."""
     raw = file.data.get("motion")
-    kind = Motion.ROLLING
-    if isinstance(raw, dict) and "kind" in raw:
-        try:
-            kind = choice(Motion)(raw["kind"], "[motion] kind")
-        except InputError as error:
-            file.problems.append(error)
-            return kind, {}, False
+    try:
+        kind = choice(Motion)(
+            raw.get("kind", "rolling") if isinstance(raw, dict) else "rolling", "[motion] kind"
+        )
+    except InputError as error:
+        file.problems.append(error)
+        return Motion.ROLLING, {}, False
     given = file.section("motion", MOTIONS[kind], needed=True)
     given.pop("kind", None)
     slope = bool(given.pop("slope", False))
     moves = {key: value for key, value in given.items() if value is not None}
     if kind is Motion.TRANSIENT and "distance" not in given:
-        file.lacks("[motion]", "distance")
+        file.problems.append(InputError("[motion]", "lacks: distance"))
     if isinstance(raw, dict) and not given:
-        file.lacks("[motion]", "longitudinal, lateral or spin")
+        file.problems.append(InputError("[motion]", "lacks: longitudinal, lateral or spin"))
     counts = {len(value) for key, value in moves.items() if len(value) > 1}
     if len(counts) > 1:
         rule = "must have as many values in each list"
@@ -282,44 +393,3 @@ def _motion(file: _File) -> tuple[Motion, dict[str, tuple[float, ...]], bool]:
     if any(b <= a for a, b in pairwise(distance)):
         file.problems.append(InputError("[motion] distance", "must be strictly increasing"))
     return kind, moves, slope
-
-
-def _check_size(problem: ContactProblem, moves: Mapping[str, tuple[float, ...]]) -> None:
-    """Refuse spin that slips too fast, rolling without end, and films that are crushed."""
-    ellipse = problem.ellipse
-    reach = max(ellipse.semi_minor, ellipse.semi_major)
-    for key, power in (("spin", 1), ("curvature", 2)):
-        largest = max((abs(one) for one in moves.get(key, ())), default=0.0) * reach**power
-        if largest > LARGEST_CREEP:
-            rule = f"must make a creep of at most {LARGEST_CREEP:g} at the edge of the contact [-]"
-            raise InputError(f"[motion] {key}", rule, f"{largest:.3g}")
-    longest = max(moves.get("distance", (0.0,)))
-    if longest > LARGEST_STEPS * 2.0 * ellipse.semi_minor / LARGEST_SIDE:
-        most = f"{LARGEST_STEPS * 2e3 * ellipse.semi_minor / LARGEST_SIDE:.3g} mm"
-        cure = "Beyond a few lengths of the contact rolling is steady."
-        raise InputError("[motion] distance", f"must not exceed {most}", f"{1e3 * longest:.3g} mm", cure)
-    strain = film_strain(problem.bodies, ellipse.max_pressure)
-    if strain > 1.0 and not problem.own_pressure:
-        cure = (
-            "Set own = true in [pressure] to have the lower pressure of the coated bodies, or use less load."
-        )
-        raise InputError("[contact] load", "compresses a layer by more than itself", f"{strain:.2g}", cure)
-
-
-def _cases(
-    setup: ContactSetup, kind: Motion, moves: Mapping[str, tuple[float, ...]]
-) -> tuple[ContactCase, ...]:
-    count = max(map(len, moves.values()))
-    each = {key: value * count if len(value) == 1 else value for key, value in moves.items()}
-    names = {"longitudinal": "longitudinal_creep", "lateral": "lateral_creep"}
-    if kind is Motion.SHIFT:
-        names = {"longitudinal": "longitudinal_shift", "lateral": "lateral_shift", "spin": "turn"}
-    rolled = each.pop("distance", ())
-    cases = []
-    for i in range(count):
-        given: dict[str, Any] = {names.get(key, key): value[i] for key, value in each.items()}
-        if rolled:
-            before = rolled[i - 1] if i > 0 else 0.0
-            given |= {"distance": rolled[i] - before, "continues": i > 0}
-        cases.append(ContactCase(number=i + 1, setup=setup, motion=kind, **given))
-    return tuple(cases)

@@ -1,45 +1,61 @@
-"""Counting the bearings of a case that settle, no longer than its verdict is open."""
+"""Counting the drawn bearings that settle: for a verdict, and for the friction or film that they can have.
+
+A case is counted no longer than its verdict is open. For a friction or a restitution factor, P(settles) is
+followed with the same counts and the same search as the critical friction of one cage (`limits.response`), at
+the share of bearings that may fail.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 
 import numpy as np
 
-from separatrix.cage import Ensemble, Judgement, KickCount, RunOutcome, Verdict, judge, wilson_interval
+from separatrix.cage import (
+    Ensemble,
+    Judgement,
+    KickCount,
+    PlanarCage,
+    RunOutcome,
+    Verdict,
+    judge,
+    wilson_interval,
+)
 from separatrix.cage.verdict import CLEAR, FEW
+from separatrix.chain.lubrication import LubricationCurve
+from separatrix.distribution import LogNormal
 from separatrix.draws import Case
+from separatrix.explore.records import AllowedFilm, AllowedFriction
+from separatrix.limits.response import (
+    SEARCHED_FRICTION,
+    Count,
+    Crossing,
+    Response,
+    Side,
+    ends_of,
+    race_damping_at,
+)
 from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner, joined
-from separatrix.units import MetrePerSecond, Ratio
+from separatrix.units import Array, MetrePerSecond, Ratio
 
-BLOCK = 64
-"""Bearings after which a case is looked at."""
-
+BLOCK = 64  # bearings after which a case is judged
 RISK: Ratio = 1e-3
-"""Probability, at each look, that a case is ended whose true share lies on the other side of a limit."""
+"""Probability, at each judgement, that a case is ended whose true share lies on the other side of a limit."""
 
-NORMAL = 3.2905
-"""Normal quantile of that probability, on both sides together."""
+NORMAL = 3.2905  # normal quantile of that probability, on both sides together
 
 
-def counted(
-    bearings: DrawnBearings, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner
-) -> tuple[Judgement, Ensemble]:
-    """Run the bearings of a case in blocks, until all have run or the verdict is plain.
+def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgement, Ensemble]:
+    """Run the bearings of a case in blocks, until all have run or the verdict is decided.
 
-    A kick from which plainly more bearings settle than from the worst is not run further; its count stays in
-    the judgement, whose other evidence is that of the kicks that are left.
-
-    Raises
-    ------
-    Interrupted
-        The work was interrupted.
+    A kick from which significantly more bearings settle than from the worst is not run further; its count
+    stays in the judgement, whose other evidence is that of the kicks that are left.
     """
     parts: list[Ensemble] = []
     left_out: list[KickCount] = []
-    total, kicks = len(bearings.runs), list(kicks)
+    total, kicks = len(bearings.runs), list(bearings.kicks)
     for first in range(0, total, BLOCK):
         parts.append(bearings.ensemble(case, kicks, range(first, min(first + BLOCK, total)), runner))
         found = joined(parts)
@@ -51,29 +67,20 @@ def counted(
             left_out += better
             kept = [i for i, one in enumerate(judged.by_kick) if one not in better]
             kicks = [kicks[i] for i in kept]
-            found = of_kicks(found, kept)
+            by_kick = {f.name for f in fields(found) if np.ndim(getattr(found, f.name)) > 0}
+            found = replace(found, **{name: getattr(found, name)[kept] for name in by_kick})
             judged, parts = judge(bearings.cage(case), found), [found]
     counts = sorted((*left_out, *judged.by_kick), key=lambda one: one.kick)
     return replace(judged, by_kick=tuple(counts)), found
 
 
 def settles_more(count: KickCount, judged: Judgement) -> bool:
-    """Whether plainly more bearings settle from a kick than from the worst, most do, and in their pockets."""
+    """Whether significantly more settle from a kick than from the worst, most do, and in their pockets."""
     worst = next(one for one in judged.by_kick if one.kick == judged.worst_kick)
     low = wilson_interval(count.settles, count.runs, NORMAL)[0]
     return 2 * count.kept_by_land <= count.runs and low > max(
         FEW, wilson_interval(worst.settles, worst.runs, NORMAL)[1]
     )
-
-
-def of_kicks(found: Ensemble, places: Sequence[int]) -> Ensemble:
-    """Return the runs from some of the kicks."""
-    rows = list(places)
-    arrays = {name: value[rows] for name in FIELDS if np.ndim(value := getattr(found, name)) > 0}
-    return replace(found, **arrays)
-
-
-FIELDS = tuple(one.name for one in fields(Ensemble))
 
 
 def is_plain(judged: Judgement) -> bool:
@@ -84,7 +91,101 @@ def is_plain(judged: Judgement) -> bool:
     return judged.verdict is Verdict.UNSTABLE and wilson_interval(worst.whirls, worst.runs, NORMAL)[0] > FEW
 
 
-def settles(found: Ensemble, judged: Judgement) -> list[bool]:
-    """Whether each bearing settles from the worst kick."""
+def settles(found: Ensemble, judged: Judgement) -> Array:
+    """1 for each bearing that settles from the worst kick, else 0; shape (bearing,)."""
     at = found.kicks.tolist().index(judged.worst_kick)
-    return [bool(one == RunOutcome.SETTLES) for one in found.outcome[at]]
+    return np.asarray(found.outcome[at] == RunOutcome.SETTLES, dtype=np.float64)
+
+
+PROBABILITY: Ratio = 0.95  # wanted share of bearings that settle
+RUNS = 96  # bearings counted near the answer
+# cage of a bearing at a value that is searched, by its place
+Changed = Callable[[Ratio, int, PlanarCage], PlanarCage]
+
+
+def allowed_friction(
+    bearings: DrawnBearings, names: Sequence[str], scatter: Ratio, runner: Runner
+) -> AllowedFriction:
+    """Largest mean friction of a new material with this scatter, in the pockets of some candidates."""
+    own = next(case for case in bearings.friction if case.candidate == names[0])
+    law = LogNormal(mean=1.0, standard_deviation=scatter) if scatter > 0.0 else None
+    total = len(bearings.runs)
+    random = np.random.default_rng((bearings.study.stability.seed, total))
+    places = (random.permutation(total) + 0.5) / total
+    shares = np.ones(total) if law is None else law.quantile(places)
+
+    def at(friction: Ratio, place: int, cage: PlanarCage) -> PlanarCage:
+        return replace(cage, ball_cage_friction=friction * float(shares[place]))
+
+    found = _worst_crossing(bearings, own, at, 0.1, runner)
+    value, low, high = ends_of(found)
+    reasons = {
+        Side.ABOVE: "fewer settle even without pocket friction",
+        Side.BELOW: f"more settle at every friction up to {SEARCHED_FRICTION:g}",
+    }
+    return AllowedFriction(
+        names=tuple(names),
+        probability=PROBABILITY,
+        scatter=scatter,
+        friction=value,
+        friction_low=low,
+        friction_high=high,
+        reason=reasons[found] if isinstance(found, Side) else "",
+    )
+
+
+def allowed_film(
+    bearings: DrawnBearings, case: Case, films: LubricationCurve | None, runner: Runner
+) -> AllowedFilm:
+    """Largest restitution factor of the central bearing, the dampings of all bearings scaled with its own.
+
+    A film acts on the cage by the race damping alone, so the films that keep below it are read off the
+    central bearing's curve over film thickness and race friction.
+    """
+    central = bearings.cage(case)
+    own = bearings.central[case.candidate].restitution.restitution_factor
+
+    def at(eta: Ratio, _place: int, cage: PlanarCage) -> PlanarCage:
+        ratio = race_damping_at(central, eta) / central.race_damping  # infinite at eta = 1
+        return replace(cage, race_damping=cage.race_damping * ratio)
+
+    found = _worst_crossing(bearings, case, at, max(own, 0.05), runner)
+    value, low, high = ends_of(found)
+    reasons = {
+        Side.ABOVE: "fewer settle at any restitution factor",
+        Side.BELOW: "more settle at every restitution factor",
+    }
+    empty = np.zeros(0)
+    return AllowedFilm(
+        name=case.candidate,
+        probability=PROBABILITY,
+        restitution_factor=value,
+        restitution_factor_low=low,
+        restitution_factor_high=high,
+        reason=reasons[found] if isinstance(found, Side) else "",
+        film_thickness=empty if films is None else films.film_thickness,
+        race_friction=empty if films is None else films.race_friction,
+        film_restitution_factor=np.zeros((0, 0)) if films is None else films.restitution_factor,
+    )
+
+
+def _worst_crossing(
+    bearings: DrawnBearings, case: Case, at: Changed, guess: Ratio, runner: Runner
+) -> Crossing | Side:
+    """Least value over the kicks at which the share of bearings that do not settle passes what may fail.
+
+    ABOVE where more fail from one kick throughout.
+    """
+    total, found = len(bearings.runs), []
+    for kick in bearings.kicks:
+
+        def look(value: Ratio, first: int, runs: int, kick: MetrePerSecond = kick) -> Count:
+            places = [place % total for place in range(first, first + runs)]
+            ran = bearings.ensemble(case, (kick,), places, runner, lambda place, cage: at(value, place, cage))
+            return Count(runs - int(ran.count(RunOutcome.SETTLES)[0]), runs)
+
+        found.append(Response(look, RUNS).crossing(1.0 - PROBABILITY, RUNS, guess))
+    if Side.ABOVE in found:
+        return Side.ABOVE
+    crossings = [one for one in found if isinstance(one, Crossing)]
+    return min(crossings, key=lambda one: one.value) if crossings else Side.BELOW

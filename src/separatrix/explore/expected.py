@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from separatrix.cage import PlanarCage
-    from separatrix.chain.solution import Solution
-    from separatrix.limits.map_records import MapQuestion
-    from separatrix.study import StabilitySettings, Study
-    from separatrix.units import Ratio, Second
+from separatrix.cage import PlanarCage, run_ensemble, settings_for
+from separatrix.cage_choice import ranking_question, required_environment
+from separatrix.chain.contacts import race_tracks
+from separatrix.chain.race_curve import exact_slope, strips
+from separatrix.chain.solution import Solution, solve
+from separatrix.limits.map import PointFinder, require_cage_friction
+from separatrix.limits.map_records import MapQuestion
+from separatrix.limits.point import linear_guess
+from separatrix.limits.response import GrowthCounter
+from separatrix.ranking.reason import NOTICED, transmitted_force, with_other_ball
+from separatrix.runner import PART, Runner
+from separatrix.study import StabilitySettings, Study, TractionModel
+from separatrix.units import Ratio, Second
 
-SAMPLED = 3
-"""Runs from each kick that are timed at a friction."""
-
-LONGEST_SAMPLE = 5.0
-"""Time after which no further friction is timed [s]."""
-
-BRIEF = (1e-3, 1e-2, 1e-1)
-"""Shares of the duration at which a run is timed before it is timed whole."""
-
-SLOW = 0.1
-"""Share of `LONGEST_SAMPLE` from which on the time of a brief run is scaled up."""
-
+SAMPLED = 3  # runs from each kick that are timed at a friction
+LONGEST_SAMPLE = 5.0  # time after which no further friction is timed [s]
+BRIEF = (1e-3, 1e-2, 1e-1)  # shares of the duration at which a run is timed before it is timed whole
+SLOW = 0.1  # share of `LONGEST_SAMPLE` from which on the time of a brief run is scaled up
 DAMPINGS = (None, 0.0, 0.5, 1.0)
 """Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
 
@@ -34,12 +32,8 @@ FACTORS = (0.0, 0.7, 1.5)
 """Frictions at which runs of a curve are timed, as multiples of the linear limit: the work is done below it
 and about it, for runs far above end soon."""
 
-MAP_POINTS_NOT_TIMED = 30
-"""A map of so few points needs no estimate."""
-
-PICTURES = 5.0
-"""Time of a ranking's figures and files [s]."""
-
+MAP_POINTS_NOT_TIMED = 30  # a map of so few points needs no estimate
+PICTURES = 5.0  # time of a ranking's figures and files [s]
 CURVE_POINTS = 16.0
 """Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average. Where
 it bends more, its points take longer, too."""
@@ -47,15 +41,16 @@ it bends more, its points take longer, too."""
 
 def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
     """Time of a stability curve, with its band at every point or only at the cage's own damping."""
-    from separatrix.limits.growth import GrowthCounter
-    from separatrix.limits.point import linear_guess
-
     counts = GrowthCounter(cage, settings)
     some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
     each = _mean(_time_of_a_run(one, settings) for one in some)
     points = float(len(settings.restitution_factors)) or CURVE_POINTS
     banded = points + 1.0 if band else 1.0
-    runs = points * _runs_of_a_point(settings, band=band) + banded * _runs_of_a_band(settings)
+    # of a critical friction: both ends of the ladder, the bracket, and those near the crossing
+    of_a_point = 32.0 + (1.5 if band else 0.75) * settings.runs
+    # of a band: a first look at three crossings of every kick, and more at the ends
+    of_a_band = len(settings.kicks) * (16.0 + 1.5 * settings.runs)
+    runs = points * of_a_point + banded * of_a_band
     return each * runs / jobs
 
 
@@ -76,9 +71,6 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
     Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
     """
-    from separatrix.cage_choice import ranking_question, required_environment
-    from separatrix.chain.solution import solve
-
     asked = ranking_question(study)
     environment = required_environment(study, asked)
     keys: set[tuple[float, Ratio]] = set()
@@ -103,11 +95,6 @@ def expected_ranking(study: Study, *, jobs: int) -> Second:
 
 def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs: int) -> Second:
     """Time of the verdicts by the other model of a ball; none if the races transmit the kick's impact."""
-    from separatrix.cage import settings_for
-    from separatrix.ranking.plausible import transmitted_force
-    from separatrix.ranking.second import NOTICED, with_other_ball
-    from separatrix.runner import PART
-
     cage = solution.cage_with(0.0)
     settings = settings_for(solution.stability, cage)
     force = max(settings.kicks) * math.sqrt(cage.ball_cage_stiffness * cage.mass / 2.0)
@@ -121,9 +108,6 @@ def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs:
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
-    from separatrix.cage_choice import ranking_question
-    from separatrix.chain.solution import solve
-
     asked = ranking_question(study)
     smooth = SOBOL_DRAWS * (2 + sum(1 for key in study.distributions if not key.startswith("ranking.")))
     total = PICTURES + _expected_chains(study, bearings + smooth)
@@ -138,11 +122,6 @@ def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
 
 def _expected_chains(study: Study, count: int) -> Second:
     """Time of the chains of as many drawn bearings; none where only frictions are drawn."""
-    from separatrix.chain.contacts import race_tracks
-    from separatrix.chain.race_curve import exact_slope, strips
-    from separatrix.chain.solution import solve
-    from separatrix.study import TractionModel
-
     if all(key.startswith("ranking.") for key in study.distributions):
         return 0.0
     tracks = race_tracks(study.bearing, study.film, solve(study).bearing)
@@ -155,11 +134,8 @@ def _expected_chains(study: Study, count: int) -> Second:
     return count * (time.perf_counter() - start)
 
 
-SOBOL_DRAWS = 256
-"""Draws of each matrix behind the shares of what the chain computes smoothly (`shares`)."""
-
-SHARE_RUN = 0.7
-"""Of the runs of all cases, those that are made, with what the inverse questions take."""
+SOBOL_DRAWS = 256  # draws of each matrix behind the shares of what the chain computes smoothly (`shares`)
+SHARE_RUN = 0.7  # of the runs of all cases, those that are made, with what the inverse questions take
 
 
 def expected_map(question: MapQuestion, *, jobs: int) -> Second:
@@ -168,9 +144,6 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
     Those of its first row and column are not timed: with them the links of the chain are made that others
     share.
     """
-    from separatrix.limits.map import PointFinder, require_cage_friction
-    from separatrix.runner import Runner
-
     require_cage_friction(question)
     xs, ys = (_some(axis.values) for axis in (question.x, question.y))
     points = len(question.x.values) * len(question.y.values)
@@ -181,29 +154,18 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
         finder((x, ys[0]))
     for y in ys[1:]:
         finder((xs[0], y))
-    each = _mean(_time_of(finder, (x, y)) for x in xs[1:] for y in ys[1:])
-    return each * points / jobs
+
+    def timed(x: float, y: float) -> Second:
+        begun = time.perf_counter()
+        finder((x, y))
+        return time.perf_counter() - begun
+
+    return _mean(timed(x, y) for x in xs[1:] for y in ys[1:]) * points / jobs
 
 
 def _some(values: Sequence[float]) -> list[float]:
     """Three of the values of an axis, evenly chosen, or both of two."""
     return list(dict.fromkeys(values[round(i * (len(values) - 1) / 2)] for i in range(3)))
-
-
-def _time_of(call: Callable[[tuple[float, float]], object], at: tuple[float, float]) -> Second:
-    begun = time.perf_counter()
-    call(at)
-    return time.perf_counter() - begun
-
-
-def _runs_of_a_point(settings: StabilitySettings, *, band: bool) -> float:
-    """Runs behind a critical friction: both ends of the ladder, the bracket, and those near the crossing."""
-    return 32.0 + (1.5 if band else 0.75) * settings.runs
-
-
-def _runs_of_a_band(settings: StabilitySettings) -> float:
-    """Runs behind a band: a first look at three crossings of every kick, and more at the ends."""
-    return len(settings.kicks) * (16.0 + 1.5 * settings.runs)
 
 
 def _mean(times: Iterable[Second]) -> Second:
@@ -222,7 +184,6 @@ def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
     Where runs are slow, as of balls that the races of a slow bearing stop within nanoseconds, a brief one is
     timed in place of the whole.
     """
-    from separatrix.cage import run_ensemble
 
     def taken(share: Ratio, runs: int) -> Second:
         some = replace(settings, duration=share * settings.duration)

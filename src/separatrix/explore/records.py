@@ -1,4 +1,4 @@
-"""What `sensitivity` answers."""
+"""The records of a sensitivity analysis."""
 
 from __future__ import annotations
 
@@ -11,11 +11,7 @@ from separatrix.units import Array, MetrePerSecond, Ratio, Rows
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputRow:
-    """One uncertain input: its key in the study, its distribution in words, and where that comes from.
-
-    `source` is "study" where the study states it, "measured" for the scatter of a measured friction,
-    "assumed" for the default one, a guess. Mean and standard deviation are in SI.
-    """
+    """One uncertain input with its distribution."""
 
     name: str  # its key in the study
     unit: str  # of mean and standard deviation, SI
@@ -27,44 +23,24 @@ class InputRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainMaterial:
-    """One measured candidate in one environment, or over all of them.
+    """One measured candidate in one environment, or over all of them."""
 
-    Attributes
-    ----------
-    name : str
-        The candidate.
-    friction, friction_deviation : float
-        Mean and standard deviation of the friction of a new cage [-].
-    friction_scatter_assumed : bool
-        Whether that scatter is the default one, a guess.
-    extrapolation : tuple of str
-        In what respect the friction is extrapolated beyond its tests.
-    probability_lowest_friction : float or None
-        Probability that no other candidate's mean friction is lower; None if no other was measured [-].
-    restitution_factor, restitution_factor_low, restitution_factor_high : float
-        Median over the bearings, and the ends between which nine in ten lie [-].
-    judgement : Judgement or None
-        By the rule of every verb, each run with its own bearing; None where `reason` says why.
-    reason : str
-        A sentence with the numbers.
-    """
-
-    name: str
-    friction: Ratio
-    friction_deviation: Ratio
-    friction_scatter_assumed: bool
-    extrapolation: tuple[str, ...]
-    probability_lowest_friction: Ratio | None
-    restitution_factor: Ratio
-    restitution_factor_low: Ratio
-    restitution_factor_high: Ratio
-    judgement: Judgement | None = None
-    reason: str
+    name: str  # of the candidate
+    friction: Ratio  # mean of the friction of a new cage
+    friction_deviation: Ratio  # standard deviation of the friction of a new cage
+    friction_scatter_assumed: bool  # whether that is the default, a guess
+    extrapolation: tuple[str, ...]  # in what respect the friction is extrapolated beyond its tests
+    probability_lowest_friction: Ratio | None  # that no other mean friction is lower; null without another
+    restitution_factor: Ratio  # median over the bearings
+    restitution_factor_low: Ratio  # 5 % quantile of the bearings
+    restitution_factor_high: Ratio  # 95 % quantile of the bearings
+    judgement: Judgement | None = None  # each run with its own bearing; null where `reason` states why
+    reason: str  # a sentence with the numbers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotDrawn:
-    """A candidate without a measured friction in this environment; `reason` says so."""
+    """A candidate without a measured friction in this environment."""
 
     name: str  # of the candidate
     reason: str  # which test is missing
@@ -84,10 +60,7 @@ class UncertainEnvironment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvergenceRow:
-    """P(stable) of one case against the number of bearings, from its worst kick; `environment` "": overall.
-
-    `size` : shape (size,); `probability_stable` with its 95 % interval, shape (size,) [-].
-    """
+    """P(stable) of one case against the number of bearings, from its worst kick; shape (size,)."""
 
     name: str  # of the candidate
     environment: str  # empty: overall
@@ -120,40 +93,23 @@ class Share:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drivers:
-    """Which inputs decide whether a bearing of one case settles.
+    """Which inputs decide whether a bearing of one case settles."""
 
-    Attributes
-    ----------
-    name, environment : str
-        The case.
-    shares : tuple of Share
-        Of the variance of the logit of P(settles), the largest first, and last that of the single run
-        ("chance"); empty where `reason` says why.
-    reason : str
-        Why nothing can be said; empty otherwise.
-    predicted, counted, bearings : ndarray
-        Calibration on bearings that were left out of the fit: mean prediction and counted share in each bin
-        [-], and how many are in it; shape (bin,).
-    skill : float or None
-        Part of the deviance that the fit removes, on bearings left out [-].
-    """
-
-    name: str
-    environment: str
+    name: str  # of the candidate
+    environment: str  # of the case
     shares: tuple[Share, ...]
-    reason: str
-    predicted: Array
-    counted: Array
-    bearings: Array
-    skill: Ratio | None
+    """Of the variance of the logit of P(settles), largest first, chance last; empty where `reason` states
+    why."""
+    reason: str  # why there are no shares; empty otherwise
+    predicted: Array  # mean prediction in each bin of bearings left out of the fit, shape (bin,)
+    counted: Array  # share that settles, in the same bins, shape (bin,)
+    bearings: Array  # number in each bin, shape (bin,)
+    skill: Ratio | None  # part of the deviance that the fit removes, on bearings left out
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmoothShares:
-    """First-order and total Sobol indices of a number that the chain computes.
-
-    `quantity` is "restitution_factor" or "race_damping", `name` the candidate.
-    """
+    """First-order and total Sobol indices of a number that the chain computes."""
 
     quantity: str  # restitution_factor or race_damping
     name: str  # of the candidate
@@ -173,16 +129,12 @@ class TestGain:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AllowedFriction:
-    """Largest pocket friction of a new material at which a bearing settles with a probability.
-
-    `names` are the candidates whose pockets it holds for. `friction` is None where no friction is low enough,
-    or none too high; `reason` says which.
-    """
+    """Largest pocket friction of a new material at which a bearing settles with a probability."""
 
     names: tuple[str, ...]  # candidates whose pockets it is for
     probability: Ratio  # wanted, to settle
     scatter: Ratio  # assumed of a new cage, as a share of the mean
-    friction: Ratio | None  # largest mean friction; null where `reason` says why
+    friction: Ratio | None  # largest mean friction; null where `reason` states why
     friction_low: Ratio | None  # lower end of the 95 % interval
     friction_high: Ratio | None  # upper end of the 95 % interval
     reason: str  # why there is no limit; empty if there is
@@ -190,43 +142,23 @@ class AllowedFriction:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AllowedFilm:
-    """Largest restitution factor at which a case settles with a probability, and the films that keep to it.
+    """Largest restitution factor at which a case settles with a probability, and the films below it."""
 
-    Attributes
-    ----------
-    name : str
-        The candidate, in the bearing's own environment.
-    probability : float
-        Wanted [-].
-    restitution_factor, restitution_factor_low, restitution_factor_high : float or None
-        Of the central bearing, the others scaled with it [-]; None where `reason` says why.
-    film_thickness : ndarray
-        Shape (thickness,) [m].
-    race_friction : ndarray
-        Shape (friction,) [-].
-    film_restitution_factor : ndarray
-        Of the central bearing with each film, shape (friction, thickness); empty without a film [-].
-    """
-
-    name: str
-    probability: Ratio
-    restitution_factor: Ratio | None
-    restitution_factor_low: Ratio | None
-    restitution_factor_high: Ratio | None
+    name: str  # of the candidate, in the bearing's own environment
+    probability: Ratio  # wanted, to settle
+    restitution_factor: Ratio | None  # of the central bearing; null where `reason` states why
+    restitution_factor_low: Ratio | None  # lower end of the 95 % interval
+    restitution_factor_high: Ratio | None  # upper end of the 95 % interval
     reason: str  # why there is no limit; empty if there is
-    film_thickness: Array
-    race_friction: Array
+    film_thickness: Array  # shape (thickness,) [m]
+    race_friction: Array  # shape (friction,) [-]
     film_restitution_factor: Array
+    """Of the central bearing with each film, shape (friction, thickness); empty without a film."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainStudy:
-    """Answer of `sensitivity`.
-
-    `bearings` were drawn, of which `failed` make no bearing, for the reasons in `notes`. A case that is plain
-    before has fewer runs (`stopped_risk`: largest probability that all of them would decide otherwise).
-    `undecided` names the cases without a verdict. `complete` is False if an interrupt left something out.
-    """
+    """Answer of `sensitivity`; a case whose verdict is decided early has fewer runs."""
 
     bearings: int  # drawn for each case
     failed: int  # of these, that do not make a bearing

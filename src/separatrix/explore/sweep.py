@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.cage import Judgement, judge, linear_whirl_frequency
 from separatrix.cage_choice import require_friction
-from separatrix.chain.contacts import BearingState
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.explore.envelope import TIME_SHARE, Duty, WorstCase, duty, orders, time_shares, worst_case
-from separatrix.limits import own_threshold
-from separatrix.limits.map_parameters import KICK, RESTITUTION, Parameter, parameters, varied
+from separatrix.explore.cases import MOST_CASES, TIME_SHARE, Case
+from separatrix.limits.curve import own_threshold
+from separatrix.limits.map_records import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.runner import Runner
-from separatrix.study import Study
+from separatrix.study import Operation, Study
 from separatrix.units import (
     Hertz,
     Metre,
@@ -34,10 +33,95 @@ from separatrix.units import (
 if TYPE_CHECKING:
     import pandas as pd
 
-MOST_CASES = 100_000
 
-# Values of some numbers of a study, by their names in a study file, in SI units.
-Case = Mapping[str, float]
+ROUNDING = 1e-9  # share of their value by which cases that are alike may differ
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorstCase:
+    """The case nearest to instability, or farthest beyond it."""
+
+    case: int  # its number
+    quantity: str
+    """Which decides: margin (lowest), probability_stable (lowest) or restitution_factor (highest)."""
+    value: Ratio  # of that quantity
+    compared: int  # cases that have it; the others were refused
+    alike: int  # cases that are as bad, this one included
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Duty:
+    """Shares of the time of a duty cycle [-]; None where the quantity was not computed."""
+
+    below_margin: Ratio | None  # with a margin below zero
+    stable: Ratio | None  # with this verdict
+    unstable: Ratio | None  # with this verdict
+    undecided: Ratio | None  # with this verdict
+    refused: Ratio  # without the number that decides
+
+
+def orders(operation: Operation, ball_count: int, cage_speed: RadianPerSecond) -> dict[str, Hertz]:
+    """Return the frequencies of shaft and cage, and of balls that pass a place of a ring.
+
+    The shaft is the ring that turns faster; the cage turns with the ball set.
+    """
+    speeds = operation.inner_speed, operation.outer_speed, cage_speed
+    inner, outer, cage = (speed / (2.0 * math.pi) for speed in speeds)
+    return {
+        "shaft_frequency": max(abs(inner), abs(outer)),
+        "cage_frequency": abs(cage),
+        "outer_pass_frequency": ball_count * abs(cage - outer),
+        "inner_pass_frequency": ball_count * abs(inner - cage),
+    }
+
+
+def time_shares(cases: Sequence[Mapping[str, float]]) -> list[Ratio]:
+    """Share of each case in the time of all, none where no case has one; `InputError` if they have no sum."""
+    if TIME_SHARE not in cases[0]:
+        return []
+    given = [case[TIME_SHARE] for case in cases]
+    for place, one in enumerate(given):
+        if not 0.0 <= one < math.inf:
+            raise InputError(f"Case {place}, {TIME_SHARE}", "must be a finite share or time >= 0", f"{one:g}")
+    total = math.fsum(given)
+    if not 0.0 < total < math.inf:
+        raise InputError(TIME_SHARE, "must be above 0 in some case", f"a sum of {total:g}")
+    return [one / total for one in given]
+
+
+def worst_case(cases: Iterable[SweptCase]) -> WorstCase | None:
+    """Return the worst case, the first of those that are alike; None where no case has an answer."""
+    known = list(cases)
+    for quantity, sign in (("margin", 1.0), ("probability_stable", 1.0), ("restitution_factor", -1.0)):
+        found = [(sign * value, one.case) for one in known if (value := getattr(one, quantity)) is not None]
+        if found:
+            value, case = min(found)
+            alike = sum(math.isclose(one, value, rel_tol=ROUNDING) for one, _ in found)
+            counts = {"compared": len(found), "alike": alike}
+            return WorstCase(case=case, quantity=quantity, value=sign * value, **counts)
+    return None
+
+
+def duty(cases: Iterable[SweptCase]) -> Duty | None:
+    """Return the time spent below a margin of zero and in each verdict; None without shares of time."""
+    known = [(one, one.time_share) for one in cases if one.time_share is not None]
+    if not known:
+        return None
+    has_margins = any(one.margin is not None for one, _ in known)
+    has_verdicts = any(one.verdict is not None for one, _ in known)
+    decides = "margin" if has_margins else "verdict" if has_verdicts else "restitution_factor"
+
+    def in_verdict(name: str) -> Ratio | None:
+        return math.fsum(share for one, share in known if one.verdict == name) if has_verdicts else None
+
+    below = math.fsum(share for one, share in known if one.margin is not None and one.margin < 0.0)
+    return Duty(
+        below_margin=below if has_margins else None,
+        stable=in_verdict("STABLE"),
+        unstable=in_verdict("UNSTABLE"),
+        undecided=in_verdict("UNDECIDED"),
+        refused=math.fsum(share for one, share in known if getattr(one, decides) is None),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,8 +129,8 @@ class SweptCase:
     """What the chain gives for a case; None from where it was refused, with the reason.
 
     Loads, contacts and slopes are those of the most loaded ball, clearances those of the running cage.
-    Threshold and margin, and the verdict with its evidence (`Judgement`), are None unless asked for.
-    Frequencies are those that a sensor on the housing would see (`explore.envelope.orders`).
+    Threshold and margin, and the verdict with its evidence (`Judgement`), are None unless requested.
+    Frequencies are those that a sensor on the housing would see (`orders`).
     """
 
     case: int  # number of the case, from 0
@@ -93,24 +177,19 @@ class SweptCase:
     reason: str = ""  # why the case was refused; empty if it was not
 
 
-EVIDENCE = {f.name for f in fields(SweptCase)} & {f.name for f in fields(Judgement)} - {
-    "verdict",
-    "cage_motion",
-}
-"""What a case takes from its judgement as it is."""
+# what a case takes from its judgement as it is
+EVIDENCE = {f.name for f in fields(SweptCase)} & {f.name for f in fields(Judgement)}
+EVIDENCE -= {"verdict", "cage_motion"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweep:
-    """Cases in their order, and the parameters that they vary; an interrupt leaves some out.
-
-    `worst` is None where no case has an answer, `duty` without shares of time.
-    """
+    """Cases in their order, and the parameters that they vary; an interrupt leaves some out."""
 
     parameters: tuple[Parameter, ...]  # the varied inputs
     cases: tuple[SweptCase, ...]  # a row for each
-    verdicts: bool  # whether verdicts were asked for
-    margins: bool  # whether thresholds and margins were asked for
+    verdicts: bool  # whether verdicts were computed
+    margins: bool  # whether thresholds and margins were computed
     worst: WorstCase | None  # least margin, P(stable), or largest eta; null without an answer
     duty: Duty | None  # time in each verdict; null without shares of time
     complete: bool  # false if an interrupt left cases out
@@ -121,7 +200,7 @@ class Sweep:
 
         return pd.DataFrame(self.rows()).set_index("case")
 
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[dict[str, object]]:
         """Cases with the same keys: number, values by the parameters' names, what came out."""
         names = [one.name for one in self.parameters]
         out = [f.name for f in fields(SweptCase) if f.name not in ("case", "values")]
@@ -141,21 +220,11 @@ def sweep(
     margins: bool = False,
     runner: Runner | None = None,
 ) -> Sweep:
-    """Run the chain for each case of a study.
+    """Run the chain for each case of a study; on request its threshold and the whole ensemble, too.
 
-    Parameters
-    ----------
-    study : Study
-        Where a case says nothing.
-    cases : sequence of mapping
-        Values by the names of a study file, in SI units, and perhaps ``"time_share"`` (shares, hours: any
-        unit, for they are divided by their sum); every case has the same names.
-    verdicts : bool
-        Whether to run the whole ensemble of each case, too.
-    margins : bool
-        Whether to compute the threshold of each case, too.
-    runner : Runner, optional
-        How the runs are made; the numbers do not depend on it.
+    Each case has values by the names of a study file, in SI units, and perhaps a ``"time_share"`` (shares,
+    hours: any unit, for they are divided by their sum); every case has the same names. The numbers do not
+    depend on the runner.
 
     Raises
     ------
@@ -215,59 +284,74 @@ def _swept(
     try:
         asked = varied(study, case)
         solution = solve(asked)
-        found = replace(found, **_of_bearing(solution.bearing))
-        turning: dict[str, Any] = orders(
-            asked.operation, asked.bearing.ball_count, solution.bearing.cage_speed
+        bearing = solution.bearing
+        inner, outer = bearing.inner, bearing.outer
+        turning = orders(asked.operation, asked.bearing.ball_count, bearing.cage_speed)
+        found = replace(
+            found,
+            cage_speed=bearing.cage_speed,
+            load_inner=inner.load,
+            load_outer=outer.load,
+            contact_angle_inner=inner.contact_angle,
+            contact_angle_outer=outer.contact_angle,
+            max_pressure_inner=inner.ellipse.max_pressure,
+            max_pressure_outer=outer.ellipse.max_pressure,
+            spin_roll_ratio_inner=inner.spin_roll_ratio,
+            spin_roll_ratio_outer=outer.spin_roll_ratio,
+            shaft_frequency=turning["shaft_frequency"],
+            cage_frequency=turning["cage_frequency"],
+            outer_pass_frequency=turning["outer_pass_frequency"],
+            inner_pass_frequency=turning["inner_pass_frequency"],
         )
-        found = replace(found, **turning)
-        traction = solution.slopes
-        found = replace(found, slope_inner=traction.inner.slope, slope_outer=traction.outer.slope)
+        slopes = solution.slopes
+        found = replace(found, slope_inner=slopes.inner.slope, slope_outer=slopes.outer.slope)
         if study.cage is None:
             return found
-        found = replace(found, **_of_restitution(solution))
+        eta, design = solution.restitution, solution.design
+        found = replace(
+            found,
+            ball_cage_stiffness=eta.ball_cage_stiffness,
+            race_damping=eta.race_damping,
+            damping_ratio=eta.damping_ratio,
+            restitution_factor=eta.restitution_factor,
+            pocket_clearance=design.pocket_clearance,
+            land_clearance=design.land_clearance,
+            linear_whirl_frequency=linear_whirl_frequency(solution.cage_with(0.0)),
+        )
         friction = solution.friction
         found = replace(found, ball_cage_friction=None if friction is None else friction.mean)
         if margins:
-            found = replace(found, **_margin(solution, runner))
-        return replace(found, **_verdict(solution, runner)) if verdicts else found
+            found = _with_margin(found, solution, runner)
+        return _with_verdict(found, solution, runner) if verdicts else found
     except SeparatrixError as error:
         return replace(found, reason=str(error))
 
 
-def _of_bearing(state: BearingState) -> dict[str, Any]:
-    races = {"inner": state.inner, "outer": state.outer}
-    found = {"cage_speed": state.cage_speed}
-    for race, at in races.items():
-        found[f"load_{race}"], found[f"contact_angle_{race}"] = at.load, at.contact_angle
-        found[f"max_pressure_{race}"] = at.ellipse.max_pressure
-        found[f"spin_roll_ratio_{race}"] = at.spin_roll_ratio
-    return found
-
-
-def _of_restitution(solution: Solution) -> dict[str, Any]:
-    """Restitution factor, running clearances, and the whirl without clearance."""
-    names = ("ball_cage_stiffness", "race_damping", "damping_ratio", "restitution_factor")
-    found: dict[str, Any] = {name: getattr(solution.restitution, name) for name in names}
-    found |= {name: getattr(solution.design, name) for name in ("pocket_clearance", "land_clearance")}
-    return found | {"linear_whirl_frequency": linear_whirl_frequency(solution.cage_with(0.0))}
-
-
-def _margin(solution: Solution, runner: Runner) -> dict[str, Any]:
-    """Threshold at the pocket's friction, and the distance to it."""
+def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
+    """The case with the threshold at the pocket's friction, and the distance to it."""
     require_friction(solution.study)
     friction, eta = solution.cage.ball_cage_friction, solution.restitution.restitution_factor
-    found = own_threshold(solution.cage_with(0.0), solution.stability, friction, runner)
-    ends = {f"restitution_threshold_{end}": getattr(found, end) for end in ("low", "high")}
-    return {"restitution_threshold": found.value, **ends, "margin": found.value - eta}
+    threshold = own_threshold(solution.cage_with(0.0), solution.stability, friction, runner)
+    return replace(
+        found,
+        restitution_threshold=threshold.value,
+        restitution_threshold_low=threshold.low,
+        restitution_threshold_high=threshold.high,
+        margin=threshold.value - eta,
+    )
 
 
-def _verdict(solution: Solution, runner: Runner) -> dict[str, Any]:
-    """Verdict of the whole ensemble, with its evidence; the orbit of the runs that whirl."""
+def _with_verdict(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
+    """The case with the verdict of its whole ensemble; the orbit is that of the runs that whirl."""
     cage = solution.cage
     judged = judge(cage, runner.whole_ensemble(cage, solution.stability))
-    found = {name: getattr(judged, name) for name in EVIDENCE}
     whirls = any(count.whirls and count.kick == judged.worst_kick for count in judged.by_kick)
     if whirls and judged.whirl_ratio is not None:
-        found["orbit_frequency"] = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
-    motion = None if judged.cage_motion is None else judged.cage_motion.value
-    return found | {"verdict": judged.verdict.name, "cage_motion": motion}
+        orbit = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
+        found = replace(found, orbit_frequency=orbit)
+    return replace(
+        found,
+        verdict=judged.verdict.name,
+        cage_motion=None if judged.cage_motion is None else judged.cage_motion.value,
+        **{name: getattr(judged, name) for name in EVIDENCE},
+    )

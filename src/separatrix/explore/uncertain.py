@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -17,10 +17,8 @@ from separatrix.chain.solution import solve
 from separatrix.distribution import described
 from separatrix.draws import Case, UncertainInput
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.explore.allowed import allowed_film, allowed_friction
-from separatrix.explore.counting import BLOCK, RISK, counted, settles
-from separatrix.explore.drivers import drivers, fitted
-from separatrix.explore.next_test import next_tests, reducible_shares
+from separatrix.explore.counting import BLOCK, RISK, allowed_film, allowed_friction, counted, settles
+from separatrix.explore.drivers import drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.explore.records import (
     AllowedFilm,
     AllowedFriction,
@@ -36,42 +34,33 @@ from separatrix.explore.records import (
     UncertainRow,
     UncertainStudy,
 )
-from separatrix.explore.shares import sobol_shares
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.lowest import MeanFriction, lowest_among, overall
-from separatrix.ranking.plausible import Moved, beyond_motion, within_a_turn
-from separatrix.ranking.reason import NOT_FINISHED, not_finite, not_measured
-from separatrix.ranking.second import Pocket, pocket_of
+from separatrix.ranking.reason import (
+    NOT_FINISHED,
+    Moved,
+    Pocket,
+    beyond_motion,
+    not_finite,
+    not_measured,
+    pocket_of,
+    within_a_turn,
+)
+from separatrix.ranking.records import MeanFriction, lowest_among, overall
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
 from separatrix.units import Array, Ratio
 
-FEWEST = 64
-"""Bearings below which no probability is worth a table."""
-
-CLOUD = 256
-"""Bearings of a case that are kept for the pictures."""
-
+FEWEST = 64  # bearings below which no probability is worth a table
+CLOUD = 256  # bearings of a case that are kept for the pictures
 Counted = tuple[Judgement, Ensemble]
 
 
-def uncertain_study(
-    study: Study,
-    bearings: int,
-    *,
-    runner: Runner | None = None,
-) -> UncertainStudy:
+def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None) -> UncertainStudy:
     """Draw bearings from the uncertain inputs of a study and judge the cages of every candidate.
 
-    Parameters
-    ----------
-    study : Study
-        With candidates; a friction without stated scatter has the study's default one, a guess.
-    bearings : int
-        How many, best a power of two; at least `FEWEST`.
-    runner : Runner, optional
-        How the runs are made; the numbers do not depend on it.
+    Their number is best a power of two, and at least `FEWEST`. A friction without stated scatter has the
+    study's default one, a guess. The numbers do not depend on the runner.
 
     Raises
     ------
@@ -87,7 +76,7 @@ def uncertain_study(
     drawn, runner = drawn_bearings(study, bearings), runner or Runner()
     inverse = _inverse(drawn, runner)
     pieces: dict[Case | str, Callable[[], object]] = {SHARES: partial(_smooth, study, drawn, runner)}
-    pieces |= {case: partial(counted, drawn, case, drawn.kicks, runner) for case in drawn.friction}
+    pieces |= {case: partial(counted, drawn, case, runner) for case in drawn.friction}
     pieces.update(inverse)
 
     def answer(found: Mapping[Case | str, object]) -> UncertainStudy:
@@ -117,9 +106,13 @@ def _answer(
     ]
     central = drawn.central[reference_candidate(study, ranking).name]
     open_cases = {case: judged[case] for case in undecided if decided[case].shares}
+    failed = len(drawn.failures)
+    notes = (
+        [f"{failed} of {asked} draws make no bearing and are left out: {drawn.failures[0]}"] if failed else []
+    )
     return UncertainStudy(
         bearings=asked,
-        failed=len(drawn.failures),
+        failed=failed,
         stopped_risk=RISK,
         default_scatter=ranking.friction_scatter,
         environment=environment,
@@ -139,7 +132,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=(*_notes(drawn, asked), *within_a_turn(central), *beyond_motion(central, moved)),
+        notes=(*notes, *within_a_turn(central), *beyond_motion(central, moved)),
         complete=True,
     )
 
@@ -151,9 +144,7 @@ def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], obj
     for name in dict.fromkeys(case.candidate for case in drawn.friction):
         alike.setdefault(pocket_of(drawn.central[name]), []).append(name)
     pieces: dict[str, Callable[[], object]] = {
-        f"friction {names[0]}": partial(
-            allowed_friction, drawn, names, ranking.friction_scatter, drawn.kicks, runner
-        )
+        f"friction {names[0]}": partial(allowed_friction, drawn, names, ranking.friction_scatter, runner)
         for names in alike.values()
     }
     environment = required_environment(drawn.study, ranking)
@@ -162,7 +153,7 @@ def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], obj
         for name in names:
             case = Case(name, environment)
             if case in drawn.friction:
-                pieces[f"film {name}"] = partial(allowed_film, drawn, case, drawn.kicks, films, runner)
+                pieces[f"film {name}"] = partial(allowed_film, drawn, case, films, runner)
     return pieces
 
 
@@ -176,7 +167,7 @@ def _rows(drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]
         known = [drawn.stated[case] for case in cases if case in drawn.stated]
         means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
     measured = {name: one for name, one in means.items() if one is not None}
-    lowest = lowest_among(measured).probabilities
+    lowest = lowest_among(measured)
     rows = [_row(drawn, Case(n, environment), f, lowest.get(n), judged) for n, f in measured.items()]
     others = (NotDrawn(name=n, reason=not_measured(environment)) for n in means if n not in measured)
     return (*sorted(rows, key=_best_first), *others)
@@ -234,7 +225,7 @@ def _input_row(one: UncertainInput) -> InputRow:
 
 def _convergence(case: Case, judged: Judgement, found: Ensemble) -> ConvergenceRow:
     """P(stable) with the first bearings, by doubling."""
-    settled = np.array(settles(found, judged))
+    settled = settles(found, judged)
     sizes = [BLOCK << k for k in range(20) if BLOCK << k < settled.size] + [settled.size]
     counts = [int(settled[:size].sum()) for size in sizes]
     ends = [wilson_interval(count, size) for count, size in zip(counts, sizes, strict=True)]
@@ -249,7 +240,7 @@ def _convergence(case: Case, judged: Judgement, found: Ensemble) -> ConvergenceR
 
 
 def _cloud(drawn: DrawnBearings, case: Case, judged: Judgement, found: Ensemble) -> Cloud:
-    settled = np.array(settles(found, judged), dtype=np.float64)[:CLOUD]
+    settled = settles(found, judged)[:CLOUD]
     return Cloud(
         name=case.candidate,
         environment=case.environment,
@@ -271,7 +262,7 @@ def _columns(drawn: DrawnBearings, case: Case) -> list[int]:
 
 def _drivers(drawn: DrawnBearings, case: Case, found: Counted) -> Drivers:
     """What decides a case, by a regression of its runs."""
-    settled, columns = np.array(settles(found[1], found[0]), dtype=np.float64), _columns(drawn, case)
+    settled, columns = settles(found[1], found[0]), _columns(drawn, case)
     names = [drawn.inputs[i].key for i in columns]
     return drivers(case, names, drawn.scores[: settled.size, columns], settled)
 
@@ -280,7 +271,7 @@ def _next_tests(drawn: DrawnBearings, cases: Mapping[Case, Counted]) -> tuple[Te
     """What measuring each input would settle of these cases."""
     asked = {}
     for case, (judged, found) in cases.items():
-        settled, columns = np.array(settles(found, judged), dtype=np.float64), _columns(drawn, case)
+        settled, columns = settles(found, judged), _columns(drawn, case)
         scores = drawn.scores[: settled.size]
         b = np.zeros(1 + len(drawn.inputs))
         b[[0, *(1 + i for i in columns)]] = fitted(scores[:, columns], settled)
@@ -292,8 +283,7 @@ def _words(case: Case) -> str:
     return f"{case.candidate} in {case.environment}"
 
 
-SHARES = "shares"
-"""Names the piece of work behind what the chain computes smoothly."""
+SHARES = "shares"  # names the piece of work behind what the chain computes smoothly
 
 
 def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothShares, ...]:
@@ -331,9 +321,3 @@ def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothS
         SmoothShares(quantity=quantity, name=own.name, first=first, total=total)
         for quantity, (first, total) in zip(("restitution_factor", "race_damping"), found, strict=True)
     )
-
-
-def _notes(drawn: DrawnBearings, asked: int) -> Iterator[str]:
-    """Sentences on what a reader must know of the draws."""
-    if drawn.failures:
-        yield f"{len(drawn.failures)} of {asked} draws make no bearing and are left out: {drawn.failures[0]}"

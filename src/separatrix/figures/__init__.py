@@ -11,11 +11,9 @@ from matplotlib.figure import Figure
 from separatrix.errors import InputError
 from separatrix.figures import (
     chain,
-    comparison,
     contact,
     envelope,
     map,
-    mobility,
     ranking,
     sensitivity,
     simulation,
@@ -30,9 +28,9 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "bearing": chain.bearing,
     "traction": chain.traction,
     "restitution": chain.restitution,
-    "mobility": mobility.figures,
-    "stability": stability.figures,
-    "map": map.figures,
+    "mobility": chain.mobility,
+    "stability": lambda data: iter([("stability-curve", stability.stability(data))]),
+    "map": lambda data: iter([("stability-map", map.stability_map(data))]),
     "simulate": lambda data: (space if space.is_in_space(data) else simulation).figures(data),
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
@@ -73,7 +71,7 @@ def draw(
                 for one, name in zip((data, other), names, strict=True)
             ]
             titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
-            together = comparison.curves if "restitution_factor" in data.sizes else simulation.comparison
+            together = stability.comparison if "restitution_factor" in data.sizes else simulation.comparison
             yield "comparison", settled(together(pair[0][0], pair[1][0], titles))
         elif verb in FIGURES:
             data = literal_texts(data)

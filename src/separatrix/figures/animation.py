@@ -6,13 +6,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -23,25 +20,27 @@ from separatrix.errors import InputError
 from separatrix.figures import space_film
 from separatrix.figures.motion import (
     AROUND,
-    fastest_whirl,
+    Part,
+    filmed,
+    frame_moments,
+    is_logarithmic,
     land_boundary,
+    milliseconds,
     orbit_reach,
     pocket_boundary,
     ring,
+    shown_parts,
     smooth_path,
 )
 from separatrix.figures.scene import ROUND, Scene, scene, turned
-from separatrix.figures.simulation import draw_energy, is_logarithmic, milliseconds, time_limits
+from separatrix.figures.simulation import draw_energy
 from separatrix.figures.space import is_in_space
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, heading, journal, literal_texts
 from separatrix.units import Array, format_number
 
 KINDS = ("gif", "mp4")
-MOST_FRAMES, A_SECOND = 360, 24
-"""Most frames of a film, and frames a second."""
-
-A_TURN = 6
-"""Frames in a turn of the fastest strong whirl, at least: fewer would show it turning any way."""
+A_SECOND = 24
+"""Frames of a film in a second."""
 
 SIZE, DOTS = (7.6, 4.8), 100
 """Inches, and dots an inch: both sides even, as a video needs them."""
@@ -54,11 +53,8 @@ SHADES = 16
 ARROW, INSIDE = 3.2, 0.66
 """Longest arrow over the radius of a ball; half the side of the path's picture over the inner radius."""
 
-TAIL, MOST_TAIL, DRIFT = 8, 4000, 1.5
-"""Frames and most samples for which the path stays; steps over the usual one from which frames have a gap."""
-
-Part = tuple[list[Artist], Callable[[int], None]]
-"""What moves in the picture, and what puts it where it is in a frame."""
+TAIL, MOST_TAIL = 8, 4000
+"""Frames and most samples for which the path stays."""
 
 
 def animate(
@@ -162,37 +158,9 @@ def _write_mp4(encoder: ModuleType, film: Iterator[Image.Image], part: Path) -> 
         raise InputError("The MP4", "could not be encoded", cure="Take a GIF.") from error
 
 
-def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
-    """Return the samples that become frames, rising, with the first and the last.
-
-    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
-    of the whirl; if the whole run would take too many, its beginning and its end are shown.
-    """
-    time, (first, last), logarithmic = milliseconds(data), time_limits(data), is_logarithmic(data)
-    wanted = np.searchsorted(time, (np.geomspace if logarithmic else np.linspace)(first, last, most))
-    even = np.unique(np.append(0, wanted.clip(0, time.size - 1)))[-most:]
-    turns = fastest_whirl(data) * float(data["time"].values[-1])
-    step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
-    if logarithmic or int(np.diff(even).max(initial=1)) <= step:
-        return even
-    half = np.arange(most // 2) * step
-    return np.unique(np.concatenate([half, time.size - 1 - half]))
-
-
-def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
-    """Return beginning and end of each part of the run that the frames show [ms]."""
-    time = milliseconds(data)[moments]
-    if is_logarithmic(data) or time.size < 3:
-        return [(float(time[0]), float(time[-1]))]
-    steps = np.diff(moments)
-    cuts = np.flatnonzero(steps > DRIFT * np.median(steps) + 1) + 1
-    return [(float(part[0]), float(part[-1])) for part in np.split(time, cuts)]
-
-
 def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Image]:
-    """Yield the picture of each moment; what does not move is drawn once."""
+    """Return the picture of each moment."""
     figure = Figure(figsize=SIZE, dpi=DOTS)
-    canvas: Any = FigureCanvasAgg(figure)
     (width, height), (left, low, wide, high) = SIZE, (0.0, 0.0, 0.6, 0.9)
     half = INSIDE * (at.radius - at.half_width) * 0.5 * min(wide * width, high * height) / at.reach
     x, y = (left + 0.5 * wide) * width, (low + 0.5 * high) * height
@@ -205,19 +173,9 @@ def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Imag
         _energy(figure.add_axes((0.69, 0.11, 0.29, 0.32)), data, moments),
         ([clock], lambda frame: clock.set_text(f"{times[frame]:.3f} ms")),
     )
-    for artist in (artist for moving, _ in parts for artist in moving):
-        artist.set_animated(True)
     figure.text(0.01, 0.985, "\n".join(heading(data)), fontsize=6.5, va="top", linespacing=1.4)
     _explain(figure, data, at, moments)
-    canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
-    for frame in range(moments.size):
-        canvas.restore_region(still)
-        for moving, move in parts:
-            move(frame)
-            for artist in moving:
-                figure.draw_artist(artist)
-        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+    return filmed(figure, parts, moments.size)
 
 
 def _explain(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> None:

@@ -1,8 +1,8 @@
-"""Figures of the stages before the cage: equilibrium, traction (the paper's Fig. 7), restitution (Fig. 8)."""
+"""Figures before the cage: equilibrium, traction (the paper's Fig. 7), restitution (Fig. 8), mobility."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray as xr
@@ -10,19 +10,22 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.contact import SavedArea, saved_area, slip_and_power, tractions
+from separatrix.figures.contact import Area, saved_area, slip_and_power, tractions
 from separatrix.figures.style import (
     BLACK,
     BLUE,
+    GREEN,
     GREY,
     PAGE,
     VERMILION,
     Look,
     canvas,
     label_lines,
+    legend_below,
+    stated,
     study_of,
 )
-from separatrix.units import Array
+from separatrix.units import Array, format_number
 
 RACES = (("inner", BLUE, "o"), ("outer", VERMILION, "s"))
 DASHED = (0, (4, 2))
@@ -110,11 +113,8 @@ def traction(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 def curves(data: xr.Dataset) -> Figure:
     """Traction coefficient against creep increment: the bearing's own with its tangent, and other ratios."""
     figure, panels = canvas(PAGE, 3.2, ncols=2, sharey=True)
-    for axes, race, letter in zip(panels, ("inner", "outer"), "ab", strict=True):
-        of = data.sel(race=race)
-        increment, ratios = 100 * of["creep_increment"].values, of["ratio_spin_roll_ratio"].values
-        axes.axhline(0.0, color=GREY, lw=0.5)
-        axes.axvline(0.0, color=GREY, lw=0.5)
+    for axes, of, increment in _by_race(panels, data):
+        ratios = of["ratio_spin_roll_ratio"].values
         for i, colour in enumerate(colormaps["viridis"](np.linspace(0.05, 0.8, ratios.size))):
             coefficient = of["ratio_traction_coefficient"].isel(ratio=i).values
             axes.plot(increment, coefficient, color=colour, lw=0.9, label=signed(ratios[i], 2))
@@ -126,13 +126,21 @@ def curves(data: xr.Dataset) -> Figure:
         axes.plot(100 * rise / slope, rise, color=BLACK, lw=0.9, ls=DASHED, label=label)
         look: Look = {"title_fontsize": 7.5, "fontsize": 7, "handlelength": 1.4, "alignment": "left"}
         axes.legend(title=r"$\Delta\omega_{piv}\,/\,\Delta\omega_{roul}$", loc="upper left", **look)
-        axes.set(title=f"{letter}  Ball on {race} race", xlabel="creep increment [%]")
-    panels[0].set_ylabel("traction coefficient $C_T$ [-]")
     return figure
 
 
-def _area(data: xr.Dataset) -> tuple[SavedArea, Array | None]:
-    """Fields of one exact contact, and the end of stick by strips."""
+def _by_race(panels: Sequence[Axes], data: xr.Dataset) -> Iterator[tuple[Axes, xr.Dataset, Array]]:
+    """Yield a panel of traction against creep for each race, with its data and creep increments [%]."""
+    panels[0].set_ylabel("traction coefficient $C_T$ [-]")
+    for axes, race, letter in zip(panels, ("inner", "outer"), "ab", strict=True):
+        axes.axhline(0.0, color=GREY, lw=0.5)
+        axes.axvline(0.0, color=GREY, lw=0.5)
+        axes.set(title=f"{letter}  Ball on {race} race", xlabel="creep increment [%]")
+        of = data.sel(race=race)
+        yield axes, of, 100 * of["creep_increment"].values
+
+
+def _area(data: xr.Dataset) -> tuple[Area, Array | None]:
     names = {str(name): str(name).removeprefix("area_") for name in data if str(name).startswith("area_")}
     case = data[[*names]].rename(names)
     line = case["stick_line"].values[np.isfinite(case["across"].values)]
@@ -142,18 +150,12 @@ def _area(data: xr.Dataset) -> tuple[SavedArea, Array | None]:
 def models(data: xr.Dataset) -> Figure:
     """Traction coefficient by strips and by the exact contact, and by how much they differ."""
     figure, panels = canvas(PAGE, 3.2, ncols=2)
-    for axes, race, letter in zip(panels, ("inner", "outer"), "ab", strict=True):
-        of = data.sel(race=race)
-        increment = 100 * of["creep_increment"].values
+    for axes, of, increment in _by_race(panels, data):
         strips, exact = (of[f"{model}_traction_coefficient"].values for model in ("strips", "exact"))
-        axes.axhline(0.0, color=GREY, lw=0.5)
-        axes.axvline(0.0, color=GREY, lw=0.5)
         axes.plot(increment, strips, color=BLUE, lw=1.2, label="strips")
         axes.plot(increment, exact, "o", color=VERMILION, ms=2.6, mfc="none", mew=0.8, label="exact contact")
         axes.plot(increment, 10 * (strips - exact), color=BLACK, lw=0.8, ls=DASHED, label="10 x difference")
         axes.legend(loc="upper left", handlelength=1.8)
-        axes.set(title=f"{letter}  Ball on {race} race", xlabel="creep increment [%]")
-    panels[0].set_ylabel("traction coefficient $C_T$ [-]")
     return figure
 
 
@@ -268,7 +270,7 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> int:
     axes.set_xticks([bare, *ticks], ["bare", *(f"{tick:g}" for tick in ticks)])
     axes.minorticks_off()
     here = 1e6 * float(data["film_thickness_here"])
-    friction = study_of(data).get("film", {}).get("race_friction", {}).get("value")
+    friction = stated(study_of(data), "film", "race_friction")
     at = "" if friction is None else f", $f_{{BT}}$ = {friction:g}"
     (star,) = axes.plot(here if here > 0 else bare, own, "*", color=BLACK, ms=9, mfc="white", zorder=5)
     words = [rf"this bearing{at}: $\eta$ = {own:.2f}"]
@@ -277,3 +279,90 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> int:
     place: Look = {"loc": "lower left", "bbox_to_anchor": (-0.03, 1.0), "handletextpad": 0.3}
     axes.legend([star], ["\n".join(words)], **place)
     return len(words)
+
+
+def mobility(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """Yield the pictures of `mobility`: of the ball, and with a cage of its impacts."""
+    yield "mobility", small_motion(data)
+    if "impact" in data.sizes:
+        yield "mobility-impacts", impacts(data)
+
+
+def small_motion(data: xr.Dataset) -> Figure:
+    """Step response, size of the mobility against frequency, F(u) with the linear law and the capacity."""
+    figure, (step, size, push) = canvas(PAGE, 2.7, ncols=3)
+    step.plot(data["instant"], data["step_damping"], color=BLUE)
+    lines = (
+        ("damping_locked", "spin held", (0, (1, 1.5))),
+        ("damping", "attitude held, $C_f$", DASHED),
+        ("damping_relaxed", "all relaxed, $C_{eff}$", "-"),
+    )
+    for name, words, dashes in lines:
+        value = float(data[name])
+        step.axhline(value, color=GREY, lw=0.8, ls=dashes, label=f"{words}: {format_number(value)}")
+    top = 2.0 * float(data["damping_locked"])
+    step.set(xscale="log", ylim=(0, top), title="a  Response to a step of force")
+    step.set(xlabel="time after the step [s]", ylabel="force over speed [N s/m]")
+    step.legend(loc="upper right", fontsize=6.5, handlelength=2.2)
+    _size(size, data)
+    _push(push, data)
+    return figure
+
+
+def _size(axes: Axes, data: xr.Dataset) -> None:
+    """|Y| against frequency with the rates of the modes."""
+    frequency, size = data["frequency"], 1e3 * data["mobility"]
+    axes.plot(frequency, size, color=BLUE, label=r"$|Y(i\omega)|$")
+    real = 1e3 / data["damping_at_frequency"]
+    axes.plot(frequency, real, color=BLUE, lw=0.9, ls=DASHED, label=r"Re $Y(i\omega)$")
+    for rate in data["rates"].values:
+        axes.axvline(rate / (2.0 * np.pi), color=GREY, lw=0.6, ls=(0, (1, 1.5)))
+    low = float(size.min())
+    axes.set(xscale="log", yscale="log", ylim=(0.5 * low, 2.0 * float(size.max())))
+    axes.set(title="b  Mobility; dotted: rates", xlabel="frequency [Hz]", ylabel="speed over force [mm/s/N]")
+    look: Look = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 0.9}
+    axes.legend(loc="lower left", handlelength=2.2, **look)
+
+
+def _push(axes: Axes, data: xr.Dataset) -> None:
+    """F(u) of the slip fields both ways, the law, the linear law and the capacity."""
+    u, capacity = np.append(0.0, data["speed"].values), float(data["capacity"])
+    axes.axhline(capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity {format_number(capacity, 3)} N")
+    linear = np.array((0.0, 1.15 * capacity / float(data["damping"])))
+    axes.plot(linear, float(data["damping"]) * linear, color=BLACK, lw=0.8, ls=(0, (1, 1.5)), label="$C_f u$")
+    for way, colour in (("forward", BLUE), ("backward", VERMILION)):
+        axes.plot(u, np.append(0.0, data[f"force_{way}"].values), color=colour, label=way)
+    axes.plot(u, np.append(0.0, data["force_law"].values), color=GREEN, ls=DASHED, label="law")
+    axes.set(xlim=(0, u[-1]), ylim=(0, 1.25 * capacity), title="c  Ball pushed along its orbit")
+    axes.set(xlabel="speed beyond free orbit [m/s]", ylabel="force [N]")
+    axes.legend(loc="lower right", fontsize=6.5, handlelength=2.2)
+
+
+def impacts(data: xr.Dataset) -> Figure:
+    """Restitution against the speed of the impact, beside the paper's; largest force beside the capacity."""
+    figure, (returned, force) = canvas(PAGE, 2.9, ncols=2)
+    v = data["impacts_speed"].values
+    lines: tuple[tuple[str, str, Look], ...] = (
+        ("restitution_forward", "slip fields, cage from behind", {"color": BLUE}),
+        ("restitution_backward", "slip fields, cage from the front", {"color": VERMILION}),
+        ("restitution_law", "law of traction $F(u)$", {"color": GREEN, "ls": DASHED}),
+    )
+    for name, words, look in lines:
+        returned.plot(v, data[f"impacts_{name}"], label=words, **look)
+    returned.axhline(0.0, color=GREY, lw=0.5)
+    eta = float(data["impacts_restitution_summed"])
+    nominal = float(data["impacts_nominal_restitution_factor"])
+    returned.axhline(eta, color=BLACK, lw=0.9, ls=(0, (1, 1.5)), label=f"Eq. 18, mass felt: {eta:.2f}")
+    words = rf"paper's $\eta$, whole cage: {nominal:.2f}"
+    returned.axhline(nominal, color=BLACK, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=words)
+    returned.set(xscale="log", title="a  Share of the speed that returns", xlabel="speed of the impact [m/s]")
+    returned.set(ylabel="restitution [-]", ylim=(None, 1.0))
+    capacity = float(data["capacity"])
+    force.plot(v, data["impacts_peak_force"], color=BLUE, label="largest force of the pocket")
+    force.axhline(
+        capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity of the races {format_number(capacity, 3)} N"
+    )
+    force.set(xscale="log", yscale="log", title="b  Largest force", xlabel="speed of the impact [m/s]")
+    force.set(ylabel="force [N]")
+    legend_below(figure, columns=3)
+    return figure

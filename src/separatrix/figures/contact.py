@@ -1,20 +1,20 @@
 """Figures of one rolling contact: tractions over its area, slip and dissipated power, and curves of cases.
 
-x points along rolling, and material enters at the right. Each function of an area takes a `ContactSolution`,
-or anything with its fields.
+x points along rolling, and material enters at the right.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from numpy.typing import NDArray
 
 from separatrix.figures.style import BLUE, GREY, PAGE, VERMILION, Look, canvas, colour_bar
 from separatrix.units import Array
@@ -29,41 +29,13 @@ LONGEST = 2.5
 """Ratio of the contact's sides above which its axes have different scales."""
 
 
-class Area(Protocol):
-    """Fields over one contact, as a `ContactSolution` has them."""
-
-    @property
-    def along(self) -> Array:
-        """Cell centres along rolling, shape (column,) [m]."""
-
-    @property
-    def across(self) -> Array:
-        """Cell centres across, shape (row,) [m]."""
-
-    @property
-    def fraction(self) -> Array:
-        """Share of each cell inside the contact, shape (row, column) [-]."""
-
-    @property
-    def pressure(self) -> Array:
-        """Shape (row, column) [Pa]."""
-
-    @property
-    def traction(self) -> Array:
-        """Shape (direction, row, column) [Pa]."""
-
-    @property
-    def slip(self) -> Array:
-        """Per rolling speed, shape (direction, row, column) [-]; of a shift a distance [m]."""
-
-    @property
-    def stick(self) -> Any:
-        """Cells without slip, shape (row, column)."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SavedArea:
-    """Fields of one case of a dataset."""
+class Area:
+    """Fields over one contact, as a `ContactSolution` has them, too.
+
+    `along` and `across` are centres of cells [m]; `fraction` is the share of each cell inside the contact;
+    `slip` is per rolling speed, of a shift a distance [m]; shapes ([direction,] row, column).
+    """
 
     along: Array
     across: Array
@@ -71,7 +43,7 @@ class SavedArea:
     pressure: Array
     traction: Array
     slip: Array
-    stick: Any
+    stick: NDArray[np.bool_]
 
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -93,7 +65,7 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         yield "contact-forces", forces(data.isel(case=data["contact"].values == numbers[counts.argmax()]))
 
 
-def saved_area(case: xr.Dataset) -> SavedArea:
+def saved_area(case: xr.Dataset) -> Area:
     """Fields of one case of a dataset, without what fills up a smaller grid."""
     columns = np.isfinite(case["along"].values)
     rows = np.isfinite(case["across"].values)
@@ -102,22 +74,16 @@ def saved_area(case: xr.Dataset) -> SavedArea:
         for name in ("fraction", "pressure", "traction", "slip")
     }
     stick = case["stick"].values[rows][:, columns] > 0.5
-    return SavedArea(
+    return Area(
         along=case["along"].values[columns], across=case["across"].values[rows], stick=stick, **fields
     )
 
 
 def tractions(area: Area, *, entry: str = "right", stick_line: Array | None = None) -> Figure:
-    """Return arrows of the tractions over their size, with the area of stick hatched.
+    """Return arrows of the tractions of at least two rows over their size, with the area of stick hatched.
 
-    Parameters
-    ----------
-    area : ContactSolution or Area
-        Of at least two rows.
-    entry : str
-        Where material enters, right or left; empty where it does not.
-    stick_line : ndarray, optional
-        End of stick along x of another theory for each row, shape (row,) [m]; NaN where a row slips.
+    Material enters at `entry`, right or left; empty where it does not. `stick_line` is the end of stick along
+    x of another theory, shape (row,) [m]; NaN where a row slips.
     """
     figure, axes = canvas(3.9, 3.3)
     size = 1e-6 * np.hypot(*area.traction) / _share(area)
@@ -139,7 +105,8 @@ def slip_and_power(area: Area, *, entry: str = "right", is_shift: bool = False) 
     if is_shift:
         shown = (1e6 * slip, "slip distance [\N{MICRO SIGN}m]"), (1e-3 * lost, "work per area [kJ/m$^2$]")
     else:
-        shown = (1e2 * slip, "slip over rolling speed [%]"), (1e-6 * lost, _POWER)
+        power = "power per area and rolling speed [MPa]"
+        shown = (1e2 * slip, "slip over rolling speed [%]"), (1e-6 * lost, power)
     for axes, letter, name, (field, label) in zip(
         (left, right), "ab", ("Slip", "Work" if is_shift else "Dissipated power"), shown, strict=True
     ):
@@ -149,9 +116,6 @@ def slip_and_power(area: Area, *, entry: str = "right", is_shift: bool = False) 
         axes.set_title(f"{letter}  {name}")
     _arrows(left, area, area.slip)
     return figure
-
-
-_POWER = "power per area and rolling speed [MPa]"
 
 
 def in_the_plane(area: Area, *, entry: str = "right") -> Figure:
@@ -242,7 +206,7 @@ def outline(area: Area) -> Array:
     return np.array([*first, *right, *last, *left])
 
 
-def _map(axes: Axes, area: Area, field: Array, colours: str, entry: str) -> Any:
+def _map(axes: Axes, area: Area, field: Array, colours: str, entry: str) -> QuadMesh:
     """Colours over the contact, its outline, and axes that show it large."""
     around = 1e3 * outline(area)
     patch = Polygon(around, closed=True, fill=False, lw=0.9, ec="black", joinstyle="round")
@@ -269,7 +233,6 @@ def _share(area: Area) -> Array:
 
 
 def _stick(axes: Axes, area: Area, colour: str = "white") -> None:
-    """Hatch the area of stick and draw its edge."""
     inside = area.fraction > 0.0
     if not (area.stick & inside).any() or not (~area.stick & inside).any():
         axes.set_title("no slip" if area.stick.any() else "slip everywhere", fontsize=7.5, loc="right")

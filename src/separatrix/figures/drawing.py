@@ -8,18 +8,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, degrees, sin, sqrt
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle, Wedge
 
-from separatrix.figures.style import BLACK, BLUE, GREY, PAGE, VERMILION, Look, canvas
-from separatrix.units import Metre, Radian, format_quantity
+from separatrix.figures.style import BLACK, BLUE, GREY, PAGE, VERMILION, Json, Look, canvas, stated
+from separatrix.units import Array, Metre, Radian, format_quantity
 
 STEEL, BALL, CAGE = "#c9ced6", "#eef1f5", "#e8c27a"
 DASHED: Look = {"ls": (0, (3, 2)), "lw": 0.8}
+DOT_DASHED = (0, (6, 2, 1, 2))
 SOLID: Look = {"ls": "-", "lw": 0.8}
 SHOULDER, WALL, WIDTH = 0.3, 0.22, 1.5
 """Height of a land above the groove, thickness of a cage and width of a ring over the ball's diameter, where
@@ -51,20 +51,20 @@ class Shape:
     guessed: frozenset[str] = frozenset()
 
 
-def shape_of(study: Mapping[str, Any]) -> Shape:
-    """Return the shapes of a resolved study, as documents and datasets hold it."""
+def shape_of(study: Json) -> Shape:
+    """Return the shapes of a resolved study, as documents and datasets have it."""
 
     def known(section: str, key: str) -> float | None:
-        value = ((study.get(section) or {}).get(key) or {}).get("value")
+        value = stated(study, section, key)
         return None if value is None else 1e3 * float(value)
 
     D, dm = known("bearing", "ball_diameter") or 0.0, known("bearing", "pitch_diameter") or 0.0
     grooves = [D * (known("bearing", f"{race}_conformity") or 520.0) / 1e3 for race in ("inner", "outer")]
     lands = {"inner": dm / 2 - D / 2 + SHOULDER * D, "outer": dm / 2 + D / 2 - SHOULDER * D}
-    guessed, cage, has_cage = {"rings"}, None, bool(study.get("cage"))
-    guidance = str(((study.get("cage") or {}).get("guidance") or {}).get("value") or "")
+    guessed, cage = {"rings"}, None
+    guidance = str(stated(study, "cage", "guidance") or "")
     gap = known("cage", "land_clearance")
-    if has_cage:
+    if study.get("cage"):
         sizes = [known("cage", key) for key in ("inner_diameter", "outer_diameter", "width")]
         cage = _cage([None if one is None else one / 2 for one in sizes], lands, guidance, gap or 0.0, D, dm)
         guessed |= {"cage"} if None in sizes else set()
@@ -76,7 +76,7 @@ def shape_of(study: Mapping[str, Any]) -> Shape:
     bore = known("bearing", "bore")
     guessed |= {"bore"} if bore is None else set()
     inside = bore / 2 if bore else dm / 2 - D
-    angles = ((study.get("cage") or {}).get("pocket_angles") or {}).get("value") or ()
+    angles = stated(study, "cage", "pocket_angles") or ()
     return Shape(
         ball=D,
         pitch=dm,
@@ -92,7 +92,7 @@ def shape_of(study: Mapping[str, Any]) -> Shape:
         pocket_clearance=known("cage", "pocket_clearance") or 0.0,
         land_clearance=gap,
         guidance=guidance,
-        round_pocket=((study.get("cage") or {}).get("pocket_shape") or {}).get("value") == "round",
+        round_pocket=stated(study, "cage", "pocket_shape") == "round",
         pocket_angles=tuple(float(one) for one in angles),
         guessed=frozenset(guessed),
     )
@@ -115,15 +115,10 @@ def _cage(
     return inner, outer, half[2] if half[2] is not None else 0.68 * D
 
 
-def bearing_drawing(study: Mapping[str, Any], angle: tuple[Radian, Radian] | None = None) -> Figure:
-    """Draw a bearing and its cage to scale.
+def bearing_drawing(study: Json, angle: tuple[Radian, Radian] | None = None) -> Figure:
+    """Draw a bearing and its cage to scale, from the resolved study of a document.
 
-    Parameters
-    ----------
-    study : mapping
-        The resolved study of a document.
-    angle : tuple of float, optional
-        Contact angles at the inner and the outer race under load; by default the one of the study.
+    `angle` has the contact angles at the inner and the outer race under load; by default that of the study.
     """
     of, nominal = shape_of(study), float(study["bearing"]["contact_angle"]["value"])
     inner, outer = angle or (nominal, nominal)
@@ -142,7 +137,6 @@ def _line(of: Shape, *parts: str) -> Look:
 
 
 def _section(axes: Axes, of: Shape, inner: Radian, outer: Radian, nominal: Radian) -> None:
-    """Draw the upper half of a section through the axis."""
     centre, r, half = of.pitch / 2, of.ball / 2, of.ring_width / 2
     x = np.linspace(-half, half, 401)
     for groove, sign, land, rim, alpha in (
@@ -167,38 +161,24 @@ def _section(axes: Axes, of: Shape, inner: Radian, outer: Radian, nominal: Radia
             look = _line(of, "cage")
             axes.add_patch(Rectangle((start, low), width, high - low, fc=CAGE, ec=BLACK, zorder=3, **look))
     for sign, alpha in ((-1, inner), (1, outer)):
-        end_at = 1.25 * r * sin(alpha) * sign, centre + 1.25 * r * cos(alpha) * sign
-        axes.plot([0, end_at[0]], [centre, end_at[1]], color=VERMILION, lw=1.0, zorder=5)
-        axes.plot(
-            r * sin(alpha) * sign, centre + r * cos(alpha) * sign, "o", color=VERMILION, ms=2.5, zorder=6
-        )
-    axes.plot(
-        [0, 0], [centre - 1.3 * r, centre + 1.3 * r], color=GREY, lw=0.5, ls=(0, (6, 2, 1, 2)), zorder=4
-    )
+        along, up = r * sin(alpha) * sign, r * cos(alpha) * sign
+        axes.plot([0, 1.25 * along], [centre, centre + 1.25 * up], color=VERMILION, lw=1.0, zorder=5)
+        axes.plot(along, centre + up, "o", color=VERMILION, ms=2.5, zorder=6)
+    ends = [centre - 1.3 * r, centre + 1.3 * r]
+    axes.plot([0, 0], ends, color=GREY, lw=0.5, ls=DOT_DASHED, zorder=4)
     arc = Arc((0, centre), 1.3 * r, 1.3 * r, theta1=90 - degrees(outer), theta2=90, color=VERMILION, lw=0.8)
     axes.add_patch(arc)
     arc.set_zorder(6)
     words = rf"$\alpha$ = {degrees(inner):.1f}$\degree$ inner, {degrees(outer):.1f}$\degree$ outer"
     if (inner, outer) == (nominal, nominal):
         words = rf"$\alpha$ = {degrees(nominal):.1f}$\degree$, without load"
-    _caption(axes, "a  Section", [words, f"D = {_mm(of.ball)}, grooves {_grooves(of)}"])
+    grooves = dict.fromkeys(f"{groove / of.ball:.3g} D" for groove in (of.inner_groove, of.outer_groove))
+    _caption(axes, "a  Section", [words, f"D = {_mm(of.ball)}, grooves {', '.join(grooves)}"])
     axes.set(xlim=(-half - 0.3 * r, half + 0.3 * r), ylim=(of.bore - 1.1 * r, of.outside + 0.4 * r))
     _scale(axes, of.ball, -half, of.bore - 0.5 * r)
 
 
-def _grooves(of: Shape) -> str:
-    if of.inner_groove == of.outer_groove:
-        return f"{of.inner_groove / of.ball:.3g} D"
-    return f"{of.inner_groove / of.ball:.3g} D, {of.outer_groove / of.ball:.3g} D"
-
-
-def _angles(of: Shape) -> list[Radian]:
-    even = [2 * np.pi * j / of.count for j in range(of.count)]
-    return [float(one) for one in of.pocket_angles] if len(of.pocket_angles) == of.count else even
-
-
 def _view(axes: Axes, of: Shape) -> None:
-    """Draw what one sees along the axis: rings, balls, and the cage between them."""
     middle, r = of.pitch / 2, of.ball / 2
     rings = ((of.bore, middle - r, "bore"), (middle + r, of.outside, "rings"))
     for low, high, part in rings:
@@ -206,12 +186,20 @@ def _view(axes: Axes, of: Shape) -> None:
         for radius, guess in ((low, part == "bore"), (high, part == "rings")):
             look = _line(of, part) if guess else SOLID
             axes.add_patch(Circle((0, 0), radius, fc="none", ec=BLACK, **look))
-    angles = _angles(of)
+    angles = np.linspace(0.0, 2 * np.pi, of.count, endpoint=False).tolist()
+    if len(of.pocket_angles) == of.count:
+        angles = list(of.pocket_angles)
     if of.cage is not None:
-        _cage_ring(axes, of, angles)
+        low, high, _ = of.cage
+        cage_look = {"fc": CAGE, "zorder": 3, **_line(of, "cage")}
+        half = np.arcsin(min(1.0, (of.ball + of.pocket_clearance) / of.pitch))
+        for one, following in zip(angles, [*angles[1:], angles[0] + 2 * np.pi], strict=True):
+            if following - one > 2 * half:
+                turn = np.linspace(one + half, following - half, 24)
+                _sector(axes, low, high, turn, cage_look)
     for at in angles:
         axes.add_patch(Circle((middle * sin(at), middle * cos(at)), r, fc=BALL, ec=BLACK, lw=0.7, zorder=4))
-    axes.add_patch(Circle((0, 0), middle, fc="none", ec=GREY, lw=0.5, ls=(0, (6, 2, 1, 2)), zorder=5))
+    axes.add_patch(Circle((0, 0), middle, fc="none", ec=GREY, lw=0.5, ls=DOT_DASHED, zorder=5))
     facts = [f"{of.count} balls, pitch diameter {_mm(of.pitch)}"]
     facts += [] if "bore" in of.guessed else [f"bore {_mm(2 * of.bore)}"]
     _caption(axes, "b  Along the axis", [", ".join(facts)])
@@ -220,18 +208,10 @@ def _view(axes: Axes, of: Shape) -> None:
     _scale(axes, _round(of.pitch / 3), -reach, -reach - 0.4 * r)
 
 
-def _cage_ring(axes: Axes, of: Shape, angles: list[Radian]) -> None:
-    """Draw the cage from pocket to pocket."""
-    low, high, _ = of.cage or (0.0, 0.0, 0.0)
-    hole = of.ball / 2 + of.pocket_clearance / 2
-    half = np.arcsin(min(1.0, hole / (of.pitch / 2)))
-    for one, following in zip(angles, [*angles[1:], angles[0] + 2 * np.pi], strict=True):
-        turn = np.linspace(one + half, following - half, 24)
-        if turn[-1] <= turn[0]:
-            continue
-        outline = [(high * sin(a), high * cos(a)) for a in turn]
-        outline += [(low * sin(a), low * cos(a)) for a in turn[::-1]]
-        axes.add_patch(Polygon(outline, fc=CAGE, ec=BLACK, zorder=3, **_line(of, "cage")))
+def _sector(axes: Axes, low: float, high: float, turn: Array, look: Look) -> None:
+    """Draw the area between two circles at these angles from the vertical."""
+    around = np.stack([np.sin(turn), np.cos(turn)], axis=1)
+    axes.add_patch(Polygon(np.concatenate([high * around, low * around[::-1]]), ec=BLACK, **look))
 
 
 def _pocket(axes: Axes, of: Shape) -> None:
@@ -239,34 +219,25 @@ def _pocket(axes: Axes, of: Shape) -> None:
     middle, r = of.pitch / 2, of.ball / 2
     span = 1.75 * r
     turn = np.linspace(-span / middle, span / middle, 200)
-
-    def band(low: float, high: float, colour: str, look: Look, zorder: int = 1) -> None:
-        outline = [(high * sin(a), high * cos(a)) for a in turn]
-        outline += [(low * sin(a), low * cos(a)) for a in turn[::-1]]
-        axes.add_patch(Polygon(outline, fc=colour, ec=BLACK, zorder=zorder, **look))
-
-    band(of.outer_land, middle + 1.5 * r, STEEL, _line(of, "rings"))
-    band(middle - 1.5 * r, of.inner_land, STEEL, _line(of, "rings"))
+    _sector(axes, of.outer_land, middle + 1.5 * r, turn, {"fc": STEEL, **_line(of, "rings")})
+    _sector(axes, middle - 1.5 * r, of.inner_land, turn, {"fc": STEEL, **_line(of, "rings")})
     words = []
     if of.cage is not None:
         low, high, _ = of.cage
         hole = r + of.pocket_clearance / 2
         edge = hole / middle
+        cage_look = {"fc": CAGE, "zorder": 3, **_line(of, "cage")}
         for start, end in ((turn[0], -edge), (edge, turn[-1])):
             part = np.linspace(start, end, 60)
-            outline = [(high * sin(a), high * cos(a)) for a in part]
-            outline += [(low * sin(a), low * cos(a)) for a in part[::-1]]
-            axes.add_patch(Polygon(outline, fc=CAGE, ec=BLACK, zorder=3, **_line(of, "cage")))
+            _sector(axes, low, high, part, cage_look)
         words.append(f"pocket clearance {_mm(of.pocket_clearance)}: {_mm(of.pocket_clearance / 2)} each way")
-        _gap(axes, (r, middle), (hole * cos(0) + 0.0, middle))
+        _gap(axes, (r, middle), (hole, middle))
         if of.land_clearance is not None and of.guidance in ("inner", "outer"):
             place = -1.25 * r
             ends = (high, of.outer_land) if of.guidance == "outer" else (of.inner_land, low)
             _gap(axes, *((place, sqrt(max(one**2 - place**2, 0.0))) for one in ends))
-            gap = (
-                f"{of.guidance} land clearance {_mm(of.land_clearance)}: {_mm(of.land_clearance / 2)} radial"
-            )
-            words.append(gap)
+            radial = f"{_mm(of.land_clearance)}: {_mm(of.land_clearance / 2)} radial"
+            words.append(f"{of.guidance} land clearance {radial}")
         else:
             words.append("guided by the balls: no land")
     axes.add_patch(Circle((0, middle), r, fc=BALL, ec=BLACK, lw=0.9, zorder=4))
@@ -277,17 +248,14 @@ def _pocket(axes: Axes, of: Shape) -> None:
 
 
 def _gap(axes: Axes, first: tuple[float, float], second: tuple[float, float]) -> None:
-    """Mark a clearance by a thick blue line across it."""
     axes.plot(*zip(first, second, strict=True), color=BLUE, lw=2.2, zorder=6, solid_capstyle="butt")
 
 
 def _scale(axes: Axes, length: float, x: float, y: float) -> None:
     """Draw a bar of a length, with its ends and the length written above it."""
     axes.plot([x, x + length], [y, y], color=BLACK, lw=1.6, solid_capstyle="butt")
-    words = _mm(length)
-    axes.annotate(
-        words, (x + length, y), xytext=(4, 0), textcoords="offset points", fontsize=6.5, va="center"
-    )
+    look: Look = {"textcoords": "offset points", "fontsize": 6.5, "va": "center"}
+    axes.annotate(_mm(length), (x + length, y), xytext=(4, 0), **look)
 
 
 def _caption(axes: Axes, title: str, lines: list[str]) -> None:
@@ -306,13 +274,8 @@ def _mm(length: Metre) -> str:
     return format_quantity(float(f"{1e-3 * length:.5g}"), "m").replace(" um", " \N{MICRO SIGN}m")
 
 
-def guesses(study: Mapping[str, Any]) -> str:
+def guesses(study: Json) -> str:
     """Return which parts of the drawing the study does not state, as a sentence; empty if it states all."""
     words = {"rings": "the rings' width, lands and outside", "bore": "the bore", "cage": "the cage's section"}
-    found = [words[key] for key in words if key in shape_of(study).guessed]
-    return f"Dashed, at common proportions because the study does not state them: {'; '.join(found)}." * bool(
-        found
-    )
-
-
-__all__ = ["Shape", "bearing_drawing", "guesses", "shape_of"]
+    found = "; ".join(words[key] for key in words if key in shape_of(study).guessed)
+    return found and f"Dashed, at common proportions because the study does not state them: {found}."

@@ -1,9 +1,8 @@
-"""The operating envelope: margin, P(stable) and frequencies over the cases of a sweep; the worst named."""
+"""The operating envelope: margin, P(stable) and frequencies over the cases of a sweep, and their texts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from separatrix.figures import map
-from separatrix.figures.map import axis_label, axis_values, is_proportional
+from separatrix.figures.hover import Plot, Series, floats, plain
+from separatrix.figures.map import MOST_PANELS, axis_label, axis_values, is_proportional, sweep
+from separatrix.figures.stability import ETA_LABEL
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -27,7 +27,9 @@ from separatrix.figures.style import (
     VERMILION,
     Look,
     canvas,
+    with_ends,
 )
+from separatrix.present.text.tables import interval, number, significant
 from separatrix.units import Array, format_quantity
 
 MOST_CASES = 60
@@ -52,12 +54,13 @@ SENTENCES = {
 """What decides the worst case."""
 
 Place = tuple[Array, bool]
-"""Where each case lies along the axis, and whether lines between them have a meaning."""
+"""Place of each case along the axis, and whether lines between them have a meaning."""
 
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the pictures of `sweep`; one without a finished case has none."""
-    yield from map.sweep_figures(data)
+    if "case" in data.sizes:
+        yield "sweep", sweep(data)
     if has_envelope(data):
         yield "envelope", envelope(data)
 
@@ -80,10 +83,8 @@ def envelope(data: xr.Dataset) -> Figure:
     if has_duty(data):
         panels.append((0.8, _time))
     heights = [height for height, _ in panels]
-    ratios: Look = {"height_ratios": heights}
-    figure, grid = canvas(
-        PAGE, sum(heights) + 0.9, nrows=len(panels), sharex=True, squeeze=False, gridspec_kw=ratios
-    )
+    look: Look = {"nrows": len(panels), "sharex": True, "squeeze": False, "height_ratios": heights}
+    figure, grid = canvas(PAGE, sum(heights) + 0.9, **look)
     axes, place = [row[0] for row in grid], places(data)
     for one, (_, draw) in zip(axes, panels, strict=True):
         draw(one, data, place)
@@ -117,14 +118,14 @@ def places(data: xr.Dataset) -> Place:
 
 
 def _margin(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Draw the restitution factor below its threshold; what lies between is the margin."""
+    """Draw the restitution factor below its threshold; the distance is the margin."""
     x, is_line = place
     eta = np.asarray(data["restitution_factor"].values, dtype=float)
     axes.plot(x, eta, "o-" if is_line else "o", ms=3.0, color=BLACK, label=r"restitution factor $\eta$")
     threshold, top = column(data, "restitution_threshold"), float(np.nanmax(eta))
     if threshold is not None:
         top = 1.0
-        low, high = (data[f"restitution_threshold_{end}"].values.astype(float) for end in ("low", "high"))
+        _, low, high = with_ends(data, "restitution_threshold")
         error = np.abs(np.stack([threshold - low, high - threshold]))
         look: Look = {"ms": 3.0, "color": BLUE, "elinewidth": 0.8, "capsize": 1.5}
         axes.errorbar(x, threshold, error, fmt="s-" if is_line else "s", label="threshold (95 %)", **look)
@@ -141,7 +142,6 @@ def _margin(axes: Axes, data: xr.Dataset, place: Place) -> None:
 
 
 def _probability(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Draw P(stable) with its interval, marked by verdict."""
     x, _ = place
     value, low, high = (data[f"probability_{end}"].values.astype(float) for end in ("stable", "low", "high"))
     verdict = data["verdict"].values.astype(str)
@@ -178,7 +178,6 @@ def _frequencies(axes: Axes, data: xr.Dataset, place: Place) -> None:
 
 
 def _time(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Draw the share of the time that each case takes."""
     x, _ = place
     step = float(np.diff(np.sort(x)).min()) if x.size > 1 else 1.0
     axes.bar(x, 100.0 * data["time_share"].values.astype(float), width=0.6 * step, color=GREY)
@@ -206,7 +205,7 @@ def _name_axis(axes: Axes, data: xr.Dataset, place: Place) -> None:
 
 
 def worst(data: xr.Dataset, place: Place) -> tuple[float | None, str] | None:
-    """Return where the worst case lies, and which it is and why; no place where all cases are alike."""
+    """Return the place of the worst case, its name and reason; no place where all cases are alike."""
     if "worst_case" not in data:
         return None
     case, alike = int(data["worst_case"]), int(data["worst_alike"])
@@ -223,7 +222,7 @@ def worst(data: xr.Dataset, place: Place) -> tuple[float | None, str] | None:
 
 
 def _name_worst(panels: list[Axes], data: xr.Dataset, place: Place) -> None:
-    """Mark the worst case in every panel, and say above which and why; not where all are alike."""
+    """Mark the worst case in every panel, and name it with its reason above them."""
     found = worst(data, place)
     if found is None:
         return
@@ -237,10 +236,145 @@ def _name_worst(panels: list[Axes], data: xr.Dataset, place: Place) -> None:
 
 
 def _mark_refused(axes: Axes, data: xr.Dataset, place: Place) -> None:
-    """Mark cases without a restitution factor at the foot of the first panel."""
     refused = np.isnan(data["restitution_factor"].values.astype(float))
     if refused.any() and not refused.all():
-        foot: Any = axes.get_xaxis_transform()
+        foot = axes.get_xaxis_transform()
         look: Look = {"color": GREY, "transform": foot, "clip_on": False, "label": "refused: see reason"}
         axes.plot(place[0][refused], np.full(refused.sum(), 0.04), "x", ls="", ms=4.0, **look)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=2.6)
+
+
+def envelope_plots(data: xr.Dataset) -> tuple[Plot, ...]:
+    """Return the panels of the operating envelope from the top, as `figures.envelope` draws them."""
+    place, names = places(data), _names(data)
+    panels = [("\N{GREEK SMALL LETTER ETA} [-]", [*_margin_series(data, place, names)])]
+    panels.append(("P(stable) [-]", [*_probability_series(data, place, names)]))
+    panels.append(("frequency [Hz]", [*_frequencies_series(data, place, names)]))
+    panels.append(("time [%]", [*_time_series(data, place, names)]))
+    drawn = [(label, series) for label, series in panels if series]
+    title, found = "Operating envelope", worst(data, place)
+    if found is not None:
+        at, words = found
+        title = words if at is None else f"Worst case: {words}"
+        if at is not None:
+            drawn[0][1].append(Series(name="", kind="upright", x=(at,), y=(None,), colour=VERMILION))
+    only = str(data["parameter"].values[0])
+    return tuple(
+        Plot(
+            title=title,
+            x_label=plain(axis_label(data, only, only)) if place[1] else "case",
+            y_label=label,
+            series=tuple(series),
+            x_log=place[1] and is_proportional(place[0]),
+            y_log=label.startswith("frequency"),
+        )
+        for label, series in drawn
+    )
+
+
+def sweep_plots(data: xr.Dataset) -> tuple[Plot, ...]:
+    """Return the panels of a sweep of several parameters, as `figures.sweep` draws them: cases by verdict."""
+    eta, verdict = data["restitution_factor"].values.astype(float), data["verdict"].values.astype(str)
+    rows = zip(_names(data), eta, verdict, strict=True)
+    texts = [f"{name}: restitution factor {number(e, 3)}{v and f', {v}'}" for name, e, v in rows]
+    groups = [("cases", "", BLACK), *((v, v, c) for v, c in VERDICT_COLOURS.items())]
+    return tuple(
+        Plot(
+            title="Restitution factor of every case",
+            x_label=plain(axis_label(data, name, name)),
+            y_label=plain(ETA_LABEL),
+            series=tuple(
+                _series(words, np.where(verdict == known, eta, np.nan), texts, (at, False), colour)
+                for words, known, colour in groups
+                if (verdict == known).any()
+            ),
+        )
+        for name in map(str, data["parameter"].values[:MOST_PANELS])
+        for at in [axis_values(data, name)]
+    )
+
+
+def _names(data: xr.Dataset) -> list[str]:
+    parts = [[f"case {one}" for one in data["case"].values.tolist()]]
+    for name in map(str, data["parameter"].values):
+        words, unit = name.rpartition(".")[2].replace("_", " "), str(data[name].attrs.get("units", "-"))
+        parts.append([f"{words} {format_quantity(value, unit)}" for value in data[name].values.tolist()])
+    return [", ".join(one) for one in zip(*parts, strict=True)]
+
+
+def _series(
+    name: str, values: Array, texts: list[str], place: Place, colour: str, ends: tuple[Array, ...] = ()
+) -> Series:
+    """Return the finite values of the cases as a line, or as points where lines have no meaning."""
+    at = np.isfinite(values)
+    low, high = (floats(one[at]) for one in ends) if ends else ((), ())
+    return Series(
+        name=name,
+        kind="line" if place[1] else "points",
+        x=floats(place[0][at]),
+        y=floats(values[at]),
+        text=tuple(text for text, has in zip(texts, at, strict=True) if has),
+        colour=colour,
+        low=low,
+        high=high,
+    )
+
+
+def _margin_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
+    eta, threshold = column(data, "restitution_factor"), column(data, "restitution_threshold")
+    if eta is None:
+        return
+    texts = [f"{name}: restitution factor {number(one, 3)}" for name, one in zip(names, eta, strict=True)]
+    if threshold is not None:
+        _, low, high = with_ends(data, "restitution_threshold")
+        rows = list(zip(names, eta, threshold, low, high, strict=True))
+        above = [f"{name}: threshold {interval(t, a, b)}, margin {t - e:+.3f}" for name, e, t, a, b in rows]
+        yield _series("threshold (95 %)", threshold, above, place, BLUE, (low, high))
+        texts = [
+            text + (f", margin {t - e:+.3f}" if np.isfinite(t) else "")
+            for text, (_, e, t, _, _) in zip(texts, rows, strict=True)
+        ]
+    yield _series("restitution factor", eta, texts, place, BLACK)
+
+
+def _probability_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
+    stable = column(data, "probability_stable")
+    if stable is None:
+        return
+    ends = tuple(data[f"probability_{end}"].values.astype(float) for end in ("low", "high"))
+    verdict = data["verdict"].values.astype(str)
+    rows = zip(names, verdict, stable, *ends, data["reason"].values.astype(str), strict=True)
+    texts = [f"{name}: {word}; P(stable) {interval(*p)}. {why}".strip() for name, word, *p, why in rows]
+    for name, colour in VERDICT_COLOURS.items():
+        if (verdict == name).any():
+            values = np.where(verdict == name, stable, np.nan)
+            yield _series(name, values, texts, (place[0], False), colour, ends)
+
+
+def _frequencies_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
+    rows = [("linear_whirl_frequency", "whirl without clearance", BLACK)]
+    rows += [(name, words, colour) for name, (words, colour, _) in ORDERS.items()]
+    for name, words, colour in rows:
+        values = column(data, name)
+        if values is not None:
+            values = np.where(values > 0.0, values, np.nan)
+            yield _series(words, values, _hertz(names, words, values), place, colour)
+    orbit = column(data, "orbit_frequency")
+    for sign, way in ((1.0, "forward"), (-1.0, "backward")):
+        if orbit is not None and (np.sign(orbit) == sign).any():
+            words = f"orbit of whirling runs, {way}"
+            values = np.where(np.sign(orbit) == sign, abs(orbit), np.nan)
+            yield _series(words, values, _hertz(names, words, values), (place[0], False), VERMILION)
+
+
+def _hertz(names: list[str], words: str, values: Array) -> list[str]:
+    return [f"{name}: {words} {significant(one, 3)} Hz" for name, one in zip(names, values, strict=True)]
+
+
+def _time_series(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:
+    if has_duty(data):
+        share = 100.0 * data["time_share"].values.astype(float)
+        pairs = zip(names, share, strict=True)
+        texts = tuple(f"{name}: {significant(one, 3)} % of the time" for name, one in pairs)
+        x, y = floats(place[0]), floats(share)
+        yield Series(name="share of the time", kind="bars", x=x, y=y, text=texts, colour=GREY)

@@ -5,21 +5,47 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import cycle
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
 from separatrix.figures.map import axis_label, axis_values, cells, is_proportional, parameter
 from separatrix.figures.ranking import own_environment, shift, text_order
-from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL, band_ends, has_band, highest, linear_limit
-from separatrix.figures.style import BLACK, BLUE, CYCLE, GREEN, GREY, VERDICT_COLOURS, VERMILION
+from separatrix.figures.stability import (
+    ETA_LABEL,
+    FRICTION_LABEL,
+    band_ends,
+    hard_limit,
+    has_band,
+    highest,
+    linear_limit,
+    own_point,
+)
+from separatrix.figures.style import (
+    BLACK,
+    BLUE,
+    CYCLE,
+    GREEN,
+    GREY,
+    VERDICT_COLOURS,
+    VERMILION,
+    Json,
+    with_ends,
+)
 from separatrix.present.text.tables import interval, number, quantity, significant
 
 Floats = tuple[float | None, ...]
 """Numbers along a series; None where there is none."""
 
 Kind = Literal["line", "points", "band", "upright", "cells", "bars"]
+POINTS = 72.0
+"""Points of an inch: the unit of matplotlib's SVG."""
+
+Place = tuple[float, float, str]
+"""Centre in points of an SVG, from its upper left corner, and text."""
+
 SYMBOLS = {r"$\eta$": "\N{GREEK SMALL LETTER ETA}", r"$f_{BC}$": "f_BC", r"$C_T$": "C_T"}
 """Symbols of labels, and as plain text."""
 
@@ -74,25 +100,17 @@ def stability_plot(data: xr.Dataset) -> Plot:
 
 def _curve(data: xr.Dataset) -> Iterator[Series]:
     eta, top = data["restitution_factor"].values.astype(float), highest(data, candidates=True)
-    critical, low, high = (
-        data[name].values.astype(float) for name in ("critical_friction", "scatter_low", "scatter_high")
-    )
+    critical = data["critical_friction"].values.astype(float)
+    low, high = (data[f"scatter_{end}"].values.astype(float) for end in ("low", "high"))
     at = np.isfinite(critical)
     text = [
         f"eta {number(e, 2)}: half of the runs whirl at a friction of {_between(c, a, b)}"
         for e, c, a, b in zip(eta[at], critical[at], low[at], high[at], strict=True)
     ]
     if has_band(data):
-        ends = [floats(one) for one in band_ends(data, top)]
-        yield Series(
-            name="band in which the kick decides",
-            kind="band",
-            x=floats(eta),
-            y=floats(critical),
-            colour=BLUE,
-            low=ends[0],
-            high=ends[1],
-        )
+        first, last = map(floats, band_ends(data, top))
+        name, x, y = "band in which the kick decides", floats(eta), floats(critical)
+        yield Series(name=name, kind="band", x=x, y=y, colour=BLUE, low=first, high=last)
     yield Series(
         name=f"half of {int(data['runs'])} runs whirl",
         kind="line",
@@ -106,11 +124,8 @@ def _curve(data: xr.Dataset) -> Iterator[Series]:
     fine = np.linspace(1e-3, 1.0, 100)
     limit = linear_limit(fine, int(data["cage_ball_count"]))
     yield Series(name="linear limit", kind="line", x=floats(fine), y=floats(limit), colour=GREY)
-    hard = data.get("hard_limit_critical_friction")
-    if hard is not None and np.isfinite(hard.values.astype(float)).any():
-        yield Series(
-            name="hard-impact limit", kind="line", x=floats(eta), y=floats(hard.values), colour=GREEN
-        )
+    if (hard := hard_limit(data)) is not None:
+        yield Series(name="hard-impact limit", kind="line", x=floats(eta), y=floats(hard), colour=GREEN)
 
 
 def _own_point(data: xr.Dataset) -> Iterator[Series]:
@@ -123,8 +138,7 @@ def _own_point(data: xr.Dataset) -> Iterator[Series]:
         y=(None,),
         text=(f"this bearing: eta {number(eta, 2)} (Eq. 18)",),
     )
-    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
-    at, middle, low, high = (float(data.get(f"here_{name}", np.nan)) for name in names)
+    at, middle, low, high = own_point(data)
     if np.isfinite([at, middle]).all():
         text = f"this bearing, eta {number(at, 2)}: critical friction {_between(middle, low, high)}"
         yield Series(
@@ -141,9 +155,8 @@ def _own_point(data: xr.Dataset) -> Iterator[Series]:
 def _candidates(data: xr.Dataset) -> Iterator[Series]:
     """Yield the candidates of one environment at their own factor, a series for each verdict."""
     rows = [(data.isel(material=i), str(name)) for i, name in enumerate(data["material"].values)]
-    each = [(one, name, str(one["material_verdict"].values)) for one, name in rows]
     for verdict, colour in VERDICT_COLOURS.items():
-        those = [(one, name) for one, name, found in each if found == verdict]
+        those = [(one, name) for one, name in rows if str(one["material_verdict"].values) == verdict]
         if those:
             yield Series(
                 name=verdict,
@@ -156,7 +169,6 @@ def _candidates(data: xr.Dataset) -> Iterator[Series]:
 
 
 def _candidate_text(one: xr.Dataset, name: str, prefix: str) -> str:
-    """Return friction, threshold, margin, P(stable) and verdict of a candidate."""
     known = {
         key: _or_none(float(one[f"{prefix}{key}"]))
         for key in (
@@ -178,14 +190,11 @@ def candidates_plot(data: xr.Dataset) -> Plot:
     """Return the restitution threshold of every candidate, a series for each environment and one overall."""
     data = data.isel(material=text_order(data)[::-1])
     names, count = [str(name) for name in data["material"].values], data.sizes["environment"]
-    rows = [(data.isel(environment=i), "material_", shift(i, count)) for i in range(count)]
-    titles = [str(name) for name in data["environment"].values]
     series = [
-        _thresholds(one, prefix, above, names, title, colour)
-        for (one, prefix, above), title, colour in zip(
-            [*rows, (data, "overall_", 0.0)], [*titles, "overall"], _colours(count), strict=True
-        )
+        _thresholds(data.isel(environment=i), "material_", shift(i, count), names, str(title), colour)
+        for i, (title, colour) in enumerate(zip(data["environment"].values, cycle(CYCLE), strict=False))
     ]
+    series.append(_thresholds(data, "overall_", 0.0, names, "overall", BLACK))
     return Plot(
         title="Restitution thresholds",
         x_label=f"threshold of the {plain(ETA_LABEL)}",
@@ -195,16 +204,10 @@ def candidates_plot(data: xr.Dataset) -> Plot:
     )
 
 
-def _colours(count: int) -> list[str]:
-    return [colour for _, colour in zip(range(count), cycle(CYCLE), strict=False)] + [BLACK]
-
-
 def _thresholds(
     data: xr.Dataset, prefix: str, above: float, names: Sequence[str], title: str, colour: str
 ) -> Series:
-    found, low, high = (
-        data[f"{prefix}restitution_threshold{end}"].values.astype(float) for end in ("", "_low", "_high")
-    )
+    found, low, high = with_ends(data, f"{prefix}restitution_threshold")
     places = np.flatnonzero(np.isfinite(found))
     data = data[[name for name in data.data_vars if str(name).startswith(prefix)]]  # few are sliced faster
     return Series(
@@ -253,8 +256,7 @@ def map_plot(data: xr.Dataset) -> Plot:
     )
 
 
-def _cell_text(cell: dict[str, Any], share: float) -> str:
-    """Return what is known of one point of a map."""
+def _cell_text(cell: Json, share: float) -> str:
     if str(cell["decision"]) == "" or not np.isfinite(share):
         return str(cell["reason"]) or "not run"
     low, high = (_or_none(float(cell[f"probability_{end}"])) for end in ("low", "high"))
@@ -262,7 +264,6 @@ def _cell_text(cell: dict[str, Any], share: float) -> str:
 
 
 def _study_point(data: xr.Dataset, labels: Sequence[str]) -> Iterator[Series]:
-    """Yield the place of the study itself, if the map has it."""
     units = [axis_values(data, name)[-1] / float(data[name].values[-1] or 1.0) or 1.0 for name in "xy"]
     at = [float(data[f"{name}_here"]) * unit for name, unit in zip("xy", units, strict=True)]
     if all(np.isfinite(at)):
@@ -278,7 +279,6 @@ def _study_point(data: xr.Dataset, labels: Sequence[str]) -> Iterator[Series]:
 
 
 def _at(label: str, value: float) -> str:
-    """Return a value of an axis with its name and unit."""
     name, _, unit = label.rpartition(" [")
     unit = unit.rstrip("]")
     return f"{name} {significant(value, 3)}{'' if unit in ('-', '') else f' {unit}'}"
@@ -319,7 +319,7 @@ def plain(label: str) -> str:
 
 
 def floats(values: Iterable[float]) -> Floats:
-    """Return numbers as those of Python; None for what is not finite."""
+    """Return numbers as those of Python; None where they are not finite."""
     return tuple(_or_none(float(one)) for one in values)
 
 
@@ -331,3 +331,25 @@ def _between(value: float, low: float, high: float) -> str:
     """Return a friction with its interval; an open end is left out."""
     ends = [significant(one, 2) for one in (low, high) if np.isfinite(one)]
     return significant(value, 2) + (f" ({ends[0]} to {ends[1]})" if len(ends) == 2 else "")
+
+
+def places(axes: Axes, plot: Plot, most: int, *names: str) -> Iterator[Place]:
+    """Yield where the points with text of a plot are in an SVG of its finished figure.
+
+    They are those of all series, or of these names, thinned evenly to at most `most` of each.
+    """
+    figure = axes.figure.get_figure(root=True)
+    if figure is None:
+        return
+    scale, height = POINTS / figure.dpi, figure.get_size_inches()[1] * POINTS
+    left, right = sorted(axes.get_xlim())
+    low, high = sorted(axes.get_ylim())
+    for series in plot.series:
+        if names and series.name not in names:
+            continue
+        step = -(-len(series.text) // most) if series.text else 1
+        for x, y, text in [*zip(series.x, series.y, series.text, strict=False)][::step]:
+            if x is None or y is None or not (left <= x <= right and low <= y <= high):
+                continue
+            across, up = axes.transData.transform((x, y))
+            yield float(across * scale), float(height - up * scale), text

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -51,7 +50,7 @@ SIZES = {"STABLE": 5.0, "UNSTABLE": 4.0, "UNDECIDED": 3.0}
 
 
 class Cells(NamedTuple):
-    """What is known at each point of a map, shape (y, x).
+    """State of each point of a map, shape (y, x).
 
     The share of the runs that whirl, NaN if unknown; which points the program refused; which were not run,
     for an interrupt or as the points around agree, whose share they then have; where there is no verdict.
@@ -64,19 +63,8 @@ class Cells(NamedTuple):
     undecided: Mask
 
 
-def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the picture of `map`."""
-    yield "stability-map", stability_map(data)
-
-
-def sweep_figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the picture of `sweep`; one without a finished case has none."""
-    if "case" in data.sizes:
-        yield "sweep", sweep(data)
-
-
 def cells(data: xr.Dataset) -> Cells:
-    """Return what is known at each point of a map."""
+    """Return the state of each point of a map."""
     table = {
         name: data[name].transpose("y", "x").values for name in ("probability_whirl", "reason", "decision")
     }
@@ -97,7 +85,8 @@ def stability_map(data: xr.Dataset) -> Figure:
     edges, share = [cell_edges(one) for one in values], np.ma.masked_invalid(known.share)
     look: Look = {"rasterized": True, "shading": "flat"}
     mesh = axes.pcolormesh(*edges, share, cmap=COLOURS, vmin=0.0, vmax=1.0, **look)
-    _hatch(axes, edges, known.refused, fc="#9a9a9a", ec="white", hatch="xxxx", label="refused")
+    refused: Look = {"fc": "#9a9a9a", "ec": "white", "hatch": "xxxx", "label": "refused"}
+    _hatch(axes, edges, known.refused, refused)
     if (known.not_run & ~known.agreed).any():
         axes.fill_between([], [], facecolor="white", edgecolor=GREY, lw=0.5, label="not run")
     if known.agreed.any():
@@ -105,7 +94,7 @@ def stability_map(data: xr.Dataset) -> Figure:
         dots: Look = {"color": BLACK, "ms": 2.2, "mec": "white", "mew": 0.4, "clip_on": False, "ls": ""}
         label = "was run; elsewhere the points around agree"
         axes.plot(values[0][x], values[1][y], "o", label=label, **dots)
-    _hatch(axes, edges, known.undecided, fc="none", ec="white", hatch="////")
+    _hatch(axes, edges, known.undecided, {"fc": "none", "ec": "white", "hatch": "////"})
     if known.undecided.any():
         look = {"fc": COLOURS(0.5), "ec": "white", "hatch": "////", "lw": 0.0}
         axes.fill_between([], [], label="undecided: the runs, or their drift, allow no verdict", **look)
@@ -128,7 +117,7 @@ def stability_map(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _hatch(axes: Axes, edges: list[Array], where: Mask, **look: Any) -> None:
+def _hatch(axes: Axes, edges: list[Array], where: Mask, look: Look) -> None:
     x, y = edges
     corners = [
         [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])]

@@ -1,14 +1,24 @@
-"""What figures and films draw of a run: boundaries and path of the cage centre, and its whirl spectrum."""
+"""What figures and films draw of a run: its time, boundaries and path of the cage centre, whirl spectrum."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, colour_bar
 from separatrix.units import Array, Hertz
+
+Part = tuple[list[Artist], Callable[[int], None]]
+"""What moves in a picture, and what puts it where it is in a frame."""
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
 """Directions in which boundaries are drawn: a quarter of a degree apart."""
@@ -24,7 +34,7 @@ NEVER = 1e3
 
 LAND: Look = {"color": VERMILION, "lw": 3.5, "alpha": 0.45, "zorder": 1.5}
 POCKETS: Look = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 1.5)), "zorder": 1.5}
-"""Boundaries lie below the path, the land wide and light: neither hides the other or a path along it."""
+"""Boundaries are below the path, the land wide and light: neither hides the other or a path along it."""
 
 FAINTEST, SEEN = -50.0, -30.0
 """Weakest whirl of the picture against time, and weakest for which it goes on, under the strongest [dB]."""
@@ -34,6 +44,50 @@ SHORTEST, BANDS = 8, 12.0
 
 STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
+
+GOES_ON = 1e-3
+"""Mean kinetic energy at the end of a run, over its largest, from which a cage in space moves on."""
+
+MOST_FRAMES, A_TURN = 360, 6
+"""Most frames of a film; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
+
+GAP = 1.5
+"""Steps over the usual one from which frames have a gap."""
+
+
+def milliseconds(data: xr.Dataset) -> Array:
+    """Return the times of the samples [ms]."""
+    return 1e3 * np.asarray(data["time"].values, dtype=float)
+
+
+def is_logarithmic(*runs: xr.Dataset) -> bool:
+    """Whether time is drawn logarithmic: a motion that settles does so early, unless it goes on in space."""
+    return any(
+        str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 and not _goes_on(run)
+        for run in runs
+    )
+
+
+def _goes_on(data: xr.Dataset) -> bool:
+    """Whether a cage in space still moves in the last fifth of its run."""
+    energy = data["kinetic_energy"].values
+    return "lean" in data and float(energy[-(energy.size // 5) - 1 :].mean()) > GOES_ON * float(energy.max())
+
+
+def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
+    """Return both ends of the axis of time [ms]; a millisecond if the run has only its start."""
+    times = [time for time in map(milliseconds, runs) if time.size > 1]
+    last = max((float(time[-1]) for time in times), default=0.0)
+    first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
+    return first, last if last > first else first + 1.0
+
+
+def time_axis(axes: Axes, *runs: xr.Dataset) -> None:
+    """Set the axis of time for one or several runs."""
+    axes.set(xlim=time_limits(*runs), xlabel="time [ms]")
+    if is_logarithmic(*runs):
+        axes.set(xscale="log", xlim=time_limits(*runs), xlabel="time, logarithmic [ms]")
+        axes.xaxis.set_major_formatter("{x:g}")
 
 
 def ring(radius: Array | float, angle: Array) -> Array:
@@ -92,35 +146,58 @@ def largest_play(data: xr.Dataset) -> float | None:
 
 
 def orbit_reach(data: xr.Dataset) -> float:
-    """Return what a picture of the orbit must show on either side [m]."""
+    """Return the least half width of a picture of the orbit [m]."""
     far, land, play = (float(np.abs(data["position"].values).max()), land_boundary(data), largest_play(data))
     return 1.12 * max(far, play or 0.0, 0.0 if land is None else float(land.max()), 1e-9)
+
+
+def clearances(data: xr.Dataset) -> list[tuple[float, Look, str]]:
+    """Return the clearances that a picture of the offset shows [mm], each with look and name."""
+    play, land = largest_play(data), land_boundary(data)
+    found = [] if play is None else [(1e3 * play, POCKETS, "pockets")]
+    return found + ([] if land is None else [(1e3 * float(land.max()), LAND, "land")])
 
 
 def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
     """Draw the centre's path between its boundaries, on a scale that has room for the other runs."""
     path = 1e3 * smooth_path(*(data[name].values.astype(float) for name in ("time", "position", "velocity")))
-    most = 1e3 * max(map(orbit_reach, (data, *others)))
-    axes.set(xlim=(-most, most), ylim=(-most, most), xlabel="x [mm]", ylabel="y [mm]")
+    most, land, pockets = 1e3 * max(map(orbit_reach, (data, *others))), land_boundary(data), None
+    if largest_play(data):
+        pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
+    boundaries = [
+        (ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND), look, label)
+        for radius, look, label in ((land, LAND, "land clearance"), (pockets, POCKETS, "pocket clearance"))
+        if radius is not None and radius.max() > 0.0
+    ]
+    draw_path(axes, path, most, boundaries, "orbits")
+    axes.set(xlabel="x [mm]", ylabel="y [mm]")
+
+
+def draw_path(
+    axes: Axes, path: Array, most: float, boundaries: Sequence[tuple[Array, Look, str]], turns: str
+) -> None:
+    """Draw a path about the axis, darker in its last turns, within boundaries that have a look and a name."""
+    axes.set(xlim=(-most, most), ylim=(-most, most))
     axes.set_aspect("equal", adjustable="box", anchor="NW")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))
-    first, land = last_turns(path), land_boundary(data)
+    first = last_turns(path)
     if first:
         axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
-    pockets = (
-        pocket_boundary(data["pocket_angle"].values, data["half_play"].values) if largest_play(data) else None
-    )
-    for radius, look, label in ((land, LAND, "land clearance"), (pockets, POCKETS, "pocket clearance")):
-        if radius is not None and radius.max() > 0.0:
-            axes.plot(
-                *ring(np.where(np.isfinite(radius), 1e3 * radius, np.nan), AROUND).T, **look, label=label
-            )
-    label = "path" if not first else f"last {LAST} orbits"
+    for boundary, look, label in boundaries:
+        axes.plot(*boundary.T, **look, label=label)
+    label = "path" if not first else f"last {LAST} {turns}"
     axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label, zorder=3)
     axes.plot(*path[0], "o", color=BLACK, ms=3.5, ls="", label="start")
     axes.plot(*path[-1], "s", mfc="white", mec=BLACK, ms=3.5, ls="", label="end", zorder=4)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=6.5, handlelength=2.0)
+
+
+def shade_judged(axes: Axes, data: xr.Dataset) -> None:
+    """Shade the part by which the run is judged."""
+    first, last = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
+    if last > first:
+        axes.axvspan(first, last, color=GREY, alpha=0.2, lw=0, zorder=0)
 
 
 def even_velocity(time: Array, velocity: Array) -> tuple[Array, Array]:
@@ -203,3 +280,46 @@ def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xlim=(0.0, min(whole, last or whole)), xlabel="time [ms]")
     axes.set(ylim=(-1e-3 * most, 1e-3 * most), ylabel="frequency [kHz]")
     colour_bar(mesh, [axes], "level under the largest [dB]", pad=0.02, aspect=20)
+
+
+def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
+    """Return the samples that become frames, rising, with the first and the last.
+
+    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
+    of the whirl; if the whole run would take too many, its beginning and its end are shown.
+    """
+    time, (first, last), logarithmic = milliseconds(data), time_limits(data), is_logarithmic(data)
+    wanted = np.searchsorted(time, (np.geomspace if logarithmic else np.linspace)(first, last, most))
+    even = np.unique(np.append(0, wanted.clip(0, time.size - 1)))[-most:]
+    turns = fastest_whirl(data) * float(data["time"].values[-1])
+    step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
+    if logarithmic or int(np.diff(even).max(initial=1)) <= step:
+        return even
+    half = np.arange(most // 2) * step
+    return np.unique(np.concatenate([half, time.size - 1 - half]))
+
+
+def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
+    """Return beginning and end of each part of the run that the frames show [ms]."""
+    time = milliseconds(data)[moments]
+    if is_logarithmic(data) or time.size < 3:
+        return [(float(time[0]), float(time[-1]))]
+    steps = np.diff(moments)
+    cuts = np.flatnonzero(steps > GAP * np.median(steps) + 1) + 1
+    return [(float(part[0]), float(part[-1])) for part in np.split(time, cuts)]
+
+
+def filmed(figure: Figure, parts: Sequence[Part], count: int) -> Iterator[Image.Image]:
+    """Yield frames of a figure; what does not move is drawn once."""
+    canvas: Any = FigureCanvasAgg(figure)
+    for artist in (artist for moving, _ in parts for artist in moving):
+        artist.set_animated(True)
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    for frame in range(count):
+        canvas.restore_region(still)
+        for moving, move in parts:
+            move(frame)
+            for artist in moving:
+                figure.draw_artist(artist)
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())

@@ -33,7 +33,9 @@ from separatrix.figures.style import (
     canvas,
     label_lines,
     legend_below,
+    stated,
     study_of,
+    with_ends,
 )
 
 VERDICT_AT, RIGHT = 1.05, 1.24
@@ -59,9 +61,9 @@ def file_name(text: str) -> str:
 
 def own_environment(data: xr.Dataset) -> int | None:
     """Return the place of the bearing's own environment; None if the study does not name one."""
-    stated = study_of(data).get("ranking", {}).get("environment", {}).get("value")
+    own = stated(study_of(data), "ranking", "environment")
     names = [str(name) for name in data["environment"].values]
-    return names.index(stated) if stated in names else (0 if len(names) == 1 else None)
+    return names.index(own) if own in names else (0 if len(names) == 1 else None)
 
 
 def rank_texts(column: Sequence[float | str | None]) -> list[str]:
@@ -80,10 +82,8 @@ def environment(data: xr.Dataset, top: float) -> Figure:
     ranks = rank_texts(data["material_rank"].values.tolist())
     for i, name in enumerate(data["material"].values):
         of = data.isel(material=i)
-        friction, eta, verdict = (
-            of[f"material_{key}"].item() for key in ("friction", "restitution_factor", "verdict")
-        )
-        colour, own = VERDICT_COLOURS.get(str(verdict), GREY), ""
+        friction, eta = (float(of[f"material_{key}"]) for key in ("friction", "restitution_factor"))
+        colour, own = VERDICT_COLOURS.get(str(of["material_verdict"].values), GREY), ""
         if np.isfinite(friction):
             _candidate(axes, of, colour)
             own = f"  {eta:.2f}" if differ and np.isfinite(eta) else ""
@@ -110,10 +110,8 @@ def _own_curves(axes: Axes, data: xr.Dataset) -> None:
     """Draw the curve of every other pocket, where candidates differ in its stiffness, with whose it is."""
     reference = str(data["candidate"].values)
     axes.lines[0].set_label(f"{axes.lines[0].get_label()}: {reference}")
-    lines, names = (
-        data["own_critical_friction"].transpose("material", "own_eta").values,
-        data["material"].values,
-    )
+    lines = data["own_critical_friction"].transpose("material", "own_eta").values
+    names = data["material"].values
     whose: dict[bytes, list[int]] = {}
     for place, line in enumerate(lines):
         whose.setdefault(line.tobytes(), []).append(place)
@@ -130,9 +128,7 @@ def _candidate(axes: Axes, data: xr.Dataset, colour: str) -> None:
     marker = VERDICT_MARKERS.get(str(data["material_verdict"].values), ".")
     axes.plot([0, 1], [friction, friction], color=colour, lw=0.4, alpha=0.6)
     axes.plot(eta, friction, marker, color=colour, ms=5, zorder=5)
-    low, threshold, high = (
-        float(data[f"material_restitution_threshold{end}"]) for end in ("_low", "", "_high")
-    )
+    threshold, low, high = map(float, with_ends(data, "material_restitution_threshold"))
     if np.isfinite(threshold):
         axes.plot([low, high], [friction, friction], color=colour, lw=1.6)
         axes.plot(threshold, friction, "o", mfc="white", mec=colour, ms=4.5, clip_on=False, zorder=4)
@@ -154,7 +150,7 @@ def overview(data: xr.Dataset) -> Figure:
         axes.plot(of["material_restitution_threshold"].values, row, marker=marker, label=name, **look)
         absent = ~np.isfinite(of["material_friction"].values)
         axes.plot(np.full(absent.sum(), 0.985), row[absent], marker="x", **look)
-    low, middle, high = (data[f"overall_restitution_threshold{end}"].values for end in ("_low", "", "_high"))
+    middle, low, high = with_ends(data, "overall_restitution_threshold")
     axes.hlines(places, low, high, color=BLACK, lw=1.2)
     axes.plot(middle, places, "D", color=BLACK, ms=4.5, label="overall, with its 95 % interval")
     if "own_critical_friction" in data:

@@ -1,4 +1,4 @@
-"""The cage among its balls as an animation draws it: true shapes, small movements enlarged."""
+"""The cage among its balls as films and pages draw it: true shapes, small movements enlarged."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from separatrix.figures.motion import ring
-from separatrix.figures.style import study_of
+from separatrix.figures.motion import land_boundary, ring
+from separatrix.figures.style import stated, study_of
 from separatrix.units import Array
 
 BAR_SHARE, FARTHEST, RAIL = 0.4, 0.3, 0.36
@@ -17,44 +17,36 @@ width of the cage over the ball's diameter."""
 
 ARC, ROUND = np.linspace(0.0, 1.0, 9), np.linspace(0.0, 2 * np.pi, 181)
 
+THICK, WIDE, RIM = 0.28, 1.35, 0.88
+"""Half the radial thickness of the cage over the ball's diameter; its width over that, if it is not stated;
+largest size of a pocket along the axis over the cage's width."""
+
+FARTHEST_IN_SPACE = 0.25
+"""Largest movement in the picture over the pitch radius."""
+
+POCKET_POINTS = 24
+"""Points around a pocket."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Scene:
-    """Sizes [m], and each moment's movements times `enlarged`, in the frame of the ball set.
+    """Sizes [m], and each moment's movements times `enlarged`, in the frame of the ball set."""
 
-    Attributes
-    ----------
-    radius, ball, half_width : float
-        Of the pitch circle and of a ball; half the radial width of the cage [m].
-    angles, walls : ndarray
-        Of each pocket, and half its angle from wall to wall with the play enlarged [rad].
-    offset, turn, lead, force, land_force : ndarray
-        Centre (time, 2) [m], rotation (time,) [rad], angle of each ball ahead (time, ball) [rad], forces [N].
-    frame : ndarray
-        Angle that the ball set has turned by, if the picture is fixed in space; else 0 [rad].
-    enlarged : float
-        How many times too large movements and plays are drawn [-].
-    land, side : float, int
-        Radius of the land in the picture [m], infinite without one; 1 for a land outside the cage, -1 inside.
-    edges : tuple
-        Radius of the inner and the outer edge of the cage [m]; the guided one with its lobes.
-    """
-
-    radius: float
-    ball: float
-    angles: Array
-    walls: Array
-    offset: Array
-    turn: Array
-    lead: Array
-    force: Array
-    land_force: Array
-    frame: Array
-    enlarged: float
-    land: float
-    side: int
-    edges: tuple[Array | float, Array | float]
-    half_width: float
+    radius: float  # of the pitch circle
+    ball: float  # radius
+    angles: Array  # of each pocket [rad]
+    walls: Array  # half the angle of each pocket from wall to wall, with the play enlarged [rad]
+    offset: Array  # of the centre, shape (time, 2)
+    turn: Array  # rotation of the cage, shape (time,) [rad]
+    lead: Array  # angle by which each ball is ahead, shape (time, ball) [rad]
+    force: Array  # of each pocket, shape (time, ball) [N]
+    land_force: Array  # shape (time,) [N]
+    frame: Array  # angle by which the ball set has turned, if the picture is fixed in space; else 0 [rad]
+    enlarged: float  # factor by which movements and plays are drawn too large
+    land: float  # radius of the land in the picture; infinite without one
+    side: int  # 1 for a land outside the cage, -1 inside
+    edges: tuple[Array | float, Array | float]  # radii of the cage; the guided one with its lobes
+    half_width: float  # half the radial width of the cage
 
     @property
     def reach(self) -> float:
@@ -111,17 +103,14 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     """Return the sizes and movements of a run at some samples, in the frame of the balls or a fixed one.
 
     Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
-    the pockets and the cage in the picture, on two digits; at least 1.
+    the pockets and the cage in the picture.
     """
     data = data.isel(time=moments)
     radius, play = float(data["cage_pitch_radius"]), data["half_play"].values
-    pitch = 2 * np.pi * radius / max(3, data.sizes["ball"])
-    diameter = study_of(data).get("bearing", {}).get("ball_diameter", {}).get("value")
-    ball = 0.5 * float(0.75 * pitch if diameter is None else diameter)
+    diameter = stated(study_of(data), "bearing", "ball_diameter")
+    ball = 0.5 * float(0.75 * _pitch(data) if diameter is None else diameter)
     far = float(np.hypot(*data["position"].values.T).max(initial=0.0))
-    most = [0.5 * (1 - BAR_SHARE) * (pitch - 2 * ball) / play.max()] if play.max() > 0.0 else []
-    most += [FARTHEST * radius / far] if far > 0.0 else []
-    enlarged = float(f"{max(1.0, min(most, default=1.0)):.2g}")
+    enlarged = _enlargement((_room(data, ball), play.max()), (FARTHEST * radius, far))
     guidance, clearance = str(data["cage_guidance"].values), float(data["cage_land_clearance"])
     guided, turn = guidance != "ball" and np.isfinite(clearance), turned_by(data)
     side, half_width = -1 if guidance == "inner" else 1, 2 * RAIL * ball
@@ -147,6 +136,22 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     )
 
 
+def _pitch(data: xr.Dataset) -> float:
+    """Return the length of the pitch circle between two balls [m]."""
+    return 2 * np.pi * float(data["cage_pitch_radius"]) / max(3, data.sizes["ball"])
+
+
+def _room(data: xr.Dataset, ball: float) -> float:
+    """Return the largest half play in the picture that leaves a bar of the cage between two balls [m]."""
+    return 0.5 * (1 - BAR_SHARE) * (_pitch(data) - 2 * ball)
+
+
+def _enlargement(*limits: tuple[float, float]) -> float:
+    """Return how many times movements are enlarged, from pairs of a largest and a true size: at least 1."""
+    most = [largest / size for largest, size in limits if size > 0.0]
+    return float(f"{max(1.0, min(most, default=1.0)):.2g}")
+
+
 def turned_by(data: xr.Dataset) -> Array:
     """Return the angle by which the ball set has turned at each sample [rad], with its start-up ramp."""
     time, speed = np.asarray(data["time"].values, dtype=float), float(data["cage_cage_speed"])
@@ -161,3 +166,125 @@ def turned(points: Array, angle: float) -> Array:
     """Return points, shape (..., 2), turned by an angle about the origin."""
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(points @ np.array([[c, s], [-s, c]]), dtype=float)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class SpaceScene:
+    """Sizes [m], and movements at each moment, true, in the frame of the ball set."""
+
+    radius: float  # of the pitch circle
+    ball: float  # radius
+    half_width: float  # of the cage
+    half_thickness: float  # of the cage
+    angles: Array  # of each pocket [rad]
+    plays: Array  # half the clearance of each pocket along the orbit
+    axial_play: float  # half the clearance of a pocket along the axis
+    is_square: bool  # whether pockets have corners
+    land: float  # radius of the surface of the cage at the land
+    side: int  # 1 for a land outside the cage, -1 inside, 0 without one
+    heights: tuple[float, ...]  # of the lands over the pockets
+    gap: float  # radial clearance of the lands
+    centre: Array  # shape (time, 2)
+    lean: Array  # shape (time, 2) [rad]
+    axial: Array  # shape (time,)
+    rotation: Array  # shape (time,) [rad]
+    lead: Array  # of each ball, shape (time, ball)
+    ball_axial: Array  # shape (time, ball)
+    force: Array  # largest of each ball since the moment before, shape (time, ball) [N]
+    largest_force: float  # of all samples of the run [N]
+    frame: Array  # angle by which the ball set has turned [rad]
+    enlarged: float  # factor by which movements and clearances are drawn too large at first
+
+    def moved(self, points: Array, moment: int) -> Array:
+        """Return points of the cage, shape (..., 3), where it is at a moment, movements enlarged."""
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
+        (cx, cy), (lx, ly), turn = self.centre[moment], self.lean[moment], self.rotation[moment]
+        step = np.stack(
+            [cx + lx * z - turn * y, cy + ly * z + turn * x, self.axial[moment] - lx * x - ly * y], axis=-1
+        )
+        return np.asarray(points + self.enlarged * step)
+
+    def ball_places(self, moment: int) -> Array:
+        """Return the centre of each ball, shape (ball, 3)."""
+        angle = self.angles + self.enlarged * self.lead[moment] / self.radius
+        return np.column_stack([ring(self.radius, angle), self.enlarged * self.ball_axial[moment]])
+
+    def faces(self) -> Array:
+        """Return the faces of the cage at rest around its enlarged pockets, shape (face, 4, 3)."""
+        around = 2.0 * np.pi * (np.arange(POCKET_POINTS) + 0.5) / POCKET_POINTS
+        c, s = np.cos(around), np.sin(around)
+        square = np.maximum(np.abs(c), np.abs(s))
+        corner = square if self.is_square else 1.0
+        across = min(self.ball + self.enlarged * self.axial_play, RIM * self.half_width)
+        ends = np.append(self.angles, self.angles[0] + 2.0 * np.pi)
+        middles = 0.5 * (ends[:-1] + ends[1:])
+        lows, found = np.roll(middles, 1), []
+        lows[0] -= 2.0 * np.pi
+        for angle, play, low, high in zip(self.angles, self.plays, lows, middles, strict=True):
+            along = (self.ball + self.enlarged * play) / self.radius
+            hole = angle + along * c / corner, across * s / corner
+            share = 0.5 * (high + low) + 0.5 * (high - low) * c / square, self.half_width * s / square
+            for r in (self.radius - self.half_thickness, self.radius + self.half_thickness):
+                inner, outer = (np.column_stack([ring(r, at), height]) for at, height in (hole, share))
+                quads = [inner, np.roll(inner, -1, axis=0), np.roll(outer, -1, axis=0), outer]
+                found.append(np.stack(quads, axis=1))
+        return np.concatenate(found)
+
+    @property
+    def land_radius(self) -> float:
+        """Radius of the land in the picture, its clearance enlarged [m]."""
+        return self.land + self.side * self.enlarged * self.gap
+
+
+def axial_play(data: xr.Dataset) -> float | None:
+    """Return half the clearance of the pockets along the axis [m]; None if it is unknown."""
+    play = float(data["cage_space_axial_play"])
+    return play if np.isfinite(play) and play > 0.0 else None
+
+
+def space_scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> SpaceScene:
+    """Return sizes and movements of a run at some samples.
+
+    Movements are enlarged as in `scene`; an edge of a pocket along the axis also remains within the cage.
+    """
+    every, largest = data["contact_force"].values, float(data["contact_force"].max())
+    before = np.concatenate([[moments[0]], moments[:-1] + 1])
+    pairs = zip(before, moments, strict=True)
+    force = np.array([every[min(a, b) : b + 1].max(axis=0) for a, b in pairs])
+    data = data.isel(time=moments)
+    radius, play = float(data["cage_pitch_radius"]), data["half_play"].values.astype(float)
+    ball = 0.5 * float(data["cage_space_ball_diameter"])
+    wide = stated(study_of(data), "cage", "width")
+    half_width = max(0.5 * float(wide) if wide else 0.0, WIDE * ball)
+    across = axial_play(data) or 0.0
+    far = float(np.hypot(*data["centre"].values.T).max(initial=0.0))
+    far = max(far, radius * float(np.hypot(*data["lean"].values.T).max(initial=0.0)))
+    far = max(far, float(np.abs(data["position"].values[:, 2]).max(initial=0.0)))
+    rooms = [(_room(data, ball), play.max()), (RIM * half_width - ball, across)]
+    land, thickness = land_boundary(data), 2.0 * THICK * ball
+    side = 0 if land is None else (-1 if str(data["cage_guidance"].values) == "inner" else 1)
+    heights = np.atleast_1d(data["cage_space_land_heights"].values if side else np.zeros(0))
+    return SpaceScene(
+        radius=radius,
+        ball=ball,
+        half_width=half_width,
+        half_thickness=thickness,
+        angles=data["pocket_angle"].values.astype(float),
+        plays=play,
+        axial_play=across,
+        is_square=str(data["cage_pocket_shape"].values) == "square",
+        land=radius + side * thickness,
+        side=side,
+        heights=tuple(float(h) for h in heights),
+        gap=0.0 if land is None else float(land.max()),
+        centre=data["centre"].values,
+        lean=data["lean"].values,
+        axial=data["position"].values[:, 2],
+        rotation=data["rotation"].values,
+        lead=data["ball_lead"].values,
+        ball_axial=data["ball_axial"].values,
+        force=force,
+        largest_force=largest,
+        frame=turned_by(data) if fixed else np.zeros(data.sizes["time"]),
+        enlarged=_enlargement(*rooms, (FARTHEST_IN_SPACE * radius, far)),
+    )

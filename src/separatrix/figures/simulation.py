@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,9 +11,14 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from matplotlib.typing import HashableList
 
 from separatrix.figures import motion
-from separatrix.figures.motion import LAND, POCKETS, land_boundary, largest_play
+from separatrix.figures.motion import (
+    is_logarithmic,
+    milliseconds,
+    time_axis,
+)
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -48,9 +52,6 @@ WIDE = 30.0
 COLUMNS = 600
 """Most columns of the picture of the forces; each shows the largest force of its samples."""
 
-GOES_ON = 1e-3
-"""Mean kinetic energy at the end of a run, over its largest, from which a cage in space moves on."""
-
 TURNS, FEWEST, BEFORE = 6.0, 40, 0.15
 """Turns of the whirl and least samples of the close view; its least share before the largest force."""
 
@@ -67,7 +68,7 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 def run(data: xr.Dataset) -> Figure:
     """Orbit of the cage centre, energy, work, offset and whirl of one run."""
     figure = Figure(figsize=(PAGE, 7.0), layout="constrained")
-    parts: Any = figure.subfigures(nrows=3)
+    parts = figure.subfigures(nrows=3, squeeze=False)[:, 0]
     (orbit, energy), (offset, work), (spectrum, against_time) = (part.subplots(ncols=2) for part in parts)
     motion.draw_orbit(orbit, data)
     orbit.set_title("a  Orbit of the cage centre, turning frame")
@@ -76,10 +77,8 @@ def run(data: xr.Dataset) -> Figure:
     _offset(offset, data)
     draw_work(work, data)
     work.set_title(f"d  Work; energy balance closes to {energy_gap(data):.0e}")
-    if float(data["judged_until"]) > float(data["judged_from"]):
-        for axes in (energy, offset, work):
-            ends = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
-            axes.axvspan(*ends, color=GREY, alpha=0.2, lw=0, zorder=0)
+    for axes in (energy, offset, work):
+        motion.shade_judged(axes, data)
     motion.draw_spectrum(spectrum, data)
     frequency, share = motion.of_run(data)
     strongest = 1e-3 * frequency[share.argmax()] if share.any() else 0.0
@@ -88,41 +87,6 @@ def run(data: xr.Dataset) -> Figure:
     motion.draw_against_time(against_time, data)
     against_time.set_title("f  Whirl spectrum against time")
     return figure
-
-
-def milliseconds(data: xr.Dataset) -> Array:
-    """Return the times of the samples [ms]."""
-    return 1e3 * np.asarray(data["time"].values, dtype=float)
-
-
-def is_logarithmic(*runs: xr.Dataset) -> bool:
-    """Whether time is drawn logarithmic: a motion that settles does so early, unless it goes on in space."""
-    return any(
-        str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 and not _goes_on(run)
-        for run in runs
-    )
-
-
-def _goes_on(data: xr.Dataset) -> bool:
-    """Whether a cage in space still moves in the last fifth of its run."""
-    energy = data["kinetic_energy"].values
-    return "lean" in data and float(energy[-(energy.size // 5) - 1 :].mean()) > GOES_ON * float(energy.max())
-
-
-def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
-    """Return both ends of the axis of time [ms]; a millisecond if nothing but the start is there."""
-    times = [time for time in map(milliseconds, runs) if time.size > 1]
-    last = max((float(time[-1]) for time in times), default=0.0)
-    first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
-    return first, last if last > first else first + 1.0
-
-
-def time_axis(axes: Axes, *runs: xr.Dataset) -> None:
-    """Set the axis of time for one or several runs."""
-    axes.set(xlim=time_limits(*runs), xlabel="time [ms]")
-    if is_logarithmic(*runs):
-        axes.set(xscale="log", xlim=time_limits(*runs), xlabel="time, logarithmic [ms]")
-        axes.xaxis.set_major_formatter("{x:g}")
 
 
 def works(data: xr.Dataset) -> dict[str, Array]:
@@ -199,9 +163,7 @@ def draw_work(axes: Axes, data: xr.Dataset) -> None:
 
 def _offset(axes: Axes, data: xr.Dataset) -> None:
     """Draw how far the centre is from the axis, with the clearances of pockets and land below it."""
-    play, land = largest_play(data), land_boundary(data)
-    limits = [] if play is None else [(1e3 * play, POCKETS, "pockets")]
-    limits += [] if land is None else [(1e3 * float(land.max()), LAND, "land")]
+    limits = motion.clearances(data)
     for radius, look, _ in limits:
         axes.axhline(radius, **look)
     axes.plot(milliseconds(data), 1e3 * np.hypot(*data["position"].values.T), color=BLUE, lw=0.8, zorder=3)
@@ -214,14 +176,18 @@ def _offset(axes: Axes, data: xr.Dataset) -> None:
 
 def forces(data: xr.Dataset) -> Figure:
     """Contact forces pocket by pocket and at the land, and how often each pocket touches its ball."""
-    rows: Any = [["raster", "near raster"], ["force", "near force"], ["contacts", "contacts"]]
+    rows: list[HashableList[str]] = [
+        ["raster", "near raster"],
+        ["force", "near force"],
+        ["contacts", "contacts"],
+    ]
     figure = Figure(figsize=(PAGE, 5.8), layout="constrained")
     panels = figure.subplot_mosaic(rows, height_ratios=[2.0, 1.3, 1.3], width_ratios=[2.2, 1.0])
     near, largest = close_view(data), max(float(largest_force(data).max()), 1e-9)
-    mesh = _raster(panels["raster"], data, largest, np.geomspace if is_logarithmic(data) else np.linspace)
+    mesh = raster(panels["raster"], data, largest, logarithmic=is_logarithmic(data))
     time_axis(panels["raster"], data)
     panels["raster"].set(title="a  Force in each pocket", ylabel="pocket")
-    _raster(panels["near raster"], near, largest, np.linspace)
+    raster(panels["near raster"], near, largest, logarithmic=False)
     panels["near raster"].set(title="b  Around the largest force", xlabel="time [ms]", xlim=view_ends(near))
     rasters = [panels["raster"], panels["near raster"]]
     colour_bar(mesh, rasters, "force [N], root scale", pad=0.01, aspect=14)
@@ -278,11 +244,12 @@ def pooled(time: Array, force: Array, edges: Array) -> Array:
     return np.array([size[a:b].max(axis=0) if b > a else size[max(0, b - 1)] for a, b in spaces])
 
 
-def _raster(axes: Axes, data: xr.Dataset, largest: float, space: Any) -> ScalarMappable:
+def raster(axes: Axes, data: xr.Dataset, largest: float, *, logarithmic: bool) -> ScalarMappable:
     """Draw the force in each pocket against time: white for none."""
     time = milliseconds(data)
-    first = float(time[min(1, time.size - 1)]) if space is np.geomspace else float(time[0])
+    first = float(time[min(1, time.size - 1)]) if logarithmic else float(time[0])
     last = float(time[-1]) if time[-1] > first else first + 1.0
+    space = np.geomspace if logarithmic else np.linspace
     edges = space(first, last, min(COLUMNS, max(2, time.size)) + 1)
     force = pooled(time, data["contact_force"].values, edges)
     look: Look = {"cmap": "Greys", "norm": PowerNorm(0.5, 0.0, largest), "rasterized": True}
@@ -320,8 +287,7 @@ def _contacts(axes: Axes, data: xr.Dataset) -> None:
 def comparison(first: xr.Dataset, second: xr.Dataset, names: Sequence[str]) -> Figure:
     """Orbit, energy, spectrum and forces of two runs, each on the scale of both, with a name above each."""
     runs, figure = (first, second), Figure(figsize=(PAGE, 8.0), layout="constrained")
-    parts: Any = figure.subfigures(nrows=2, height_ratios=[1.0, 2.0])
-    above, below = parts
+    above, below = figure.subfigures(nrows=2, height_ratios=[1.0, 2.0], squeeze=False)[:, 0]
     orbits, (energy, force, spectrum) = above.subplots(ncols=2), below.subplots(nrows=3)
     for axes, letter, data, other, name in zip(orbits, "AB", runs, runs[::-1], names, strict=True):
         motion.draw_orbit(axes, data, other)

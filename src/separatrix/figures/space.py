@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from separatrix.cage.space.contacts import touches
 from separatrix.figures import motion, simulation
-from separatrix.figures.simulation import is_logarithmic, milliseconds, time_axis
+from separatrix.figures.motion import is_logarithmic, milliseconds, time_axis
+from separatrix.figures.scene import axial_play
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -24,6 +23,7 @@ from separatrix.figures.style import (
     SKY,
     VERMILION,
     Look,
+    canvas,
     colour_bar,
     label_lines,
     legend_above,
@@ -72,12 +72,12 @@ def in_plane(data: xr.Dataset) -> xr.Dataset:
 def course(data: xr.Dataset) -> Figure:
     """Orbit of the centre, lean of the axis, and offset, axial place, tilt and rotation against time."""
     figure = Figure(figsize=(PAGE, 7.6), layout="constrained")
-    parts: Any = figure.subfigures(nrows=2, height_ratios=[1.0, 1.9])
-    orbit, lean = parts[0].subplots(ncols=2)
+    above, below = figure.subfigures(nrows=2, height_ratios=[1.0, 1.9], squeeze=False)[:, 0]
+    orbit, lean = above.subplots(ncols=2)
     motion.draw_orbit(orbit, in_plane(data))
     orbit.set_title("a  Cage centre, turning frame")
     _lean(lean, data)
-    rows = parts[1].subplots(nrows=4, sharex=True)
+    rows = below.subplots(nrows=4, sharex=True)
     time, offset = milliseconds(data), 1e3 * np.hypot(*data["centre"].values.T)
     tilt = 1e3 * np.hypot(*data["lean"].values.T)
     axial, slip = 1e3 * data["position"].values[:, 2], 1e3 * data["rotation"].values
@@ -91,7 +91,7 @@ def course(data: xr.Dataset) -> Figure:
         axes.plot(time, values, color=BLUE, lw=0.7, zorder=3)
         axes.set(ylabel=label)
         axes.set_title(title)
-        _judged(axes, data)
+        motion.shade_judged(axes, data)
         time_axis(axes, data)
         if axes is not rows[-1]:
             axes.set_xlabel("")
@@ -100,19 +100,9 @@ def course(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _judged(axes: Axes, data: xr.Dataset) -> None:
-    """Shade the part by which the run is judged."""
-    first, last = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
-    if last > first:
-        axes.axvspan(first, last, color=GREY, alpha=0.2, lw=0, zorder=0)
-
-
-def _limits(rows: Any, data: xr.Dataset) -> None:
+def _limits(rows: Sequence[Axes], data: xr.Dataset) -> None:
     """Draw the clearances below offset, axial place and tilt, where they are near enough, and name them."""
-    land = motion.land_boundary(data)
-    pockets = motion.largest_play(in_plane(data))
-    gaps = [] if pockets is None else [(1e3 * pockets, motion.POCKETS, "pockets")]
-    gaps += [] if land is None else [(1e3 * float(land.max()), motion.LAND, "land")]
+    gaps = motion.clearances(in_plane(data))
     leans = [(1e3 * size, look, name) for size, look, name in lean_limits(data)]
     play = axial_play(data)
     places = [] if play is None else [(1e3 * play, motion.POCKETS, "pockets")]
@@ -127,12 +117,6 @@ def _limits(rows: Any, data: xr.Dataset) -> None:
         axes.set_ylim(-most if axes is rows[1] else 0.0, most)
         ends = [(float(axes.get_xlim()[1]), size, name, look["color"]) for size, look, name in near]
         label_lines(axes, ends, gap=0.16)
-
-
-def axial_play(data: xr.Dataset) -> float | None:
-    """Half the clearance of the pockets along the axis [m]; None if it is not known."""
-    play = float(data["cage_space_axial_play"])
-    return play if np.isfinite(play) and play > 0.0 else None
 
 
 def lean_limits(data: xr.Dataset) -> list[tuple[float, Look, str]]:
@@ -154,27 +138,14 @@ def _lean(axes: Axes, data: xr.Dataset) -> None:
     far = float(np.abs(path).max(initial=0.0)) or 1.0
     limits = [(1e3 * size, look, name) for size, look, name in lean_limits(data) if 1e3 * size <= 2.0 * far]
     most = 1.12 * max([far, *(size for size, _, _ in limits)])
-    first = motion.last_turns(path)
-    if first:
-        axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
-    for size, look, name in limits:
-        axes.plot(*motion.ring(size, motion.AROUND).T, **look, label=f"{name}, if centred")
-    label = "path" if not first else f"last {motion.LAST} turns"
-    axes.plot(*path[first:].T, color=BLUE, lw=0.8 if first else 0.6, label=label, zorder=3)
-    axes.plot(*path[0], "o", color=BLACK, ms=3.5, ls="", label="start")
-    axes.plot(*path[-1], "s", mfc="white", mec=BLACK, ms=3.5, ls="", label="end", zorder=4)
-    axes.set(xlim=(-most, most), ylim=(-most, most), xlabel="lean along x [mrad]", ylabel="along y [mrad]")
-    axes.set_aspect("equal", adjustable="box", anchor="NW")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5))
-    axes.set_title("b  Lean of the cage's axis")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=6.5, handlelength=2.0)
+    circles = [(motion.ring(size, motion.AROUND), look, f"{name}, if centred") for size, look, name in limits]
+    motion.draw_path(axes, path, most, circles, "turns")
+    axes.set(xlabel="lean along x [mrad]", ylabel="along y [mrad]", title="b  Lean of the cage's axis")
 
 
 def whirl(data: xr.Dataset) -> Figure:
     """Amplitude spectra in the fixed frame, and whirl ratios and slip against time."""
-    figure = Figure(figsize=(PAGE, 6.4), layout="constrained")
-    panels: Any = figure.subplots(nrows=3, ncols=2)
+    figure, panels = canvas(PAGE, 6.4, nrows=3, ncols=2)
     turn = float(data["analysis_whirl_cage_speed"]) / (2.0 * np.pi)
     both = data["analysis_spectra_frequency"] if "analysis_spectra_frequency" in data else data["frequency"]
     tone = data["analysis_spectra_tone"] if "analysis_spectra_tone" in data else data["tone"]
@@ -194,13 +165,11 @@ def whirl(data: xr.Dataset) -> Figure:
         axes.set(xlabel="time [ms]")
         axes.set_title(titled)
         axes.set_xlim(0.0, float(milliseconds(data)[-1]) or 1.0)
-        _judged(axes, data)
+        motion.shade_judged(axes, data)
     _ratios(panels[2, 0], data)
-    time, slip = (
-        1e3 * data["analysis_whirl_window_time"].values,
-        data["analysis_whirl_window_cage_slip"].values,
-    )
-    panels[2, 1].plot(time, 100.0 * slip, "o-", color=BLUE, ms=2.5, lw=0.8)
+    time = 1e3 * data["analysis_whirl_window_time"].values
+    slip = 100.0 * data["analysis_whirl_window_cage_slip"].values
+    panels[2, 1].plot(time, slip, "o-", color=BLUE, ms=2.5, lw=0.8)
     panels[2, 1].set_ylabel("slip against the balls [%]")
     return figure
 
@@ -240,7 +209,10 @@ def forces(data: xr.Dataset) -> Figure:
     figure = Figure(figsize=(PAGE, 7.2), layout="constrained")
     grid = figure.add_gridspec(4, 3, height_ratios=[1.5, 1.0, 1.0, 2.7])
     raster, largest, land = (figure.add_subplot(grid[row, :]) for row in range(3))
-    _raster(raster, data)
+    most = max(float(data["contact_force"].max()), 1e-9)
+    mesh = simulation.raster(raster, data, most, logarithmic=is_logarithmic(data))
+    raster.set(title="a  Force in each pocket", ylabel="pocket")
+    colour_bar(mesh, [raster], "force [N], root scale", pad=0.01, aspect=14)
     largest.plot(milliseconds(data), data["contact_force"].values.max(axis=1), color=BLUE, lw=0.7)
     peak = float(data["largest_contact_force"])
     largest.set(ylabel="force [N]", ylim=(0.0, 1.08 * peak or 1.0))
@@ -256,22 +228,6 @@ def forces(data: xr.Dataset) -> Figure:
     _clocks(clock, dots, data)
     _sizes(figure.add_subplot(grid[3, 2]), data)
     return figure
-
-
-def _raster(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the force in each pocket against time: white for none."""
-    time, force = milliseconds(data), data["contact_force"].values
-    space: Any = np.geomspace if is_logarithmic(data) else np.linspace
-    first = float(time[min(1, time.size - 1)]) if is_logarithmic(data) else float(time[0])
-    last = float(time[-1]) if time[-1] > first else first + 1.0
-    edges = space(first, last, min(simulation.COLUMNS, max(2, time.size)) + 1)
-    shown = simulation.pooled(time, force, edges)
-    look: Look = {"cmap": "Greys", "norm": PowerNorm(0.5, 0.0, max(float(force.max()), 1e-9))}
-    mesh = axes.pcolormesh(edges, np.arange(force.shape[1] + 1) + 0.5, shown.T, rasterized=True, **look)
-    axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-    axes.set(ylabel="pocket")
-    axes.set_title("a  Force in each pocket")
-    colour_bar(mesh, [axes], "force [N], root scale", pad=0.01, aspect=14)
 
 
 def land_forces(data: xr.Dataset) -> list[tuple[str, Array]]:
@@ -301,12 +257,9 @@ def _lands(axes: Axes, data: xr.Dataset) -> None:
         legend_above(axes, columns=2)
 
 
-def _clocks(clock: Any, dots: Any, data: xr.Dataset) -> None:
+def _clocks(clock: Axes, dots: Axes, data: xr.Dataset) -> None:
     """Draw the share of the impulse by the angle on the pocket, and the peak of each touch."""
-    edges, impulse = (
-        data["analysis_impacts_clock_edges"].values,
-        data["analysis_impacts_clock_impulse"].values,
-    )
+    edges, impulse = (data[f"analysis_impacts_clock_{name}"].values for name in ("edges", "impulse"))
     share = 100.0 * impulse / (impulse.sum() or 1.0)
     middles = 0.5 * (edges[:-1] + edges[1:])
     clock.bar(middles, share, width=0.92 * np.diff(edges), color=SKY, edgecolor=BLUE, lw=0.5)
@@ -320,7 +273,7 @@ def _clocks(clock: Any, dots: Any, data: xr.Dataset) -> None:
     rings = [float(f"{share * most:.1g}") for share in (0.1, 0.4, 0.9)]
     for axes in (clock, dots):
         axes.set_xticks(0.5 * np.pi * np.arange(4), POLES)
-        axes.set_rlabel_position(45.0)
+        axes.set(rlabel_position=45.0)
         axes.tick_params(axis="y", labelsize=6.0)
         axes.tick_params(axis="x", labelsize=6.5, pad=1.0)
         axes.grid(lw=0.4, color="#cccccc")
@@ -331,7 +284,6 @@ def _clocks(clock: Any, dots: Any, data: xr.Dataset) -> None:
 
 
 def _sizes(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the histogram of the peak forces."""
     edges, count = data["analysis_impacts_force_edges"].values, data["analysis_impacts_force_count"].values
     axes.stairs(count, edges, color=BLUE, fill=True, alpha=0.6)
     axes.set(xscale="log", xlabel="peak force [N]", ylabel="touches", xlim=(edges[0], edges[-1]))
@@ -344,13 +296,13 @@ def energy(data: xr.Dataset) -> Figure:
     """Energy, the work of each source, and where the rubbing is."""
     flat = in_plane(data)
     figure = Figure(figsize=(PAGE, 5.0), layout="constrained")
-    panels: Any = figure.subplot_mosaic([["energy", "work"], ["pockets", "lands"]], width_ratios=[1.0, 1.0])
+    panels = figure.subplot_mosaic([["energy", "work"], ["pockets", "lands"]], width_ratios=[1.0, 1.0])
     simulation.draw_energy(panels["energy"], flat)
     panels["energy"].set_title("a  Energy; shaded: the judged part")
     simulation.draw_work(panels["work"], flat)
     panels["work"].set_title(f"b  Work; energy balance closes to {float(data['energy_imbalance']):.0e}")
     for name in ("energy", "work"):
-        _judged(panels[name], data)
+        motion.shade_judged(panels[name], data)
     for name, what, title in (
         ("pockets", "pocket", "c  Rubbing in each pocket, mean of the run"),
         ("lands", "land", "d  Rubbing on each land, mean of the run"),
@@ -360,7 +312,6 @@ def energy(data: xr.Dataset) -> Figure:
 
 
 def _rubbing(axes: Axes, power: Array, what: str, title: str) -> None:
-    """Draw the friction power of each pocket or land."""
     places = np.arange(1, power.size + 1)
     axes.bar(places, power, 0.7 if power.size > 2 else 0.3, color=BLUE if what == "pocket" else ORANGE)
     axes.set(ylabel="friction power [W]", xlabel=what, xlim=(0.3, max(power.size, 1) + 0.7))

@@ -1,24 +1,36 @@
-"""One run of a cage in space as a moving picture: cage, balls coloured by force, lands, path and lean."""
+"""One run of a cage in space to look at: as a moving picture, and as a page to turn and play it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+import html
+import json
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
-from separatrix.figures.motion import AROUND, land_boundary, ring
-from separatrix.figures.simulation import draw_energy, is_logarithmic, milliseconds
+from separatrix.figures.motion import (
+    AROUND,
+    Part,
+    filmed,
+    frame_moments,
+    is_logarithmic,
+    land_boundary,
+    milliseconds,
+    ring,
+    shown_parts,
+)
+from separatrix.figures.scene import POCKET_POINTS, RIM, SpaceScene, space_scene, turned_by
+from separatrix.figures.simulation import draw_energy
 from separatrix.figures.space import in_plane
-from separatrix.figures.space_scene import SpaceScene, space_scene
-from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, heading
+from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, WIDTH, cut, heading
 from separatrix.units import Array, format_number
 
 SIZE, DOTS = (7.6, 4.8), 100
@@ -33,65 +45,62 @@ TAIL = 40
 DISC = ring(1.0, np.linspace(0.0, 2.0 * np.pi, 29)[:-1])
 HOLE, LIGHT = 0.35, np.array([0.3, -0.5, 0.8])
 
+MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
+"""Most frames of a page, and most numbers in all: they keep it under 1 MB."""
+
+PAGE_PARTS = Path(__file__).with_name("space_view")
+"""Folder of style, script and templates of pages that show a run."""
+
+NANO = 1e9
+"""Movements are whole nanometres and nanoradians; forces 1/255 of the largest."""
+
 
 def pictures(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Iterator[Image.Image]:
-    """Yield the picture of each moment; what does not move is drawn once."""
+    """Return the picture of each moment."""
     at = space_scene(data, moments, fixed=fixed)
     figure = Figure(figsize=SIZE, dpi=DOTS)
-    canvas: Any = FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 0.66, 0.9))
     reach = 1.28 * (at.radius + at.ball)
     axes.set(xlim=(-reach, reach), ylim=(-0.86 * reach, 0.86 * reach), aspect="equal")
     axes.set_axis_off()
-    body = PolyCollection([], linewidths=0.4)
+    body, faces = PolyCollection([], linewidths=0.4), at.faces()
     axes.add_collection(body)
     clock = figure.text(0.67, 0.895, "", fontsize=10, va="top")
-    times = milliseconds(data)[moments]
-    paths = [
-        _path(figure.add_axes((0.71, 0.36, 0.125, 0.2)), 1e3 * at.centre, "centre [mm]", _land(data)),
-        _path(figure.add_axes((0.86, 0.36, 0.125, 0.2)), 1e3 * at.lean, "lean [mrad]", None),
-    ]
+    times, land = milliseconds(data)[moments], land_boundary(data)
     energy = figure.add_axes((0.73, 0.10, 0.255, 0.15))
     draw_energy(energy, in_plane(data))
     line = energy.axvline(times[0], color=VERMILION, lw=1.0)
     figure.text(0.01, 0.985, "\n".join(heading(data)), fontsize=6.5, va="top", linespacing=1.4)
     figure.text(0.67, 0.83, "\n".join(notes(data, at)), fontsize=6.5, va="top", linespacing=1.4)
-    moving = [body, clock, line, *(artist for pair in paths for artist in pair)]
-    for artist in moving:
-        artist.set_animated(True)
-    canvas.draw()
-    still, faces = canvas.copy_from_bbox(figure.bbox), at.faces()
-    for frame in range(moments.size):
-        canvas.restore_region(still)
-        _pose(body, at, faces, frame)
-        clock.set_text(f"{times[frame]:.3f} ms")
-        line.set_xdata([times[frame]] * 2)
-        for (tail, dot), path in zip(paths, (1e3 * at.centre, 1e3 * at.lean), strict=True):
-            tail.set_data(*path[max(0, frame - TAIL) : frame + 1].T)
-            dot.set_data(*path[frame : frame + 1].T)
-        for artist in moving:
-            figure.draw_artist(artist)
-        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+    parts: list[Part] = [
+        ([body], lambda frame: _pose(body, at, faces, frame)),
+        ([clock], lambda frame: clock.set_text(f"{times[frame]:.3f} ms")),
+        ([line], lambda frame: line.set_xdata([times[frame]] * 2)),
+        _path(figure.add_axes((0.71, 0.36, 0.125, 0.2)), 1e3 * at.centre, "centre [mm]", land),
+        _path(figure.add_axes((0.86, 0.36, 0.125, 0.2)), 1e3 * at.lean, "lean [mrad]", None),
+    ]
+    return filmed(figure, parts, moments.size)
 
 
-def _land(data: xr.Dataset) -> Array | None:
-    land = land_boundary(data)
-    return None if land is None else 1e3 * ring(land, AROUND)
-
-
-def _path(axes: Axes, path: Array, label: str, land: Array | None) -> tuple[Any, Any]:
-    """Draw the axes of a path and what does not move in them; return its tail and its end."""
+def _path(axes: Axes, path: Array, label: str, land: Array | None) -> Part:
+    """Draw the axes of a path and what does not move in them; its last frames and its end move."""
     far = float(np.hypot(*path.T).max(initial=0.0)) or 1.0
-    most = 1.15 * max(far, 0.0 if land is None else float(np.abs(land).max()))
+    boundary = np.zeros((0, 2)) if land is None else 1e3 * ring(land, AROUND)
+    most = 1.15 * max(far, float(np.abs(boundary).max(initial=0.0)))
     axes.set(xlim=(-most, most), ylim=(-most, most), aspect="equal")
     axes.tick_params(labelsize=5.5, pad=1.5, length=2.0)
     axes.set_title(label, fontsize=6.5)
     if land is not None:
-        axes.plot(*land.T, color=GREY, lw=0.8)
+        axes.plot(*boundary.T, color=GREY, lw=0.8)
     axes.plot(*path.T, color=SKY, lw=0.3, alpha=0.5)
     (tail,) = axes.plot([], [], color=BLUE, lw=0.9)
     (dot,) = axes.plot([], [], "o", color=BLUE, ms=3.0)
-    return tail, dot
+
+    def move(frame: int) -> None:
+        tail.set_data(*path[max(0, frame - TAIL) : frame + 1].T)
+        dot.set_data(*path[frame : frame + 1].T)
+
+    return [tail, dot], move
 
 
 def seen(points: Array, turn: float) -> tuple[Array, Array]:
@@ -166,3 +175,85 @@ def notes(data: xr.Dataset, at: SpaceScene) -> list[str]:
         "Fixed frame." if at.frame.any() else "Frame of the ball set.",
         "Logarithmic time." if is_logarithmic(data) else "Linear time.",
     ]
+
+
+def write_page(data: xr.Dataset, path: Path) -> None:
+    """Write a saved run of a cage in space as an HTML page that plays it."""
+    path.write_text(page(data), encoding="utf-8")
+
+
+def page(data: xr.Dataset) -> str:
+    """Return the page as text; words of the study are escaped."""
+    parts = {
+        "TITLE": html.escape(str(data.attrs.get("title", "")) or "A cage in space"),
+        "STYLE": _text(PAGE_PARTS / "view.css"),
+        "VIEW": view(data),
+        "SCRIPT": _text(PAGE_PARTS / "view.js"),
+    }
+    return _filled(_text(PAGE_PARTS / "page.html"), parts)
+
+
+def view(data: xr.Dataset) -> str:
+    """Return the part of a page that shows the run, with its data; it needs style and script of the page."""
+    most = int(min(MOST_FRAMES, MOST_NUMBERS // (8 + 3 * data.sizes["ball"])))
+    moments = frame_moments(data, max(2, most))
+    run = run_for_page(data, moments)
+    spans = " and ".join(f"{first:.4g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
+    title = cut(str(data.attrs.get("title", "")), WIDTH)
+    # a text of the study may hold any mark: the JSON is inside a script
+    found = json.dumps(run, allow_nan=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        found = found.replace(sign, f"\\u{ord(sign):04x}")
+    parts = {
+        "ABOUT": html.escape("\n".join(heading(data)[len(title) :])),
+        "MOST": f"{run['most']:.3g}",
+        "SHOWN": f"Frames show {spans}{', on logarithmic time' if is_logarithmic(data) else ''}.",
+        "DATA": found,
+    }
+    return _filled(_text(PAGE_PARTS / "view.html"), parts)
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _filled(template: str, parts: Mapping[str, str]) -> str:
+    """Return a template with its marks replaced; the replacements are not searched again."""
+    return re.sub("@([A-Z]+)@", lambda mark: parts[mark[1]], template)
+
+
+def run_for_page(data: xr.Dataset, moments: Array) -> dict[str, object]:
+    """Return what the page draws as plain data."""
+    at = space_scene(data, moments)
+    largest = at.largest_force or 1.0
+    return {
+        "radius": at.radius,
+        "ball": at.ball,
+        "halfWidth": at.half_width,
+        "halfThickness": at.half_thickness,
+        "angles": at.angles.tolist(),
+        "plays": at.plays.tolist(),
+        "axialPlay": at.axial_play,
+        "square": at.is_square,
+        "land": at.land,
+        "side": at.side,
+        "heights": list(at.heights),
+        "gap": at.gap,
+        "enlarged": at.enlarged,
+        "around": POCKET_POINTS,
+        "rim": RIM,
+        "most": largest,
+        "time": [float(f"{one:.7g}") for one in data["time"].values[moments]],
+        "turned": [round(float(one), 4) for one in np.mod(turned_by(data)[moments], 2.0 * np.pi)],
+        "centre": _whole(NANO * at.centre),
+        "lean": _whole(NANO * at.lean),
+        "axial": _whole(NANO * at.axial),
+        "rotation": _whole(NANO * at.rotation),
+        "lead": _whole(NANO * at.lead),
+        "ballAxial": _whole(NANO * at.ball_axial),
+        "force": _whole(255.0 * at.force / largest),
+    }
+
+
+def _whole(values: Array) -> list[int]:
+    return [int(one) for one in np.rint(values).ravel()]

@@ -1,8 +1,8 @@
-"""The stability curve with its band (the paper's Fig. 2), its limits, and the candidates beside it."""
+"""The stability curve with its band (the paper's Fig. 2), its limits and candidates; two of them compared."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -18,9 +18,12 @@ from separatrix.figures.style import (
     MARKERS,
     PAGE,
     SKY,
+    VERMILION,
     Look,
     canvas,
+    cut,
     legend_below,
+    with_ends,
 )
 from separatrix.units import Array
 
@@ -41,10 +44,11 @@ DRAWN = (
 RUG = 0.012
 """Height of the ticks at the foot that mark the computed restitution factors, as a share of the picture."""
 
+LOOKS = ((BLUE, "o", "-"), (VERMILION, "s", "--"))
+"""Colour, marker and line of the first and the second answer."""
 
-def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the picture of `stability`."""
-    yield "stability-curve", stability(data)
+MOST_ROWS, NAME_WIDTH, BESIDE = 30, 60, 0.17
+"""Most materials in the picture; letters of a title; distance of a pair of margins from their row."""
 
 
 def stability(data: xr.Dataset) -> Figure:
@@ -68,7 +72,7 @@ def stability(data: xr.Dataset) -> Figure:
 
 
 def highest(data: xr.Dataset, *, candidates: bool = False) -> float:
-    """Friction at the top of the picture: every curve and mark in it lies below."""
+    """Friction at the top of the picture: above every curve and mark in it."""
     names = [*DRAWN, *(["material_friction"] if candidates else [])]
     found = [data[name].values.ravel().astype(float) for name in names if name in data]
     top = float(np.nanmax(np.concatenate([[0.0], *found])))
@@ -86,9 +90,7 @@ def band_ends(data: xr.Dataset, top: float, of: str = "") -> tuple[Array, Array]
     An end without a number is at 0 (runs whirl without friction) or beyond `top` (they settle up to it);
     where nothing is known there is no band.
     """
-    middle, low, high = (
-        np.asarray(data[f"{of}critical_friction{end}"].values, dtype=float) for end in ("", "_low", "_high")
-    )
+    middle, low, high = with_ends(data, f"{of}critical_friction")
     unknown = np.isnan(low) & np.isnan(high) & np.isnan(middle)
     low, high = np.where(np.isnan(low), 0.0, low), np.where(np.isnan(high), 2 * top, high)
     return np.where(unknown, np.nan, low), np.where(unknown, np.nan, high)
@@ -116,6 +118,18 @@ def draw_linear_limit(axes: Axes, ball_count: int, *, swapped: bool = False, hal
     axes.plot(*points, label="linear limit: no clearance, balls at rest", **look)
 
 
+def hard_limit(data: xr.Dataset) -> Array | None:
+    """Return the critical friction of hard impacts at each restitution factor; None if it is unknown."""
+    found = np.asarray(data.get("hard_limit_critical_friction", np.nan), dtype=float)
+    return found if np.isfinite(found).any() else None
+
+
+def own_point(data: xr.Dataset) -> list[float]:
+    """Return the restitution factor of the bearing and its critical friction with both ends; else NaN."""
+    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
+    return [float(data.get(f"here_{name}", np.nan)) for name in names]
+
+
 def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
     """Draw the curve with its interval and band, the limits, and the bearing's own point."""
     axes.set(xlim=(0, 1), ylim=(0, top), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
@@ -127,22 +141,19 @@ def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
     if has_band(data):
         _band(axes, data, top)
     draw_linear_limit(axes, int(data["cage_ball_count"]))
-    hard = data.get("hard_limit_critical_friction")
-    if hard is not None and np.isfinite(hard.values.astype(float)).any():
+    if (hard := hard_limit(data)) is not None:
         label = "hard-impact limit: walls, no land, balls at rest"
-        axes.plot(eta, hard.values, color=GREEN, lw=1.0, ls=(0, (6, 1.5, 1, 1.5)), label=label)
+        axes.plot(eta, hard, color=GREEN, lw=1.0, ls=(0, (6, 1.5, 1, 1.5)), label=label)
     draw_chain(axes, data)
-    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
-    at, middle, low, high = (float(data.get(f"here_{name}", np.nan)) for name in names)
+    at, middle, low, high = own_point(data)
     if np.isfinite([at, middle, low, high]).all():
         label = rf"this bearing's critical friction, {middle:#.2g} ({low:#.2g} to {high:#.2g})"
         axes.vlines(at, low, high, color=BLACK, lw=2.5, zorder=3)
         axes.plot(at, middle, "D", mfc="white", mec=BLACK, ms=4.5, ls="", zorder=4, label=label)
         if not has_band(data):
             label = f"band at this bearing's $\\eta$, kick of {kicks_text(data)}"
-            axes.vlines(
-                at, *band_ends(data, top, "here_"), color=BLUE, alpha=0.25, lw=9, zorder=1, label=label
-            )
+            look: Look = {"color": BLUE, "alpha": 0.25, "lw": 9, "zorder": 1}
+            axes.vlines(at, *band_ends(data, top, "here_"), label=label, **look)
 
 
 def _band(axes: Axes, data: xr.Dataset, top: float) -> None:
@@ -175,7 +186,7 @@ def draw_chain(axes: Axes, data: xr.Dataset) -> None:
 
 
 def explain_extrapolated(axes: Axes, sentences: xr.DataArray) -> None:
-    """Add to the legend that a friction is extrapolated; the printed answer gives the reason."""
+    """Add to the legend that a friction is extrapolated; the printed answer states the reason."""
     if (sentences.values.astype(str) != "").any():
         look: Look = {"ls": "", "marker": f"${EXTRAPOLATED}$", "color": GREY, "ms": 4}
         axes.plot([], [], label="friction extrapolated", **look)
@@ -215,7 +226,7 @@ def _candidates(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _measured_mean(table: Array) -> Array:
-    """Return the mean of each column over what is known; infinite for a column of nothing."""
+    """Return the mean of each column over its finite numbers; infinite without any."""
     known = np.isfinite(table)
     total = np.where(known, table, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
     return np.where(known.any(axis=0), total, np.inf)
@@ -233,3 +244,65 @@ def _own_band(data: xr.Dataset, at: float, top: float) -> tuple[float, float, fl
     ends = (low, data["critical_friction"].values.astype(float), high)
     first, middle, last = (float(np.interp(at, eta, one)) for one in ends)
     return first, middle, last
+
+
+def comparison(first: xr.Dataset, second: xr.Dataset, titles: Sequence[str]) -> Figure:
+    """Critical friction of both against restitution factor; of two rankings also their margins."""
+    pair = (first, second)
+    ranked = all("material" in one.sizes and "material_restitution_threshold" in one for one in pair)
+    place = _common_environment(*pair) if ranked else None
+    if place is None:
+        figure, axes = canvas(PAGE, 4.1)
+    else:
+        figure, (axes, beside) = canvas(PAGE, 4.6, ncols=2, width_ratios=[1.0, 1.0])
+        _margins(beside, pair, place)
+        beside.set_title(f"b  Margins in {cut(place, NAME_WIDTH)[0]}")
+    axes.set(xlim=(0, 1), xlabel=ETA_LABEL, ylabel=FRICTION_LABEL)
+    highest = 0.0
+    for data, title, (colour, marker, line) in zip(pair, titles, LOOKS, strict=True):
+        eta, middle = data["restitution_factor"].values, data["critical_friction"].values
+        name = cut(title, NAME_WIDTH)[0] if title else ""
+        look: Look = {"color": colour, "ls": line, "marker": marker, "ms": 3}
+        axes.plot(eta, middle, label=f"{name} (95 % interval shaded)", **look)
+        low, high = (data[f"scatter_{end}"].values for end in ("low", "high"))
+        axes.fill_between(eta, low, high, color=colour, alpha=0.2)
+        own = data.get("here_restitution_factor")
+        if own is not None and own.size == 1 and np.isfinite(float(own)):
+            axes.axvline(float(own), color=colour, ls=line, lw=0.8)
+        known = np.concatenate([one[np.isfinite(one)] for one in (middle, high)])
+        highest = max(highest, float(known.max(initial=0.0)))
+    axes.set_ylim(0.0, 1.1 * highest if highest > 0.0 else HIGHEST)
+    axes.set_title(f"{'a  ' if place else ''}Critical friction; vertical: the bearing's own $\\eta$")
+    legend_below(figure, columns=1)
+    return figure
+
+
+def _common_environment(first: xr.Dataset, second: xr.Dataset) -> str | None:
+    """Environment of both in which the margins are drawn: that of the first that names its own, if it can."""
+    names = [[str(name) for name in one["environment"].values] for one in (first, second)]
+    shared = [name for name in names[0] if name in names[1]]
+    own = [str(one.attrs.get("study", "")) for one in (first, second)]
+    stated = [name for name in shared if all(f'"value": "{name}"' in study for study in own)]
+    return next(iter(stated or shared), None)
+
+
+def _margins(axes: Axes, pair: Sequence[xr.Dataset], environment: str) -> None:
+    """Margin of each material with its interval, the first answer above the second."""
+    tables = []
+    for data in pair:
+        place = [str(name) for name in data["environment"].values].index(environment)
+        here = data.isel(environment=place)
+        eta = here["material_restitution_factor"].values
+        columns = [one - eta for one in with_ends(here, "material_restitution_threshold")]
+        tables.append({str(m): row for m, *row in zip(here["material"].values, *columns, strict=True)})
+    names = [*dict.fromkeys([*tables[0], *tables[1]])]
+    names.sort(key=lambda name: -np.nan_to_num(tables[0].get(name, [np.nan])[0], nan=-9.0))
+    names = names[:MOST_ROWS]
+    rows = np.arange(len(names))[::-1]
+    for table, (colour, marker, _), shift in zip(tables, LOOKS, (BESIDE, -BESIDE), strict=True):
+        middle, low, high = np.array([table.get(name, [np.nan] * 3) for name in names]).T
+        axes.hlines(rows + shift, low, high, color=colour, lw=1.5)
+        axes.plot(middle, rows + shift, marker, color=colour, ms=4, ls="")
+    axes.axvline(0.0, color=GREY, lw=0.8)
+    axes.set_yticks(rows, names)
+    axes.set_xlabel("margin: threshold less own $\\eta$ [-]; bars: 95 %")

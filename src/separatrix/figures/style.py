@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -16,13 +18,19 @@ from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.mathtext import math_to_image
 from matplotlib.transforms import offset_copy
+from matplotlib.typing import RcKeyType
 
 from separatrix.errors import InputError
-from separatrix.units import format_quantity
+from separatrix.units import Array, format_quantity
 
 Look = dict[str, Any]
 """Keyword arguments of matplotlib."""
+
+Json = Mapping[str, Any]
+"""A resolved study, or a part of it, as documents and datasets have it."""
 
 COLUMN, PAGE = 3.5, 7.0
 """Widths of one and of two columns of a journal [inch]."""
@@ -36,7 +44,7 @@ MARKERS = ("o", "s", "^", "v", "P", "*", "p")
 VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
 VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}
 
-STYLE: Any = {
+STYLE: dict[RcKeyType, object] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
     "font.size": 8.0,
@@ -68,8 +76,7 @@ NOTHING: dict[str, Look] = {
     ".svg": {"Date": None, "Creator": None},
     ".pdf": {"Creator": None, "Producer": None, "CreationDate": None},
 }
-"""Endings of pictures, and what is left out of each so that the same data give the same bytes."""
-
+"""Endings of pictures, and what is left out of each so that the same data make the same bytes."""
 
 WIDTH = 122
 """Letters on a line over the width of a page."""
@@ -111,7 +118,7 @@ def settled(figure: Figure) -> Figure:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format of the ending, one of `NOTHING`; the same data give the same bytes."""
+    """Write the figure in the format of the ending, one of `NOTHING`; the same data make the same bytes."""
     if path.suffix not in NOTHING:
         raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
     with journal():
@@ -173,6 +180,12 @@ def label_lines(
         )
 
 
+def with_ends(data: xr.Dataset, name: str) -> tuple[Array, Array, Array]:
+    """Return a variable with the low and the high end of its interval."""
+    value, low, high = (np.asarray(data[f"{name}{end}"].values, dtype=float) for end in ("", "_low", "_high"))
+    return value, low, high
+
+
 def spread(wanted: Sequence[float], gap: float) -> list[float]:
     """Return places in 0 to 1, `gap` apart and in the same order, near to the wanted ones."""
     order = np.argsort(wanted, kind="stable")
@@ -184,6 +197,38 @@ def spread(wanted: Sequence[float], gap: float) -> list[float]:
                 places[low : low + 2] += [-lack / 2, lack / 2]
         np.clip(places, 0.02, 0.98, out=places)
     return [float(place) for place in places[np.argsort(order)]]
+
+
+_COMMENT = re.compile(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*", re.DOTALL)
+_PATH = re.compile(r' d="[^"]*"')
+_LONG = re.compile(r"-?\d+\.\d{3,}(?!\d*e)")
+_SIZE = re.compile(r'<svg[^>]*?viewBox="0 0 ([\d.]+) ([\d.]+)"', re.DOTALL)
+
+
+def svg_of(figure: Figure) -> tuple[str, float, float]:
+    """Return a figure as SVG with its width and height [points]; texts are drawn, none is left as text."""
+    buffer = io.StringIO()
+    with journal():
+        figure.savefig(buffer, format="svg", metadata=NOTHING[".svg"])
+    return _small(buffer.getvalue())
+
+
+def formula(latex: str) -> tuple[str, float, float]:
+    """Return a formula as SVG with its width and height [points]."""
+    buffer = io.BytesIO()
+    with mpl.rc_context({**STYLE, "savefig.transparent": True}):
+        math_to_image(f"${latex}$", buffer, prop=FontProperties(size=11), format="svg")
+    return _small(buffer.getvalue().decode())
+
+
+def _small(text: str) -> tuple[str, float, float]:
+    """Return an SVG without comments and to a hundredth of a point, and its size."""
+    text = _COMMENT.sub("", text[text.index("<svg") :])
+    text = _PATH.sub(lambda path: _LONG.sub(lambda one: f"{float(one[0]):.2f}", path[0]), text)
+    size = _SIZE.search(text)
+    if size is None:
+        raise ValueError("matplotlib's SVG has no viewBox")
+    return text, float(size[1]), float(size[2])
 
 
 def literal(text: str) -> str:
@@ -206,13 +251,18 @@ def literal_texts(data: xr.Dataset) -> xr.Dataset:
     return found
 
 
-def study_of(data: xr.Dataset) -> dict[str, Any]:
-    """Return the resolved study that a dataset holds; empty without one."""
+def study_of(data: xr.Dataset) -> Json:
+    """Return the resolved study in a dataset; empty without one."""
     return dict(json.loads(data.attrs.get("study", "{}")))
 
 
+def stated(study: Json, section: str, key: str) -> Any:
+    """Return the value of a key of a resolved study; None where the study has none."""
+    return ((study.get(section) or {}).get(key) or {}).get("value")
+
+
 def headed(figure: Figure, data: xr.Dataset) -> Figure:
-    """Write above a figure what it was made from; nothing if the dataset does not record it."""
+    """Write title, operating point and run above a figure, as far as the dataset records them."""
     width, height = figure.get_size_inches()
     lines = heading(data, int(WIDTH * min(1.0, width / PAGE)))
     if lines:
@@ -224,12 +274,7 @@ def headed(figure: Figure, data: xr.Dataset) -> Figure:
 def heading(data: xr.Dataset, width: int = WIDTH) -> list[str]:
     """Return the title of the study, its operating point, and which run this is; each a line or two.
 
-    Parameters
-    ----------
-    data : Dataset
-        Of any verb, from `literal_texts`; what its attributes do not record is left out.
-    width : int
-        Most letters of a line.
+    `data` is from `literal_texts`; what its attributes do not record is left out.
     """
     study = study_of(data)
     seed = f"seed {int(data.attrs['seed'])}" if "seed" in data.attrs else ""
@@ -247,24 +292,26 @@ def cut(text: str, width: int) -> list[str]:
     return textwrap.wrap(text, width, max_lines=2, placeholder=" ...")
 
 
-def _operating_point(data: xr.Dataset, study: Mapping[str, Any]) -> Iterator[str]:
-    """Yield medium, speed and load, and film, as far as the study gives them and no axis varies them."""
+def _operating_point(data: xr.Dataset, study: Json) -> Iterator[str]:
+    """Yield medium, speed and load, and film, as far as the study states them and no axis varies them."""
     axes = [str(data[key].values) for key in ("x_parameter", "y_parameter") if key in data]
     cases = data["parameter"].values if "parameter" in data else ()
-    without = {str(name).rpartition(".")[2] for name in (*axes, *cases)}
+    varied = {str(name).rpartition(".")[2] for name in (*axes, *cases)}
 
     def known(section: str, key: str, unit: str = "") -> str:
-        value = None if key in without else study.get(section, {}).get(key, {}).get("value")
+        value = None if key in varied else stated(study, section, key)
         if unit and value:
             return format_quantity(value, unit).replace(" um", " \N{MICRO SIGN}m")
         return str(value or "")
 
     medium = known("operation", "fluid"), known("operation", "temperature", "K")
-    inner, outer = (known("operation", f"{race}_speed", "rad/s") for race in ("inner", "outer"))
-    loads = ((known("operation", f"{words}_load", "N"), words) for words in ("axial", "radial"))
     yield from filter(None, [", ".join(filter(None, medium))])
-    yield from (f"{race} ring {speed}" for race, speed in (("inner", inner), ("outer", outer)) if speed)
-    yield from (f"{load} {words}" for load, words in loads if load)
+    for race in ("inner", "outer"):
+        if speed := known("operation", f"{race}_speed", "rad/s"):
+            yield f"{race} ring {speed}"
+    for direction in ("axial", "radial"):
+        if load := known("operation", f"{direction}_load", "N"):
+            yield f"{load} {direction}"
     film = study.get("film", {})
     if not film.get("is_bare", not film):
         yield ", ".join(filter(None, [_material(film), known("film", "thickness", "m")]))
@@ -272,13 +319,13 @@ def _operating_point(data: xr.Dataset, study: Mapping[str, Any]) -> Iterator[str
         yield "bare races"
 
 
-def _material(section: Mapping[str, Any]) -> str:
+def _material(section: Json) -> str:
     record = section.get("material") or {}
     return str(record.get("name") or record.get("value") or "")
 
 
-def _run(data: xr.Dataset, study: Mapping[str, Any], seed: str) -> str:
-    """Return friction and whose it is, kick, number and seed of a run, and how it ended."""
+def _run(data: xr.Dataset, study: Json, seed: str) -> str:
+    """Return friction with its material, kick, number and seed of a run, and its outcome."""
     parts = []
     if "cage_ball_cage_friction" in data:
         cage = study.get("cage", {})

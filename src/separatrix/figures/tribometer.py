@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import textwrap
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from matplotlib.typing import HashableList
 
 from separatrix.figures.style import (
     BLUE,
@@ -21,11 +21,13 @@ from separatrix.figures.style import (
     PAGE,
     SKY,
     VERMILION,
+    Json,
+    Look,
     journal,
     literal,
     settled,
 )
-from separatrix.friction.records import in_words
+from separatrix.friction.file import in_words
 from separatrix.friction.reduction import GIVEN
 from separatrix.units import format_number, format_quantity
 
@@ -38,7 +40,7 @@ WIDTH = 136
 MOST_LINES = 3
 """Lines that one flag may take."""
 
-WHITE: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
+WHITE: Look = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 """Look of a legend over lines."""
 
 NAMES = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}
@@ -60,35 +62,23 @@ BESIDE = {
 
 
 def page(data: xr.Dataset) -> Figure:
-    """Return the page of one test.
-
-    Parameters
-    ----------
-    data : Dataset
-        From `separatrix.present.tribometer.page_data`, or loaded from where that was saved.
-    """
-    with journal():
-        return settled(_page(data))
-
-
-def _page(data: xr.Dataset) -> Figure:
+    """Return the page of one test, from `present.tribometer.page_data` or a file of it."""
     beside = [name for name in BESIDE if f"trace_{name}" in data][:3]
     lines = heading(data)
-    height = 2.4 + ROWS + (0.8 * ROWS if beside else 0.0)
-    figure = Figure(figsize=(PAGE, height + LINE * len(lines)), layout="constrained")
-    panels: list[Any] = [["trace"] * 6, ["histogram"] * 2 + ["lags"] * 2 + ["spectrum"] * 2]
-    if beside:
-        panels.append([name for name in beside for _ in range(6 // len(beside))])
+    rows = [row for row in (["trace"], ["histogram", "lags", "spectrum"], beside) if row]
+    panels: list[HashableList[str]] = [[one for one in row for _ in range(6 // len(row))] for row in rows]
     heights = [2.4, ROWS, 0.8 * ROWS][: len(panels)]
-    axes = figure.subplot_mosaic(panels, height_ratios=heights)
-    _trace(axes["trace"], data)
-    _distribution(axes["histogram"], data)
-    _correlation(axes["lags"], data)
-    _spectrum(axes["spectrum"], data)
-    for letter, name in zip("efg", beside, strict=False):
-        _beside(axes[name], data, name, letter)
-    figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=7.0, linespacing=1.35)
-    return figure
+    with journal():
+        figure = Figure(figsize=(PAGE, sum(heights) + LINE * len(lines)), layout="constrained")
+        axes = figure.subplot_mosaic(panels, height_ratios=heights)
+        _trace(axes["trace"], data)
+        _distribution(axes["histogram"], data)
+        _correlation(axes["lags"], data)
+        _spectrum(axes["spectrum"], data)
+        for letter, name in zip("efg", beside, strict=False):
+            _beside(axes[name], data, name, letter)
+        figure.suptitle("\n".join(lines), x=0.008, ha="left", fontsize=7.0, linespacing=1.35)
+        return settled(figure)
 
 
 def heading(data: xr.Dataset) -> list[str]:
@@ -106,8 +96,8 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 def conditions(data: xr.Dataset) -> str:
-    """Return material, counterface, medium and loads of the test, as far as they are known."""
-    known: dict[str, Any] = json.loads(data.attrs["conditions"])
+    """Return material, counterface, medium and loads of the test, as far as the log states them."""
+    known: Json = json.loads(data.attrs["conditions"])
     pair = " on ".join(str(known[key]) for key in ("material", "counterface") if known.get(key))
     named = [pair, known.get("medium") or ""]
     named += [f"{key} {known[key]}" for key in ("sample", "test") if known.get(key)]
@@ -151,20 +141,25 @@ def scale(data: xr.Dataset) -> tuple[float, str]:
 
 
 def _trace(axes: Axes, data: xr.Dataset) -> None:
-    """Draw friction along the test, what is left out, means of spans and the steady mean."""
+    """Draw friction along the test, the parts left out, means of spans and the steady mean."""
     size, label = scale(data)
     along = np.asarray(data["trace"].values) / size
     start, end = float(data["run_in_end"]) / size, float(data["steady_end"]) / size
     first, last = along[0], along[-1]
     axes.fill_between(along, data["trace_low"], data["trace_high"], color=SKY, alpha=0.35, lw=0, label="rows")
     cycles = float(data["span_cycles"])
-    name = (
-        "means of spans"
-        if not cycles
-        else f"means of {format_number(cycles, 2)} cycle{'s' if cycles > 1 else ''}"
-    )
+    spans = f"{format_number(cycles, 2)} cycle{'s' if cycles > 1 else ''}" if cycles else "spans"
     axes.plot(along, data["trace_mean"], color=BLUE, lw=0.6, zorder=2.5)
-    axes.plot(data["span"] / size, data["span_mean"], ".", color=BLUE, ms=3, mew=0, zorder=2.6, label=name)
+    axes.plot(
+        data["span"] / size,
+        data["span_mean"],
+        ".",
+        color=BLUE,
+        ms=3,
+        mew=0,
+        zorder=2.6,
+        label=f"means of {spans}",
+    )
     mean, half = float(data["friction"]), float(data["half_width"])
     drift = float(data["drift_rate"]) * size * (end - start) / 2
     axes.fill_between([start, end], mean - half, mean + half, color=VERMILION, alpha=0.2, lw=0)
@@ -173,10 +168,10 @@ def _trace(axes: Axes, data: xr.Dataset) -> None:
     outside = [(a, b) for a, b in ((first, start), (end, last)) if b - a > 2e-3 * (last - first)]
     for i, (a, b) in enumerate(outside):
         axes.axvspan(a, b, color=GREY, alpha=0.18, lw=0, label="left out" if i == 0 else None)
-    axes.set(xlabel=label, ylabel="friction [-]", xlim=(first, last), title="a  Friction along the test")
+    axes.set(xlabel=label, ylabel="friction [-]", xlim=(first, last))
+    axes.set_title("a  Friction along the test", pad=16)
     axes.set_ylim(*_limits(data))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.99), ncols=6, fontsize=6.5, handlelength=1.6)
-    axes.set_title(axes.get_title(loc="left"), pad=16)
 
 
 def _limits(data: xr.Dataset) -> tuple[float, float]:
@@ -214,9 +209,7 @@ def _correlation(axes: Axes, data: xr.Dataset) -> None:
     axes.set_xlabel(f"lag in {label}")
     axes.set(ylabel="autocorrelation [-]", ylim=(-0.6, 1.6), xlim=(0.0, lag[-1]))
     axes.set_title("c  Autocorrelation")
-    axes.legend(
-        loc="upper right", fontsize=6.5, handlelength=1.4, frameon=True, framealpha=0.9, edgecolor="none"
-    )
+    axes.legend(loc="upper right", fontsize=6.5, handlelength=1.4, **WHITE)
 
 
 def _spectrum(axes: Axes, data: xr.Dataset) -> None:

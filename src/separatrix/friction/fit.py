@@ -14,6 +14,7 @@ from math import exp, hypot, sqrt
 import numpy as np
 
 from separatrix.errors import InputError
+from separatrix.friction.file import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.law import (
     Covariates,
     Range,
@@ -24,7 +25,6 @@ from separatrix.friction.law import (
     tested_range,
     values_of,
 )
-from separatrix.friction.records import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.scatter import (
     LinearModel,
     Posterior,
@@ -40,9 +40,7 @@ DEFAULT_SCATTER: Ratio = 0.09
 repeatability limit over 2.8, borrowed from ASTM D2981, which states it for wear life and not for friction."""
 
 LEAST_SCATTER, MOST_SCATTER = 1e-3, 1.0
-
-GroupKey = tuple[str, str]
-"""Material and environment."""
+GroupKey = tuple[str, str]  # material and environment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

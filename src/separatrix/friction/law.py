@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from math import hypot, log, sqrt
 from statistics import correlation
 
-from separatrix.friction.records import CONDITIONS, PRODUCT, WORDS, FrictionTest
+from separatrix.friction.file import CONDITIONS, PRODUCT, WORDS, FrictionTest
 from separatrix.measured_friction import Prediction
 from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
 
@@ -22,7 +22,6 @@ LEAST_SPAN = 1.2
 tests were run at one temperature."""
 
 TOGETHER = 0.95  # correlation of ln speed and ln pressure from which their slopes cannot be separated
-
 Range = tuple[float, float]
 
 
@@ -207,7 +206,7 @@ def _text(value: float, name: str) -> str:
 class StatedFriction:
     """A printed mean: one number for a range of conditions, perhaps with its scatter and number of tests.
 
-    Without a stated scatter it is that of an unrepeated test; the mean is then no better known than that.
+    Without a stated scatter it is that of an unrepeated test; the mean then has that standard error.
     Outside its conditions a sentence reports that, and its scatter is unchanged: its tests are unknown.
     """
 

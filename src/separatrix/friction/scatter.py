@@ -11,14 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.units import Array, Ratio
 
-_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are looked for, in units of the residual one
+_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are searched, in units of the residual one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,11 +38,6 @@ class LinearModel:
     def shows_scatter(self) -> bool:
         """Whether the tests show how samples scatter: two samples, and a test beyond the coefficients."""
         return self.freedom > 0 and bool(np.any(self.sample != self.sample[0]))
-
-    @property
-    def has_repeats(self) -> bool:
-        """Whether some sample was tested more than once."""
-        return bool(np.bincount(self.sample).max() > 1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -85,7 +79,7 @@ def conditional(model: LinearModel, between_samples: Array, between_tests: Array
 class VarianceComponents:
     """Standard deviations of ln f, so relative ones: between samples and between tests of one sample [-].
 
-    `between_tests` is None where no sample was tested twice: then `between_samples` holds both.
+    `between_tests` is None where no sample was tested twice: then `between_samples` contains both.
     """
 
     between_samples: Ratio
@@ -94,13 +88,12 @@ class VarianceComponents:
 
 def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | None:
     """REML estimate of the scatter that several groups share; None if no group has a test to spare."""
-    from scipy import optimize
+    from scipy.optimize import minimize
 
-    minimize: Any = optimize.minimize
     useful = [model for model in models if model.freedom > 0]
     if not useful:
         return None
-    separate = any(model.has_repeats for model in useful)
+    separate = any(np.bincount(model.sample).max() > 1 for model in useful)  # a sample was tested twice
     squares = 0.0  # that ordinary least squares leave
     for model in useful:
         b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]
@@ -118,7 +111,8 @@ def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | N
     nodes = (scale * s) ** 2, (scale * t) ** 2
     best = int(np.argmax(sum(conditional(model, *nodes).log_likelihood for model in useful)))
     start = [float(s[best]) + 0.05, float(t[best])] if separate else [float(t[best])]
-    found = minimize(loss, start, method="L-BFGS-B", bounds=_SEARCHED[-len(start) :], options=_EXACT)
+    bounds = _SEARCHED[-len(start) :]
+    found = minimize(loss, start, method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-14, "gtol": 1e-8})
     samples, *tests = (float(x) * scale for x in found.x)
     return VarianceComponents(between_samples=samples, between_tests=tests[0] if separate else None)
 
@@ -129,7 +123,6 @@ BETWEEN_GROUPS = 0.2
 OF_THE_ASSUMPTION = 0.3
 """Standard deviation of the logarithm of all groups' scatter about the assumed one: a guess."""
 
-_EXACT = {"ftol": 1e-14, "gtol": 1e-8}
 _SIZES, _RATIOS = np.geomspace(0.3, 4.0, 9), np.array([0.0, 0.15, 0.4, 0.7, 0.95])
 _LOGS = np.linspace(-4.0, 4.0, 65)
 _LEAST = 1e-300

@@ -5,23 +5,22 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TypeVar
 
 from separatrix.errors import InputError, together
+from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
 from separatrix.friction.logs.log import RawLog, in_order, joined
-from separatrix.friction.records import NAMES, FrictionTest
 from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
 from separatrix.units import printable
 
 _T = TypeVar("_T")
 _S = TypeVar("_S")
-Progress = Callable[[int, int], None]
-"""Called with the number of steps done and their total."""
+Progress = Callable[[int, int], None]  # called with the number of steps done and their total
 
 OTHERS = frozenset(
     {".toml", ".md", ".json", ".nc", ".png", ".jpg", ".jpeg", ".pdf", ".py", ".svg", ".gif", ".docx"}
@@ -39,10 +38,8 @@ class ReducedLogs:
     """One for each test, with its log, its friction and the series behind it."""
     friction_tests: tuple[FrictionTest, ...] | None
     """The tests as a friction file keeps them; None where some do not state what slid on what."""
-    fit: FrictionFit | None
-    """Friction of each material over the conditions; None as above."""
-    notes: tuple[str, ...] = ()
-    """What concerns all of them together."""
+    fit: FrictionFit | None  # friction of each material over the conditions; None as above
+    notes: tuple[str, ...] = ()  # what concerns all of them together
 
     @property
     def logs(self) -> list[RawLog]:
@@ -218,22 +215,7 @@ def friction_test(test: TestFriction) -> FrictionTest:
     if missing := [name for name in NAMES if getattr(known, name) is None]:
         cure = "Give it under [test] of a column map: --map map.toml."
         raise InputError(test.source, f"does not state: {', '.join(missing)}", cure=cure)
-    points = {name: getattr(known, name) for name in ("temperature", "slip_speed", "pressure")}
-    return FrictionTest(
-        material=str(known.material),
-        counterface=str(known.counterface),
-        medium=str(known.medium),
-        friction=test.friction,
-        standard_error=test.standard_error,
-        standard_deviation=test.standard_deviation,
-        effective_count=test.effective_count,
-        sample=known.sample,
-        test=known.test,
-        run_in_end=test.run_in_end,
-        run_in_axis=test.run_in_axis,
-        flags=test.flags,
-        source=test.source,
-        checksum=test.checksum,
-        reduced_by=f"separatrix {__version__}",
-        **{name: None if value is None else (value, value) for name, value in points.items()},
-    )
+    own = {f.name for f in fields(FrictionTest)}
+    given = {f.name: getattr(one, f.name) for one in (known, test) for f in fields(one) if f.name in own}
+    given |= {name: (given[name], given[name]) for name in CONDITIONS if given[name] is not None}
+    return FrictionTest(reduced_by=f"separatrix {__version__}", **given)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from separatrix.errors import InputError, noted, together
 from separatrix.library.records import (
@@ -17,6 +17,7 @@ from separatrix.library.records import (
     KINDS,
     SOLID,
     Datum,
+    Facts,
     FrictionTable,
     LibraryFile,
     Property,
@@ -24,8 +25,22 @@ from separatrix.library.records import (
 )
 from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import Friction
-from separatrix.toml_text import Kind, label_of, parsed, places_of, read_text
-from separatrix.toml_values import Reader, build, nearest, quantity, ratio, table, text, whole
+from separatrix.toml_files import (
+    Kind,
+    Reader,
+    build,
+    label_of,
+    nearest,
+    parsed,
+    places_of,
+    quantity,
+    ratio,
+    read_text,
+    table,
+    text,
+    truth,
+    whole,
+)
 from separatrix.units import format_quantity, printable, shown
 
 LIBRARY = Kind(
@@ -34,16 +49,17 @@ LIBRARY = Kind(
     empty="`separatrix materials show 440C` shows what a record holds.",
 )
 SECTIONS = {kind.replace(" ", "_"): kind for kind in KINDS}
-"""Section of a file -> kind of its records."""
+"""Kind of the records of each section of a file."""
 
-MOST_RECORDS, MOST_DATA, MOST_PROBLEMS, LONGEST_TEXT = 2000, 100, 100, 1000
+MOST_RECORDS, MOST_DATA, MOST_PROBLEMS = 2000, 100, 100
 TOP = ("title",)
+_long_text: Reader[str] = partial(text, longest=1000, cure="Put it in quotes.")
 BLANK = "What is not known is left out, never given as 0."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Content:
-    """What a library file holds."""
+    """A library file and its records."""
 
     file: LibraryFile
     records: tuple[Record | FrictionTable, ...]
@@ -76,16 +92,16 @@ def library_of_text(given: str, label: str, *, shipped: bool = False) -> Content
             if section not in SECTIONS:
                 raise InputError(where, "is not a kind of record", cure=nearest(section, SECTIONS))
             if not isinstance(value, dict):
-                raise InputError(where, "must hold records, each with its name", shown(value))
+                raise InputError(where, "must contain records, each with its name", shown(value))
             if len(value) > MOST_RECORDS:
-                raise InputError(where, f"holds more than {MOST_RECORDS} records")
+                raise InputError(where, f"has more than {MOST_RECORDS} records")
             for name, item in value.items():
                 if len(problems) <= MOST_PROBLEMS:
                     with noted(problems):
                         line = lines.get(f"{section}.{name}")
-                        records.append(_record(section, name, item, {"file": file, "line": line}))
+                        records.append(_record(section, name, item, file, line))
     if not records and not problems:
-        rule = 'holds no record: it needs a section such as [cage_material."My compound"]'
+        rule = 'has no record: it needs a section such as [cage_material."My compound"]'
         problems.append(InputError("", rule))
     if problems:
         places = places_of(label, data, lines)
@@ -93,7 +109,9 @@ def library_of_text(given: str, label: str, *, shipped: bool = False) -> Content
     return Content(file=file, records=tuple(records))
 
 
-def _record(section: str, name: str, item: Any, origin: Mapping[str, Any]) -> Record | FrictionTable:
+def _record(
+    section: str, name: str, item: object, file: LibraryFile, line: int | None
+) -> Record | FrictionTable:
     """Read one record; its faults are under the path of its keys, ``[film] PTFE.density``."""
     at = f"[{section}] {printable(name)}"
     if text(name, f"{at}, its name,") != name.strip():
@@ -101,52 +119,60 @@ def _record(section: str, name: str, item: Any, origin: Mapping[str, Any]) -> Re
     if not isinstance(item, dict):
         raise InputError(at, "must be a record: keys with values", shown(item))
     if section == "friction_table":
-        return _friction_table(item, at, {"name": name, **origin})
+        return _friction_table(item, at, name, file, line)
     kind, is_fluid = SECTIONS[section], section == "fluid"
     data = {key: _data(known) for key, known in (FLUID if is_fluid else SOLID).items()}
-    facts = _FACTS if is_fluid else {"aliases": _FACTS["aliases"]}
-    words = {} if is_fluid else {"composition": _long_text}
-    readers = {**data, "remark": _long_text, "replaces": _yes_or_no, **words, **facts}
+    own = _FACTS if is_fluid else {"composition": _long_text, "aliases": _FACTS["aliases"]}
+    readers = {**data, "remark": _long_text, "replaces": truth, **own}
     given = table(item, at, readers, ("substance", "phase") if is_fluid else ELASTIC, f"a {kind}")
+    facts = Facts(aliases=given.get("aliases"))
+    if is_fluid:
+        facts = Facts(
+            substance=given["substance"],
+            phase=given["phase"],
+            coolprop=given.get("coolprop"),
+            aliases=given.get("aliases"),
+        )
     return Record(
         kind=kind,
         name=name,
         data={key: value for key, value in given.items() if key in data},
-        facts={key: given.get(key) for key in facts},
-        **{key: value for key, value in given.items() if key not in data and key not in facts},
-        **origin,
+        facts=facts,
+        file=file,
+        line=line,
+        **{key: given[key] for key in ("remark", "replaces", "composition") if key in given},
     )
 
 
-def _data(known: Property) -> Reader:
+def _data(known: Property) -> Reader[tuple[Datum, ...]]:
     """Reader of one datum, or of several of one property under different conditions."""
 
-    def read(value: Any, where: str) -> tuple[Datum, ...]:
+    def read(value: object, where: str) -> tuple[Datum, ...]:
         if not isinstance(value, list):
             return (_datum(known, value, where),)
         if not 0 < len(value) <= MOST_DATA:
-            raise InputError(where, f"must hold 1 to {MOST_DATA} data", f"{len(value)} of them", BLANK)
+            raise InputError(where, f"must be 1 to {MOST_DATA} data", f"{len(value)} of them", BLANK)
         data = tuple(_datum(known, item, f"{where}[{i}]") for i, item in enumerate(value, 1))
         if len({(d.temperature, d.pressure, d.medium, d.form) for d in data}) < len(data):
-            rule = "holds two data for the same temperature, pressure, medium and form"
+            rule = "has two data for the same temperature, pressure, medium and form"
             raise InputError(where, rule, cure="Keep one, or give the condition in which they differ.")
         return data
 
     return read
 
 
-def _datum(known: Property, value: Any, where: str) -> Datum:
+def _datum(known: Property, value: object, where: str) -> Datum:
     if not isinstance(value, dict):
         example = '{ value = "5 GPa", source = "our test 12", confidence = "measured" }'
         raise InputError(where, "must be a number with its source", shown(value), f"Write it like {example}.")
     number = _in_range(known.unit, known.low, known.high, "Check the unit.")
 
-    def expected(value: Any, where: str) -> tuple[float, float]:
+    def expected(value: object, where: str) -> tuple[float, float]:
         if not isinstance(value, list) or len(value) != 2:
             raise InputError(where, "must be a list of the lowest and the highest value", shown(value))
         return number(value[0], where), number(value[1], where)
 
-    readers: dict[str, Reader] = {
+    readers: dict[str, Reader[object]] = {
         "value": number,
         "source": _source,
         "confidence": _confidence,
@@ -158,19 +184,21 @@ def _datum(known: Property, value: Any, where: str) -> Datum:
     }
     given = table(value, where, readers, ("value", "source", "confidence"))
     if "range" in given and not given["range"][0] <= given["value"] <= given["range"][1]:
-        rule = "must hold the value between its ends, the lower one first"
+        rule = "must have the value between its ends, the lower one first"
         raise InputError(f"{where}.range", rule, shown(value["range"]))
     return Datum(unit=known.unit, **given)
 
 
-def _friction_table(item: Mapping[str, Any], at: str, origin: dict[str, Any]) -> FrictionTable:
+def _friction_table(
+    item: dict[str, object], at: str, name: str, file: LibraryFile, line: int | None
+) -> FrictionTable:
     """Read a table of measured friction: its words, its conditions, and a row for each material."""
-    readers: dict[str, Reader] = {
+    readers: dict[str, Reader[object]] = {
         "title": _long_text,
         "source": _long_text,
         "confidence": _confidence,
         "remark": _long_text,
-        "replaces": _yes_or_no,
+        "replaces": truth,
         "environments": _names,
         "friction": _rows,
         **{key: _span(*known) for key, known in CONDITIONS.items()},
@@ -178,11 +206,11 @@ def _friction_table(item: Mapping[str, Any], at: str, origin: dict[str, Any]) ->
     given = table(item, at, readers, ("title", "source", "confidence", "friction"))
     conditions = {key: given.pop(key) for key in CONDITIONS if key in given}
     rows = {
-        name: {
-            env: _friction(value, f'{at}.friction."{printable(name)}"."{env[:60]}"', given)
+        material: {
+            env: _friction(value, f'{at}.friction."{printable(material)}"."{env[:60]}"', given)
             for env, value in row.items()
         }
-        for name, row in given.pop("friction").items()
+        for material, row in given.pop("friction").items()
     }
     used = tuple(dict.fromkeys(env for row in rows.values() for env in row))
     environments = given.pop("environments", used)
@@ -190,17 +218,22 @@ def _friction_table(item: Mapping[str, Any], at: str, origin: dict[str, Any]) ->
         cure = nearest(unknown[0], environments) if environments else ""
         rule = "lacks an environment that the table uses"
         raise InputError(f"{at}.environments", rule, shown(unknown[0]), cure)
-    friction = {name: {env: row.get(env) for env in environments} for name, row in rows.items()}
     return FrictionTable(
-        conditions=conditions, environments=environments, friction=friction, **given, **origin
+        name=name,
+        file=file,
+        line=line,
+        conditions=conditions,
+        environments=environments,
+        friction={material: {env: row.get(env) for env in environments} for material, row in rows.items()},
+        **given,
     )
 
 
-def _rows(value: Any, where: str) -> dict[str, dict[str, Any]]:
+def _rows(value: object, where: str) -> dict[str, dict[str, object]]:
     """Read the names of materials and environments, not yet the frictions."""
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_RECORDS:
         cure = 'Write a section [friction_table."NAME".friction."MATERIAL"] for each.'
-        rule = f"must hold the friction of 1 to {MOST_RECORDS} materials"
+        rule = f"must have the friction of 1 to {MOST_RECORDS} materials"
         raise InputError(where, rule, shown(value), cure)
     for name, row in value.items():
         at = f'{where}."{printable(text(name, where))}"'
@@ -212,8 +245,8 @@ def _rows(value: Any, where: str) -> dict[str, dict[str, Any]]:
     return value
 
 
-def _friction(value: Any, where: str, words: Mapping[str, str]) -> Friction:
-    readers: dict[str, Reader] = {"mean": ratio, "standard_deviation": ratio, "count": whole}
+def _friction(value: object, where: str, words: Mapping[str, str]) -> Friction:
+    readers: dict[str, Reader[object]] = {"mean": ratio, "standard_deviation": ratio, "count": whole}
     given = table(value, where, readers, ("mean",)) if isinstance(value, dict) else {}
     given = given or {"mean": ratio(value, where)}
     if given["mean"] == 0.0:
@@ -222,7 +255,7 @@ def _friction(value: Any, where: str, words: Mapping[str, str]) -> Friction:
     return refuse_scatter_about_zero(build(Friction, known, where), where)
 
 
-def _names(value: Any, where: str) -> tuple[str, ...]:
+def _names(value: object, where: str) -> tuple[str, ...]:
     if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
         raise InputError(where, "must be a list of names in quotes", shown(value))
     if len(set(value)) < len(value):
@@ -230,49 +263,34 @@ def _names(value: Any, where: str) -> tuple[str, ...]:
     return tuple(value)
 
 
-def _long_text(value: Any, where: str) -> str:
-    """Read printable text on one line, up to `LONGEST_TEXT` characters."""
-    if not isinstance(value, str):
-        raise InputError(where, "must be text", shown(value), "Put it in quotes.")
-    if not 0 < len(value.strip()) <= LONGEST_TEXT or not value.isprintable():
-        rule = f"must be one line of 1 to {LONGEST_TEXT} printable characters"
-        raise InputError(where, rule, shown(value))
-    return value
+def _source(value: object, where: str) -> str:
+    given = _long_text(value, where)
+    if len(given.strip()) < 3:
+        cure = "Give who measured or printed it, and where."
+        raise InputError(where, "must name a source", shown(value), cure)
+    return given
 
 
-def _that(is_right: Callable[[Any], bool], rule: str, cure: str = "", reader: Reader | None = None) -> Reader:
-    """Reader of what is right by a test, after another reader has taken it."""
-
-    def read(value: Any, where: str) -> Any:
-        given = value if reader is None else reader(value, where)
-        if not is_right(given):
-            raise InputError(where, rule, shown(value), cure)
-        return given
-
-    return read
+def _confidence(value: object, where: str) -> str:
+    given = _long_text(value, where)
+    if given.partition(";")[0].strip() not in CONFIDENCES:
+        rule = f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon"
+        raise InputError(where, rule, shown(value), 'A guess is allowed and marked: "guess".')
+    return given
 
 
-_source = _that(
-    lambda given: len(given.strip()) >= 3,
-    "must name a source",
-    "Give who measured or printed it, and where.",
-    reader=_long_text,
-)
-_confidence = _that(
-    lambda given: given.partition(";")[0].strip() in CONFIDENCES,
-    f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon",
-    'A guess is allowed and marked: "guess".',
-    reader=_long_text,
-)
-_yes_or_no = _that(lambda given: isinstance(given, bool), "must be true or false, without quotes")
+def _phase(value: object, where: str) -> str:
+    if value not in ("liquid", "gas"):
+        raise InputError(where, 'must be "liquid" or "gas"', shown(value))
+    return str(value)
 
 
-def _in_range(unit: str, low: float, high: float, cure: str = "") -> Reader:
+def _in_range(unit: str, low: float, high: float, cure: str = "") -> Reader[float]:
     """Reader of one number between two bounds."""
     reader = quantity(unit)
 
-    def read(value: Any, where: str) -> float:
-        number = float(reader(value, where))
+    def read(value: object, where: str) -> float:
+        number = reader(value, where)
         if not low <= number <= high:
             rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
             raise InputError(where, rule, shown(value), BLANK if cure and number == 0.0 else cure)
@@ -281,11 +299,11 @@ def _in_range(unit: str, low: float, high: float, cure: str = "") -> Reader:
     return read
 
 
-def _span(unit: str, low: float, high: float) -> Reader:
+def _span(unit: str, low: float, high: float) -> Reader[tuple[float, float]]:
     """Reader of one quantity, or of a list of the lowest and the highest one."""
     one = _in_range(unit, low, high)
 
-    def read(value: Any, where: str) -> tuple[float, float]:
+    def read(value: object, where: str) -> tuple[float, float]:
         bounds = value if isinstance(value, list) else [value, value]
         if len(bounds) != 2:
             rule = "must be one quantity or a list of the lowest and the highest"
@@ -298,20 +316,22 @@ def _span(unit: str, low: float, high: float) -> Reader:
     return read
 
 
-def _aliases(value: Any, where: str) -> list[str]:
+def _aliases(value: object, where: str) -> list[str]:
     if not isinstance(value, list) or not 0 < len(value) <= 20:
         raise InputError(where, "must be a list of 1 to 20 names", shown(value))
     return [text(name, where) for name in value]
 
 
-_FACTS: dict[str, Reader] = {
+def _coolprop(value: object, where: str) -> str:
+    given = text(value, where)
+    if not (given.isascii() and given.replace("-", "").isalnum()):
+        raise InputError(where, "must be the plain name of a pure fluid, letters and digits", shown(value))
+    return given
+
+
+_FACTS: dict[str, Reader[object]] = {
     "substance": text,
-    "phase": _that(lambda given: given in ("liquid", "gas"), 'must be "liquid" or "gas"'),
-    "coolprop": _that(
-        lambda given: given.isascii() and given.replace("-", "").isalnum(),
-        "must be the plain name of a pure fluid, letters and digits",
-        reader=text,
-    ),
+    "phase": _phase,
+    "coolprop": _coolprop,
     "aliases": _aliases,
 }
-"""What a fluid is."""

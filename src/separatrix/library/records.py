@@ -1,26 +1,35 @@
-"""Records of the library: every number with its source, its conditions and how sure it is."""
+"""Records of the library: every number with its source, conditions and confidence; states of fluids."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
+from separatrix.errors import InputError
 from separatrix.study import Friction
-from separatrix.units import Kelvin, format_quantity
+from separatrix.units import Kelvin, KilogramPerMetre3, Pascal, format_quantity
 
 KINDS = ("bearing material", "cage material", "film", "fluid", "friction table")
-"""What a record may be of; in a file the section is the same word with an underscore."""
+"""Kinds of records; in a file the section is the same word with an underscore."""
 
 CONFIDENCES = ("measured", "maker", "literature", "handbook", "guess")
-"""How sure a number is: an own test, a maker's data sheet, a publication, several public tables, a guess."""
+"""Kinds of source: an own test, a maker's data sheet, a publication, several public tables, a guess."""
 
 NEAR: Kelvin = 10.0
 """A datum with one temperature serves this far to either side of it."""
 
+ATMOSPHERE: Pascal = 101325.0
+SAME_TEMPERATURE: Kelvin = 0.05
+"""A state of the record serves this near to its temperature, so that "77.4 K" is the boiling point; the
+density changes by less than 0.1 % on the way, that of helium gas by 2 %."""
+
+SAME_PRESSURE = 1e-3
+EXTRA = 'Install the extra: pip install "separatrix[fluids]".'
+
 
 class Property(NamedTuple):
-    """What a number of a record is: its SI unit, its words, and the range of real values."""
+    """A number of a record: its SI unit, its words, and the range of real values."""
 
     unit: str
     words: str
@@ -41,7 +50,7 @@ PROPERTIES = {
     "critical_temperature": Property("K", "critical temperature", 0.1, 5000.0),
     "critical_pressure": Property("Pa", "critical pressure", 1.0, 1e9),
 }
-"""Every number that a record may hold."""
+"""Every number that a record may have."""
 
 ELASTIC = ("elastic_modulus", "poisson_ratio")
 SOLID_ONLY = (*ELASTIC, "compressive_strength", "thermal_expansion")
@@ -62,7 +71,7 @@ CONDITIONS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Datum:
-    """One number with where it comes from and what it holds for; what is not known is None."""
+    """One number with its source and its conditions; what is not known is None."""
 
     value: float
     unit: str
@@ -70,7 +79,7 @@ class Datum:
     """Where the true value is expected."""
 
     temperature: tuple[Kelvin, Kelvin] | None = None
-    """Temperatures it holds for; both are the same where the source states one."""
+    """Lowest and highest temperature of the source; both are the same where it states one."""
 
     pressure: float | None = None
     medium: str | None = None
@@ -78,18 +87,26 @@ class Datum:
     source: str
     confidence: str
 
-    def holds_at(self, temperature: Kelvin) -> bool:
-        """Whether its source lets it serve at this temperature."""
+    def serves_at(self, temperature: Kelvin) -> bool:
+        """Whether its stated temperatures include this one."""
         if self.temperature is None:
             return False
         low, high = self.temperature
         margin = NEAR if low == high else 0.0
         return low - margin <= temperature <= high + margin
 
-    def plain(self) -> dict[str, Any]:
+    def is_state_at(self, temperature: Kelvin, pressure: Pascal) -> bool:
+        """Whether it is of a state of a fluid at this temperature and this pressure."""
+        if self.temperature is None or self.pressure is None:
+            return False
+        near = abs(self.pressure - pressure) <= SAME_PRESSURE * pressure
+        low, high = self.temperature
+        return near and low - SAME_TEMPERATURE <= temperature <= high + SAME_TEMPERATURE
+
+    def plain(self) -> dict[str, object]:
         """Return it as plain data with every condition, None where it is not known."""
-        values = {f.name: getattr(self, f.name) for f in fields(self)}
-        return {key: list(value) if isinstance(value, tuple) else value for key, value in values.items()}
+        values = ((f.name, getattr(self, f.name)) for f in fields(self))
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,14 +119,23 @@ class LibraryFile:
 
     shipped: bool
 
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> dict[str, object]:
         """Return it as plain data."""
         return {"file": self.label, "sha256": self.checksum, "shipped": self.shipped}
 
 
+class Facts(TypedDict, total=False):
+    """Other names of a material or a fluid; substance and phase of a fluid."""
+
+    substance: str
+    phase: str
+    coolprop: str | None
+    aliases: list[str] | None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
-    """A material or a fluid as a library file gives it."""
+    """A material or a fluid of a library file."""
 
     kind: str
     name: str
@@ -119,10 +145,9 @@ class Record:
     composition: str | None = None
     replaces: bool = False
     data: Mapping[str, tuple[Datum, ...]]
-    facts: Mapping[str, Any] = field(default_factory=dict)
-    """Other names, aliases; what a fluid is: substance, phase, coolprop."""
+    facts: Facts
 
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> dict[str, object]:
         """Return the whole record as plain data."""
         words = {key: getattr(self, key) for key in ("kind", "name", "remark", "composition")}
         data = {key: [datum.plain() for datum in data] for key, data in self.data.items()}
@@ -147,7 +172,7 @@ class FrictionTable:
     conditions: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Lowest and highest temperature, slip_speed, normal_force and pressure, in SI, where they are known."""
 
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> dict[str, object]:
         """Return the whole table as plain data."""
         keys = ("mean", "standard_deviation", "count")
         words = ("kind", "name", "title", "remark", "source", "confidence")
@@ -178,15 +203,15 @@ class Choice(NamedTuple):
 
 
 def choose(data: Sequence[Datum], temperature: Kelvin | None, words: str) -> Choice:
-    """Datum for a temperature: the one whose stated range is narrowest around it.
+    """Datum for a temperature: that with the narrowest stated range around it.
 
-    None is interpolated or extrapolated. Where no range holds the temperature, the nearest datum serves and
-    the caution says so; without a temperature the first one serves.
+    None is interpolated or extrapolated. Where no range includes the temperature, the nearest datum serves
+    and the caution states it; without a temperature the first one serves.
     """
     if temperature is None:
         return Choice(data[0], None)
     spans = [(datum, *(datum.temperature or _NOWHERE)) for datum in data]
-    if fitting := [one for one in spans if one[0].holds_at(temperature)]:
+    if fitting := [one for one in spans if one[0].serves_at(temperature)]:
         return Choice(min(fitting, key=lambda one: one[2] - one[1])[0], None)
     nearest, low, high = min(spans, key=lambda one: max(one[1] - temperature, temperature - one[2], 0.0))
     at = format_quantity(temperature, "K")
@@ -195,3 +220,99 @@ def choose(data: Sequence[Datum], temperature: Kelvin | None, words: str) -> Cho
     first, last = format_quantity(low, "K"), format_quantity(high, "K")
     stated = first if first == last else f"{first} to {last}"
     return Choice(nearest, f"{words}: not stated at {at}, the value at {stated} is used")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FluidState:
+    """State of a fluid at a temperature and a pressure; viscosity and heat capacity in SI."""
+
+    name: str
+    temperature: Kelvin
+    pressure: Pascal
+    phase: str
+    density: KilogramPerMetre3
+    viscosity: float | None
+    heat_capacity: float | None
+    source: str
+
+    def plain(self) -> dict[str, object]:
+        """Return it as plain data with units."""
+        units = {"density": "kg/m3", "viscosity": "Pa s", "heat_capacity": "J/kg/K"}
+        return {
+            "temperature": {"value": self.temperature, "unit": "K"},
+            "pressure": {"value": self.pressure, "unit": "Pa"},
+            "phase": self.phase,
+            **{key: {"value": getattr(self, key), "unit": unit} for key, unit in units.items()},
+            "source": self.source,
+        }
+
+
+def contradictions(record: Mapping[str, Any], temperature: Kelvin) -> Iterator[str]:
+    """Sentences on a fluid whose temperature rules out the phase in its name at any pressure.
+
+    A liquid exists between the triple and the critical temperature. A gas exists at any temperature, but
+    below the triple point only as thin vapour over the solid. Between, the pressure decides, which a study
+    does not state.
+    """
+    name, phase, at = record["name"], record["phase"], format_quantity(temperature, "K")
+    data = record["data"]
+    critical, triple = (
+        data[key][0]["value"] if data.get(key) else None
+        for key in ("critical_temperature", "triple_temperature")
+    )
+    cure = "Correct the fluid or the temperature."
+    if phase == "liquid" and critical is not None and temperature > critical:
+        limit = f"the critical temperature is {format_quantity(critical, 'K')}"
+        yield f"{name}: at {at} there is no liquid at any pressure, {limit}. {cure}"
+    if triple is not None and temperature < triple:
+        limit = f"the triple point is {format_quantity(triple, 'K')}"
+        yield f"{name}: at {at} it is solid, or a thin vapour; {limit}. {cure}"
+
+
+def fluid_state(record: Record, temperature: Kelvin, pressure: Pascal = ATMOSPHERE) -> FluidState:
+    """State of a fluid at a temperature and a pressure.
+
+    Notes
+    -----
+    Equations of state and of viscosity are those of CoolProp (I. H. Bell and others, Industrial and
+    Engineering Chemistry Research 53, 2498, 2014), which names the source of each. A state of the record
+    itself serves with and without that extra: on the saturation line temperature and pressure leave the phase
+    open, and the name decides.
+
+    Raises
+    ------
+    InputError
+        The state lies outside the equation of state, or CoolProp is needed and not installed.
+    """
+    where = f"{record.name} at {format_quantity(temperature, 'K')} and {format_quantity(pressure, 'Pa')}"
+    numbers = ("density", "viscosity", "heat_capacity")
+    known: dict[str, Any] = {"name": record.name, "temperature": temperature, "pressure": pressure}
+    near = [
+        next((d for d in record.data.get(key, ()) if d.is_state_at(temperature, pressure)), None)
+        for key in numbers
+    ]
+    if near[0] is not None:
+        known |= {key: d and d.value for key, d in zip(numbers, near, strict=True)}
+        return FluidState(**known, phase=record.facts["phase"], source=near[0].source)
+    try:
+        from CoolProp import CoolProp
+    except ImportError:
+        raise InputError(where, "is not in the built-in table", cure=EXTRA) from None
+    substance = record.facts.get("coolprop")
+    if substance is None:
+        raise InputError(where, "has no state in its record, and names no fluid of CoolProp")
+    state = ("T", temperature, "P", pressure, substance)
+    try:
+        known |= {key: CoolProp.PropsSI(what, *state) for key, what in zip(numbers, "DVC", strict=True)}
+        phase = str(CoolProp.PhaseSI(*state)).replace("_", " ")
+    except ValueError as error:
+        raise InputError(where, f"has no state: {str(error).partition(':')[0][:100]}") from None
+    equations = [CoolProp.get_BibTeXKey(substance, what) for what in ("EOS", "VISCOSITY")]
+    return FluidState(**known, phase=phase, source=f"CoolProp: {', '.join(equations)}")
+
+
+def other_phase(record: Record, state: FluidState) -> Iterator[str]:
+    """Sentence for a fluid of that name which is in another phase."""
+    if {record.facts["phase"], state.phase} == {"liquid", "gas"}:
+        at = f"{format_quantity(state.temperature, 'K')} and {format_quantity(state.pressure, 'Pa')}"
+        yield f"{record.name}: at {at} it is a {state.phase}."

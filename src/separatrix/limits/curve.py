@@ -1,4 +1,4 @@
-"""Critical pocket friction against restitution factor, with its band: the stability curve (paper, Fig. 2)."""
+"""The stability curve: critical friction against restitution factor, and its inverse, the threshold."""
 
 from __future__ import annotations
 
@@ -9,33 +9,38 @@ from typing import Annotated, TypeVar
 
 from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.closed_forms import drift_rate_law, drifts
-from separatrix.limits.growth import GrowthCounter
-from separatrix.limits.limits import HardLimit, LinearLimit, closed_hard_limit, hard_limit, linear_limit
-from separatrix.limits.point import BAND_FEW, BAND_MOST, CriticalFriction, critical_friction
-from separatrix.limits.response import SEARCHED_FRICTION, Side
+from separatrix.limits.point import (
+    BAND_FEW,
+    BAND_MOST,
+    CriticalFriction,
+    HardLimit,
+    LinearLimit,
+    closed_hard_limit,
+    critical_friction,
+    hard_limit,
+    linear_limit,
+)
+from separatrix.limits.response import SEARCHED_FRICTION, GrowthCounter, Side
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
 
 Point = TypeVar("Point")
-
 COARSE: tuple[Ratio, ...] = (0.0, 0.25, 0.5, 0.75, 0.875, 1.0)
 """Restitution factors to begin with: closer before 1, where balls gripped by their races damp nothing, the
 critical friction falls to zero and a line from 0.75 would be taken for straight."""
 
 FIRST_THREES = ((0.0, 0.25, 0.5), (0.5, 0.75, 1.0), (0.75, 0.875, 1.0))
-FINEST: Ratio = 1.0 / 32.0
-"""The least distance between two; all are halves of halves, so exact in binary."""
-
+FINEST: Ratio = 1.0 / 32.0  # the least distance between two; all are halves of halves, so exact in binary
 Bends = Callable[[Point, Point, Point], bool]
 """Whether the middle one of three points lies off the line between the others."""
 
 
 def finer(eta: Ratio, found: Mapping[Ratio, Point], bends: Bends[Point]) -> list[tuple[Ratio, Ratio]]:
-    """Neighbours half way between which a point is wanted once the point at `eta` is known.
+    """Neighbours half way between which a point is wanted once the point at `eta` is computed.
 
-    A middle that lies off the line between its neighbours has both its sides halved. What is answered for
-    three points depends on these three only, so the points of a curve do not depend on their order.
+    A middle that lies off the line between its neighbours has both its sides halved. Each decision depends on
+    three points only, so the points of a curve do not depend on their order.
     """
     wanted: list[tuple[Ratio, Ratio]] = []
     for low, middle, high in _threes(eta):
@@ -58,90 +63,46 @@ def _threes(eta: Ratio) -> Iterator[tuple[Ratio, Ratio, Ratio]]:
 
 
 ETA = "restitution_factor"
-
-FLAT: Ratio = 0.002
-"""Friction by which a line may miss a point however well that is known."""
-
-OWN_DAMPING = -1.0
-"""Stands in the row of work for the cage's own race damping, beside restitution factors from 0 to 1."""
+FLAT: Ratio = 0.002  # friction by which a line may miss a point, whatever the scatter of that
+OWN_DAMPING = -1.0  # in place of a restitution factor: the cage's own race damping
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityCurve:
-    """Stability curve, its limits, and the ensemble it holds for.
+    """Stability curve, its limits, and its ensemble."""
 
-    Attributes
-    ----------
-    curve : tuple of CriticalFriction
-        Rising restitution factors.
-    here : CriticalFriction or None
-        The same at the cage's own race damping; None if an interrupt left it out.
-    linear_limit : tuple of LinearLimit
-        Beside each point: without clearance, ball set at rest, in closed form.
-    hard_limit : tuple of HardLimit
-        Beside each point: walls instead of springs, ball set at rest, even pockets; empty without clearance.
-    hard_limit_closed : float or None
-        Where dead hard impacts begin to whirl, tan(pi/2Z) for odd Z, tan(pi/Z) for even [-].
-    band_few, band_most : float
-        Shares of whirling runs at the ends of the band [-].
-    band : bool
-        Whether the points of `curve` have their band; `here` always has.
-    kicks, middle_kick, runs, duration, ball_scatter
-        The ensemble.
-    searched_friction : float
-        The friction up to which was looked [-].
-    drifts : bool
-        Whether nothing holds the cage centre: below the curve a kick settles, but no verdict there is STABLE.
-    drift_rate_law : float
-        Rate of that drift by the linear law, at any friction, with the cage's own race damping; 0 with a land
-        or a ball set at rest [1/s].
-    adaptive : bool
-        Whether the restitution factors were chosen here.
-    complete : bool
-        False if an interrupt left points out.
-    """
-
-    curve: Annotated[tuple[CriticalFriction, ...], Rows(ETA, label=ETA)]
+    curve: Annotated[tuple[CriticalFriction, ...], Rows(ETA, label=ETA)]  # rising restitution factors
     here: CriticalFriction | None = None
+    """The same at the cage's own race damping; None if an interrupt left it out."""
     linear_limit: Annotated[tuple[LinearLimit, ...], Rows(ETA, "linear_limit_", label=ETA)]
+    """Beside each point: without clearance, ball set at rest, in closed form."""
     hard_limit: Annotated[tuple[HardLimit, ...], Rows(ETA, "hard_limit_", label=ETA)] = ()
+    """Beside each point: walls for springs, ball set at rest, even pockets; empty without clearance."""
     hard_limit_closed: Ratio | None = None
-    band_few: Ratio
-    band_most: Ratio
-    band: bool
-    kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    middle_kick: MetrePerSecond
-    runs: int
-    duration: Second
+    """Friction from which dead hard impacts whirl, tan(pi/2Z) for odd Z, tan(pi/Z) for even."""
+    band_few: Ratio  # share of whirling runs at the lower end of the band
+    band_most: Ratio  # share of whirling runs at the upper end of the band
+    band: bool  # whether the points of `curve` have their band; `here` always has
+    kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]  # disturbances of the runs
+    middle_kick: MetrePerSecond  # of the critical friction
+    runs: int  # from each kick
+    duration: Second  # of a run
     ball_scatter: Ratio
-    searched_friction: Ratio
-    drifts: bool
-    drift_rate_law: PerSecond
-    adaptive: bool
-    complete: bool
+    searched_friction: Ratio  # highest friction that was searched
+    drifts: bool  # whether nothing returns the cage centre: a kick may settle, but no verdict is STABLE
+    drift_rate_law: PerSecond  # growth of the offset by the linear law; 0 with a land or a ball set at rest
+    adaptive: bool  # whether the restitution factors were chosen here
+    complete: bool  # false if an interrupt left points out
 
 
 def stability_curve(
-    cage: PlanarCage,
-    settings: StabilitySettings,
-    *,
-    runner: Runner | None = None,
+    cage: PlanarCage, settings: StabilitySettings, *, runner: Runner | None = None
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 
-    Parameters
-    ----------
-    cage : PlanarCage
-        Its friction is replaced; its race damping but for `here`.
-    settings : StabilitySettings
-        Kicks, runs and seed; restitution factors, or none: then they are chosen where the curve bends.
-    runner : Runner, optional
-        How the runs are made; the numbers do not depend on it.
-
-    Raises
-    ------
-    Interrupted
-        With the curve of the points that were finished, if any was.
+    Without restitution factors in the settings they are chosen where the curve bends. The friction of the
+    cage is replaced, and its race damping but for `here`. The numbers do not depend on the runner.
+    `Interrupted` has the curve of the points that were finished, if any was.
     """
     runner = runner or Runner()
     tracer = Tracer(GrowthCounter(cage, settings, runner), settings.restitution_factors, band=True)
@@ -154,8 +115,7 @@ def stability_curve(
     return runner.work_out(tracer.point, [*tracer.first, (OWN_DAMPING, None)], into=curve, more=tracer.more)
 
 
-Node = tuple[Ratio, Ratio | None]
-"""A restitution factor (or `OWN_DAMPING`), and a guess of its critical friction."""
+Node = tuple[Ratio, Ratio | None]  # a restitution factor (or `OWN_DAMPING`), and a guess of its friction
 
 
 class Tracer:
@@ -164,15 +124,13 @@ class Tracer:
     Parameters
     ----------
     counter : GrowthCounter
-        Counts the runs, and knows cage and settings.
+        Counts the runs of its cage.
     given : sequence of float
-        Restitution factors; if none, they are chosen: halves, ever finer where the curve bends by more than
-        its scatter.
+        Restitution factors; if none, they are halved where the curve bends by more than its scatter.
     band : bool
         Whether the points have their band; if so, its ends are followed as well.
     frictions : sequence of float, optional
-        Where the curve passes these it is followed as finely as it bends, elsewhere it is left coarse; by
-        default it is fine everywhere.
+        The curve is followed as finely as it bends where it passes these; by default everywhere.
     """
 
     def __init__(
@@ -208,7 +166,7 @@ class Tracer:
         """Whether the curve may pass one of the frictions between two points."""
         if self.frictions is None:
             return True
-        ends = [end for point in span for end in _curve(point)]
+        ends = [end for point in span for end in _heights(point)[0]]
         return any(min(ends) - FLAT <= friction <= max(ends) + FLAT for friction in self.frictions)
 
     def complete(self, found: Mapping[Node, CriticalFriction]) -> bool:
@@ -228,7 +186,10 @@ def _between(low: CriticalFriction, high: CriticalFriction) -> Node:
 
 def bends(low: CriticalFriction, middle: CriticalFriction, high: CriticalFriction) -> bool:
     """Whether the line between two points misses the middle one, or its band, by more than the scatter."""
-    return any(_misses(ends(low), ends(middle), ends(high)) for ends in (_curve, _band_low, _band_high))
+    return any(map(_misses, _heights(low), _heights(middle), _heights(high)))
+
+
+Heights = tuple[Ratio, Ratio, Ratio]  # a friction with its 95 % interval
 
 
 def _misses(low: Heights, middle: Heights, high: Heights) -> bool:
@@ -245,23 +206,15 @@ def height(point: CriticalFriction) -> Ratio:
     return 0.0 if point.side is Side.ABOVE else SEARCHED_FRICTION
 
 
-Heights = tuple[Ratio, Ratio, Ratio]
-"""A friction with its 95 % interval."""
-
-
-def _curve(point: CriticalFriction) -> Heights:
-    at = height(point)
-    return at, _or(point.scatter_low, at), _or(point.scatter_high, at)
-
-
-def _band_low(point: CriticalFriction) -> Heights:
-    at = _or(point.critical_friction_low, 0.0)
-    return at, _or(point.low_scatter_low, at), _or(point.low_scatter_high, at)
-
-
-def _band_high(point: CriticalFriction) -> Heights:
-    at = _or(point.critical_friction_high, SEARCHED_FRICTION)
-    return at, _or(point.high_scatter_low, at), _or(point.high_scatter_high, at)
+def _heights(point: CriticalFriction) -> list[Heights]:
+    """Critical friction and both ends of the band; the ends of the searched range where there is none."""
+    low, high = _or(point.critical_friction_low, 0.0), _or(point.critical_friction_high, SEARCHED_FRICTION)
+    rows = (
+        (height(point), point.scatter_low, point.scatter_high),
+        (low, point.low_scatter_low, point.low_scatter_high),
+        (high, point.high_scatter_low, point.high_scatter_high),
+    )
+    return [(at, _or(least, at), _or(most, at)) for at, least, most in rows]
 
 
 def _or(value: Ratio | None, other: Ratio) -> Ratio:
@@ -279,11 +232,11 @@ def curve_of_points(
 ) -> StabilityCurve:
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
     settings = settings_for(settings, cage)
-    rising = sorted(points, key=lambda point: point.restitution_factor)
-    etas = [point.restitution_factor for point in rising]
+    ordered = rising(points)
+    etas = [point.restitution_factor for point in ordered]
     hard = [hard_limit(cage, eta, settings) for eta in etas]
     return StabilityCurve(
-        curve=tuple(rising),
+        curve=tuple(ordered),
         here=here,
         linear_limit=tuple(linear_limit(cage, eta) for eta in etas),
         hard_limit=tuple(limit for limit in hard if limit is not None),
@@ -302,3 +255,73 @@ def curve_of_points(
         adaptive=not settings.restitution_factors,
         complete=complete,
     )
+
+
+OUTER_FACTORS: tuple[Ratio, ...] = (0.0, 0.98, 1.0)
+"""Restitution factors beside those that a study gives, so that thresholds are solved over all of 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionThreshold:
+    """Largest restitution factor at which the cage is stable, with the 95 % interval of the runs' scatter."""
+
+    value: Ratio
+    low: Ratio
+    high: Ratio
+
+
+def restitution_threshold(points: Sequence[CriticalFriction], friction: Ratio) -> RestitutionThreshold:
+    """Restitution factor at which the critical friction equals `friction`, f_BC of a material [-].
+
+    Between two points, which rise from a restitution factor of 0 to 1, the critical friction is a straight
+    line. The threshold is 0 if the cage is never stable, 1 if it is stable even on balls gripped by their
+    races. Where the critical friction wavers, it is the first restitution factor at which it falls below
+    `friction`. The interval comes from the ends of the critical friction's own, in the same way.
+    """
+    value = _first_below(points, friction, lambda point: point.critical_friction)
+    low = _first_below(points, friction, lambda point: point.scatter_low)
+    high = _first_below(points, friction, lambda point: point.scatter_high)
+    return RestitutionThreshold(value=value, low=min(low, value), high=max(high, value))
+
+
+def _first_below(
+    points: Sequence[CriticalFriction], friction: Ratio, end: Callable[[CriticalFriction], Ratio | None]
+) -> Ratio:
+    """Smallest restitution factor at which a curve through the points is below `friction`; 1 if none is."""
+    before: tuple[Ratio, Ratio] | None = None
+    for point in points:
+        known = end(point)
+        eta, f = point.restitution_factor, height(point) if known is None else known
+        if f < friction or point.side is Side.ABOVE:
+            if before is None or f >= before[1]:
+                return eta
+            return before[0] + (eta - before[0]) * (before[1] - friction) / (before[1] - f)
+        before = eta, f
+    return 1.0
+
+
+def own_threshold(
+    cage: PlanarCage, settings: StabilitySettings, friction: Ratio, runner: Runner
+) -> RestitutionThreshold:
+    """Threshold of one friction: the curve is followed, here and now, as finely as that needs."""
+    tracer = Tracer(
+        GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False, frictions=[friction]
+    )
+    found: dict[Node, CriticalFriction] = {}
+    waiting = list(tracer.first)
+    while waiting:
+        node = waiting.pop()
+        found[node] = tracer.point(node)
+        waiting += [one for one in tracer.more(node, found) if one not in found and one not in waiting]
+    return restitution_threshold(rising(found.values()), friction)
+
+
+def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:
+    """Return the points in the order of their restitution factors."""
+    return sorted(points, key=lambda point: point.restitution_factor)
+
+
+def threshold_factors(settings: StabilitySettings) -> list[Ratio]:
+    """Restitution factors of the settings and those beside them, rising; none if they are to be chosen."""
+    given = settings.restitution_factors
+    return sorted({*given, *OUTER_FACTORS}) if given else []

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import functools
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
@@ -15,27 +14,12 @@ from separatrix.cage.verdict import decide
 from separatrix.cage_choice import require_friction
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import ConvergenceError, InputError
-from separatrix.limits.growth import cage_at
-from separatrix.limits.map_fill import Filled, Place, fill
-from separatrix.limits.map_parameters import (
-    FRICTION,
-    KICK,
-    RESTITUTION,
-    value_in,
-    varied,
-)
-from separatrix.limits.map_records import (
-    NOT_RUN,
-    Inference,
-    MapChange,
-    MapPoint,
-    MapQuestion,
-    StabilityMap,
-    Stopping,
-)
-from separatrix.limits.map_rule import (
+from separatrix.limits.map_fill import (
+    Filled,
+    Place,
     Tally,
     changes,
+    fill,
     first_look,
     further,
     margins,
@@ -43,38 +27,37 @@ from separatrix.limits.map_rule import (
     settled,
     wrong_side_probability,
 )
+from separatrix.limits.map_records import (
+    FRICTION,
+    KICK,
+    NOT_RUN,
+    RESTITUTION,
+    Inference,
+    MapChange,
+    MapPoint,
+    MapQuestion,
+    StabilityMap,
+    Stopping,
+    value_in,
+    varied,
+)
+from separatrix.limits.response import cage_at
 from separatrix.runner import Runner, joined, made_into
-from separatrix.study import StabilitySettings, Study
+from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
 
-MOST_LINKS = 1024
-"""Links of the chain that are remembered."""
-
-OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)
-"""Parameters that change nothing before the cage itself."""
-
+MOST_LINKS = 1024  # links of the chain that are remembered
+OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)  # parameters that change nothing before the cage itself
 INTERRUPTED = f"{NOT_RUN}: interrupted"
 AGREED = f"{NOT_RUN}: the points around it agree"
+Values = tuple[tuple[str, float], ...]  # of parameters, by their names
 
-Values = tuple[tuple[str, float], ...]
 
-
-def stability_map(
-    question: MapQuestion,
-    *,
-    runner: Runner | None = None,
-) -> StabilityMap:
+def stability_map(question: MapQuestion, *, runner: Runner | None = None) -> StabilityMap:
     """Decide every point of a map, coarse grid first, so that an interrupted map covers the whole plane.
 
     Run number r begins alike at every point. A point whose study is refused, or whose chain does not settle,
-    is a point with that reason.
-
-    Parameters
-    ----------
-    question : MapQuestion
-        What is asked.
-    runner : Runner, optional
-        How the runs are made; the numbers do not depend on it.
+    is a point with that reason. The numbers do not depend on the runner.
 
     Raises
     ------
@@ -86,26 +69,16 @@ def stability_map(
     require_cage_friction(question)
     runner = runner or Runner()
 
-    def assembled(filled: Filled) -> StabilityMap:
-        _refuse_if_nothing_ran(question, filled.found)
-        return _assembled(question, filled)
-
-    return made_into(assembled, lambda: fill(question, PointFinder(question, runner), runner))
+    return made_into(
+        lambda filled: _assembled(question, filled),
+        lambda: fill(question, PointFinder(question, runner), runner),
+    )
 
 
 def require_cage_friction(question: MapQuestion) -> None:
     """Refuse a map whose cage has no pocket friction."""
     if FRICTION not in (question.x.parameter, question.y.parameter):
         require_friction(question.study)
-
-
-def _refuse_if_nothing_ran(question: MapQuestion, found: Mapping[Place, MapPoint]) -> None:
-    """A map without a single run is no answer: say why the first point was refused."""
-    if any(point.runs for point in found.values()):
-        return
-    first = found[min(found)]
-    where = f"The map of {question.x.parameter} and {question.y.parameter}"
-    raise InputError(where, "has no point that could be run", cure=f"The first was refused: {first.reason}")
 
 
 class PointFinder:
@@ -126,46 +99,33 @@ class PointFinder:
 
     def _run(self, x: float, y: float) -> MapPoint:
         values = dict(zip(self._names, (x, y), strict=True))
-        of_the_chain = tuple((name, values[name]) for name in self._names if name not in OF_THE_CAGE)
-        solution, own = _found(self._state(of_the_chain))
-        cage, eta = _cage_of(solution, own, values)
+        state = self._state(tuple((name, values[name]) for name in self._names if name not in OF_THE_CAGE))
+        if isinstance(state, str):
+            raise InputError(state.removesuffix("."), "")
+        solution, cage = state
+        friction, eta = values.get(FRICTION, cage.ball_cage_friction), values.get(RESTITUTION)
+        if eta is None:
+            cage, eta = replace(cage, ball_cage_friction=friction), solution.restitution.restitution_factor
+        else:
+            cage = cage_at(cage, eta, friction)
         kick = values.get(KICK, self.question.kick)
-        ensemble = decided_ensemble(cage, solution.stability, kick, self.question.runs, self.runner)
+        ensemble = _decided_ensemble(cage, solution.stability, kick, self.question.runs, self.runner)
         return _judged(x, y, cage, eta, ensemble)
 
-    def _varied(self, values: Values) -> Study:
-        """Study with these values; one without a pocket friction gets one, for it is an axis."""
-        pocket = {FRICTION: 0.0} if FRICTION in self._names else {}
-        return varied(self.question.study, {**dict(values), **pocket})
-
     def _find_state(self, values: Values) -> tuple[Solution, PlanarCage] | str:
-        """Chain and cage of a study, or why there is none: a refusal is worth remembering too."""
+        """Chain and cage of a study, or why there is none: a refusal is worth remembering too.
+
+        A study without a pocket friction gets one where that is an axis.
+        """
+        pocket = {FRICTION: 0.0} if FRICTION in self._names else {}
         try:
-            return (solution := solve(self._varied(values))), solution.cage
+            solution = solve(varied(self.question.study, {**dict(values), **pocket}))
+            return solution, solution.cage
         except (InputError, ConvergenceError) as error:
             return str(error)
 
 
-Link = TypeVar("Link")
-
-
-def _found(link: Link | str) -> Link:
-    """Return a link of the chain, or raise the refusal it was."""
-    if isinstance(link, str):
-        raise InputError(link.removesuffix("."), "")
-    return link
-
-
-def _cage_of(solution: Solution, cage: PlanarCage, values: Mapping[str, float]) -> tuple[PlanarCage, Ratio]:
-    """Cage with the friction and restitution factor of a point, and that restitution factor."""
-    friction = values.get(FRICTION, cage.ball_cage_friction)
-    eta = values.get(RESTITUTION)
-    if eta is not None:
-        return cage_at(cage, eta, friction), eta
-    return replace(cage, ball_cage_friction=friction), solution.restitution.restitution_factor
-
-
-def decided_ensemble(
+def _decided_ensemble(
     cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int, runner: Runner
 ) -> Ensemble:
     """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
@@ -174,16 +134,11 @@ def decided_ensemble(
         return runner.ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first)
 
     ensemble = run(0, first_look(runs))
-    if _agree(ensemble):
+    if (ensemble.outcome == ensemble.outcome[0, 0]).all():  # all end alike
         return ensemble
     while not settled(now := _tally(ensemble), runs) and now.runs < runs:
         ensemble = joined([ensemble, run(now.runs, further(now.runs, runs))])
     return ensemble
-
-
-def _agree(ensemble: Ensemble) -> bool:
-    """Whether all runs end alike."""
-    return bool((ensemble.outcome == ensemble.outcome[0, 0]).all())
 
 
 def _tally(ensemble: Ensemble) -> Tally:
@@ -193,39 +148,34 @@ def _tally(ensemble: Ensemble) -> Tally:
 
 def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
     decision, reason = decide(cage, ensemble)
-    whirling, runs = int(ensemble.count(RunOutcome.WHIRLS)[0]), ensemble.outcome.shape[1]
-    low, high = wilson_interval(whirling, runs)
+    now = _tally(ensemble)
+    low, high = wilson_interval(now.whirls, now.runs)
+    calm = ensemble.drift_rate[ensemble.outcome != RunOutcome.WHIRLS]
     return MapPoint(
         x=x,
         y=y,
         decision=decision,
-        probability_whirl=whirling / runs,
+        probability_whirl=now.whirls / now.runs,
         probability_low=low,
         probability_high=high,
-        runs=runs,
-        whirling=whirling,
-        growth_rate=growth_rate(ensemble),
+        runs=now.runs,
+        whirling=now.whirls,
+        growth_rate=float(np.median(ensemble.growth_rate)),
         largest_offset=float(ensemble.largest_offset.max()),
-        drift_rate=drift_rate(ensemble),
+        drift_rate=float(np.median(calm)) if calm.size else 0.0,
         largest_contact_force=float(ensemble.largest_contact_force.max()),
         restitution_factor=eta,
         reason=reason,
     )
 
 
-def growth_rate(ensemble: Ensemble) -> float:
-    """Median growth rate of the runs [1/s]."""
-    return float(np.median(ensemble.growth_rate))
-
-
-def drift_rate(ensemble: Ensemble) -> float:
-    """Median drift rate of the runs that do not whirl [1/s]; 0 where all do."""
-    calm = ensemble.drift_rate[ensemble.outcome != RunOutcome.WHIRLS]
-    return float(np.median(calm)) if calm.size else 0.0
-
-
 def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
-    """Map of the points found, with their margins; the others say why they were not run."""
+    """Map of the points found, with their margins; the others have the reason why they were not run."""
+    if not any(point.runs for point in filled.found.values()):
+        first = filled.found[min(filled.found)]
+        where = f"The map of {question.x.parameter} and {question.y.parameter}"
+        cure = f"The first was refused: {first.reason}"
+        raise InputError(where, "has no point that could be run", cure=cure)
     points: list[MapPoint] = []
     bands: list[MapChange] = []
     heights = question.y.values
@@ -262,8 +212,8 @@ def _not_run(filled: Filled, place: Place, x: float, y: float) -> MapPoint:
 
 
 def inference(filled: Filled) -> Inference:
-    """How often the points around another one were wrong about it, where it was run as a check."""
-    otherwise = sum(filled.found[place].decision is not said for place, said in filled.checked.items())
+    """How often the points around another one decided otherwise, where it was run as a check."""
+    otherwise = sum(filled.found[place].decision is not near for place, near in filled.checked.items())
     total = len(filled.checked)
     low, high = wilson_interval(otherwise, total) if total else (None, None)
     return Inference(

@@ -1,18 +1,96 @@
-"""Records of a stability map: what is asked, its points, the bands between them."""
+"""What a stability map can vary, and its records: question, points, bands between them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
 from separatrix.cage import Verdict
 from separatrix.errors import InputError
-from separatrix.limits.map_rule import side
-from separatrix.study import Study
+from separatrix.study import Film, Study, Wear
+from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
 from separatrix.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
 
+RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
+RACE_FRICTION = "film.race_friction"
+THICKNESS = "film.thickness"  # of a film; a map may begin at 0, where the races are bare
+SHORT = {"cage.ball_cage_friction": FRICTION}  # so that one parameter has one name
+LONG = {name: key for key, name in SHORT.items()}
+_MADE = {RADIAL_CLEARANCE: "m", "film.elastic_modulus": "Pa", "film.poisson_ratio": "-"}
+"""Keys of a study file that have another name in its records, and their units."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number that a map varies: its name in a study file, and the SI unit it is written in."""
+
+    name: str  # as in a study file
+    unit: str  # in which values are written, SI
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it takes whole numbers only."""
+        return self.unit == WHOLE
+
+
+def parameters() -> dict[str, Parameter]:
+    """Every parameter a map can vary, by name."""
+    names = {RESTITUTION: "-", FRICTION: "-", KICK: "m/s"} | _MADE
+    for section, record in SECTIONS.items():
+        names |= {f"{section}.{key}": unit for key, unit in numbers_of(record).items()}
+    names |= {f"film.wear.{key}": unit for key, unit in numbers_of(Wear).items()}
+    left = {name: unit for name, unit in names.items() if name not in (*SETTINGS, *SHORT)}
+    return {name: Parameter(name, unit) for name, unit in left.items()}
+
+
+def other_keys() -> list[str]:
+    """Keys of a study that no map can vary: texts, lists, and how the ensemble is drawn."""
+    known = parameters()
+    keys = [f"{section}.{f.name}" for section, record in SECTIONS.items() for f in fields(record)]
+    return [*(key for key in keys if key not in known and key not in SHORT), "kinematics.model"]
+
+
+def varied(study: Study, values: Mapping[str, float]) -> Study:
+    """Return the study with other values of some parameters, all at once; `InputError` if it is refused.
+
+    Restitution factor and kick are not keys of a study; the map gives them to the cage and to its runs. A
+    film of zero thickness is bare races.
+    """
+    keys = {LONG.get(name, name): value for name, value in values.items() if name not in (RESTITUTION, KICK)}
+    for key in keys:
+        section = key.partition(".")[0]
+        if section == "film" and key in _MADE and study.film.material is None:
+            raise InputError("[film]", "has no material whose properties could vary")
+        if key.startswith("film.wear.") and study.film.wear is None:
+            raise InputError("[film]", "has no wear that could vary")
+        if getattr(study, section, study) is None:
+            raise InputError(f"[{section}]", "is missing")
+    if keys.get(THICKNESS) == 0.0:
+        keys = {
+            key: value for key, value in keys.items() if not key.startswith("film.") or key == RACE_FRICTION
+        }
+        study = replace(study, film=Film(race_friction=study.film.race_friction))
+    return with_values(study, keys) if keys else study
+
+
+def value_in(study: Study, name: str) -> float | None:
+    """Value of a key in the study; None where it has none, or is not one of its keys."""
+    value: object = study
+    for step in name.split("."):
+        value = getattr(value, step, None)
+    return value if isinstance(value, int | float) else None
+
+
 NOT_RUN = "not run"
+SETTLES, WHIRLS, EITHER = -1, 1, 0  # side of one half on which P(whirl) lies
+
+
+def side(low: Ratio | None, high: Ratio | None) -> int:
+    """Return the side of one half on which the interval of P(whirl) lies: SETTLES, WHIRLS, or EITHER."""
+    if low is None or high is None:
+        return EITHER
+    return WHIRLS if low > 0.5 else SETTLES if high < 0.5 else EITHER
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,52 +105,26 @@ class MapAxis:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapPoint:
-    """What the runs at one point of a map say; None where it could not be run, with the reason.
+    """Result of the runs at one point of a map; None where it could not be run, with the reason."""
 
-    Attributes
-    ----------
-    x, y : float
-        Values of the two parameters [SI].
-    decision : Verdict or None
-        By the rule of `cage.judge`, from the runs that were made.
-    probability_whirl, probability_low, probability_high : float or None
-        Share of the runs that whirl, and its 95 % Wilson interval [-].
-    runs, whirling : int
-        Runs that were made, and those among them that whirl.
-    growth_rate : float or None
-        Median over the runs [1/s].
-    largest_offset, largest_contact_force : float or None
-        Of the cage centre [m], and between a ball and its pocket [N], in any run as far as it was run.
-    drift_rate : float or None
-        Median over the runs [1/s].
-    restitution_factor : float or None
-        Eta of the chain at this point, or that of the axis [-].
-    margin : float or None
-        Distance along y to the nearest band in which the column changes from motion that settles to a
-        whirl, in the unit of y: positive where it settles, negative where it whirls, 0 in the band; None in
-        a column that does not change.
-    inferred_decision : Verdict or None
-        Decision of the points around it, where an adaptive map did not run it.
-    reason : str
-        Of the decision, or why there is none.
-    """
-
-    x: float
-    y: float
-    decision: Verdict | None = None
-    probability_whirl: Ratio | None = None
-    probability_low: Ratio | None = None
-    probability_high: Ratio | None = None
-    runs: int = 0
-    whirling: int = 0
-    growth_rate: PerSecond | None = None
-    largest_offset: Metre | None = None
-    drift_rate: PerSecond | None = None
-    largest_contact_force: Newton | None = None
-    restitution_factor: Ratio | None = None
+    x: float  # value of the parameter x, SI
+    y: float  # value of the parameter y, SI
+    decision: Verdict | None = None  # by the rule of `cage.judge`, from the runs that were made
+    probability_whirl: Ratio | None = None  # share of the runs that whirl
+    probability_low: Ratio | None = None  # lower end of its 95 % Wilson interval
+    probability_high: Ratio | None = None  # upper end of its 95 % Wilson interval
+    runs: int = 0  # that were made
+    whirling: int = 0  # runs that whirl
+    growth_rate: PerSecond | None = None  # median over the runs
+    largest_offset: Metre | None = None  # of the cage centre in any run
+    drift_rate: PerSecond | None = None  # median over the runs
+    largest_contact_force: Newton | None = None  # between a ball and its pocket in any run
+    restitution_factor: Ratio | None = None  # of the chain at this point, or of the axis
     margin: float | None = None
-    inferred_decision: Verdict | None = None
-    reason: str = NOT_RUN
+    """Distance along y to the nearest change of its column, positive where the motion settles, negative where
+    it whirls, 0 in the band; null in a column that does not change."""
+    inferred_decision: Verdict | None = None  # of the points around it, which an adaptive map did not run
+    reason: str = NOT_RUN  # of the decision, or why there is none
 
     @property
     def side(self) -> int:
@@ -92,71 +144,37 @@ class MapChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stopping:
-    """When a point is ended early, and how often that is wrong at the worst.
+    """When a point is ended early, and how often that is wrong at the worst."""
 
-    Attributes
-    ----------
-    most_runs, agreeing_runs : int
-        A point has `most_runs`, fewer if the first `agreeing_runs` all agree, or once nothing that the
-        others do could change its answer.
-    wrong_side_probability : float
-        Largest probability, over all points, that all the runs would have the other majority [-].
-    other_decision_probability : float
-        Largest probability that all the runs would give another decision: that of a point which is all but
-        decided [-].
-    """
-
-    most_runs: int
+    most_runs: int  # of a point
     agreeing_runs: int
-    wrong_side_probability: Ratio
+    """If so many first runs agree, the point is ended; else once the others cannot change its answer."""
+    wrong_side_probability: Ratio  # largest, over all points, that all the runs would have the other majority
     other_decision_probability: Ratio
+    """Largest that all the runs would decide otherwise: of a point all but decided."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inference:
-    """How often an adaptive map is wrong about a point that it did not run, counted in this map.
+    """How often an adaptive map is wrong about a point that it did not run, counted in this map."""
 
-    Attributes
-    ----------
-    points : int
-        Points that were not run, because those around them agree.
-    checked, decided_otherwise : int
-        Points evenly taken from those and run nevertheless, and how many of them have another decision.
-    error_low, error_high : float or None
-        95 % Wilson interval of the share that is decided otherwise; None if none was checked [-].
-    """
-
-    points: int
-    checked: int
-    decided_otherwise: int
-    error_low: Ratio | None
-    error_high: Ratio | None
+    points: int  # points that were not run, because those around them agree
+    checked: int  # points evenly taken from those and run nevertheless
+    decided_otherwise: int  # of these, with another decision
+    error_low: Ratio | None  # lower end of the 95 % Wilson interval of that share; null if none was checked
+    error_high: Ratio | None  # upper end of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapQuestion:
-    """What a map is asked for.
+    """The question of a map."""
 
-    Parameters
-    ----------
-    study : Study
-        With a [cage].
-    x, y : MapAxis
-        Two different parameters.
-    kick : float
-        Of every point, unless an axis is [m/s].
-    runs : int
-        Most runs of a point.
-    adaptive : bool
-        Run only the points near a change of the answer, from a coarse grid on, and a sample of the others.
-    """
-
-    study: Study
-    x: MapAxis
+    study: Study  # with a [cage]
+    x: MapAxis  # another parameter than y
     y: MapAxis
-    kick: MetrePerSecond
-    runs: int = 16
-    adaptive: bool = False
+    kick: MetrePerSecond  # of every point, unless an axis is the kick
+    runs: int = 16  # most runs of a point
+    adaptive: bool = False  # only points near a change of the answer are run, and a sample of the others
 
     def __post_init__(self) -> None:
         if self.x.parameter == self.y.parameter:
@@ -169,11 +187,7 @@ class MapQuestion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityMap:
-    """A map: its points, column after column of x, and the bands in which the answer changes.
-
-    `counts` has the number of points of each decision, of those refused, inferred, and not run;
-    `inference` is None where every point is run; `complete` is False if an interrupt left points out.
-    """
+    """A map: its points, column after column of x, and the bands in which the answer changes."""
 
     x: MapAxis  # horizontal axis
     y: MapAxis  # vertical axis

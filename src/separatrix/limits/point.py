@@ -1,32 +1,109 @@
-"""Critical friction at one restitution factor, and the band over the kicks."""
+"""Critical friction at one restitution factor, the band over the kicks, and the limits drawn beside it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import isfinite
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Annotated
 
-from separatrix.cage import PlanarCage, linear_critical_friction
+from separatrix.cage import PlanarCage, RunOutcome, linear_critical_friction, run_hard_ensemble, settings_for
 from separatrix.chain.restitution import damping_ratio
 from separatrix.chain.restitution import restitution_factor as nominal
-from separatrix.limits.growth import Count, GrowthCounter
-from separatrix.limits.response import SEARCHED_FRICTION, Crossing, Look, Response, Side
-from separatrix.study import StabilitySettings
+from separatrix.limits.response import (
+    LADDER,
+    SEARCHED_FRICTION,
+    Count,
+    Crossing,
+    GrowthCounter,
+    Look,
+    Response,
+    Side,
+    cage_at,
+    ends_of,
+)
+from separatrix.study import Guidance, StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
 
-BAND_FEW, BAND_MOST = 0.1, 0.9
-"""Shares of whirling runs at which a kick is said to settle, and to whirl."""
+CROSSINGS, ANY_KICK = 3000, 1.0
+"""Length of a run of hard impacts, in times that the kick takes to cross a pocket's clearance. There is no
+other time in it, so that any kick [m/s] gives the same."""
 
+OF_A_HARD_CAGE = (
+    *("mass", "moment_of_inertia", "ball_count", "pitch_radius", "inner_speed", "outer_speed"),
+    *("pocket_clearance", "ball_cage_stiffness", "race_damping"),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinearLimit:
+    """Critical friction without clearance in a ball set at rest, in closed form."""
+
+    restitution_factor: Ratio  # at which the limit is taken
+    critical_friction: Ratio  # above which every disturbance grows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HardLimit:
+    """Friction at which half the runs whirl in hard impacts; None if less than half whirl anywhere.
+
+    Pockets are walls at even places, the ball set is at rest, the cage has no land and does not turn, so
+    that every impact returns just the restitution factor. What it is the limit of: kicks so weak that the
+    pocket's spring gives by far less than the clearance.
+    """
+
+    restitution_factor: Ratio  # of every impact
+    critical_friction: Ratio | None  # at which half the runs whirl; null if less than half do
+
+
+def linear_limit(cage: PlanarCage, restitution_factor: Ratio) -> LinearLimit:
+    """Critical friction of the linear law, 2 zeta sqrt(2/Z), at one restitution factor."""
+    critical = linear_critical_friction(cage_at(cage, restitution_factor, 0.0))
+    return LinearLimit(restitution_factor=restitution_factor, critical_friction=critical)
+
+
+def closed_hard_limit(ball_count: int) -> Ratio | None:
+    """Friction from which dead hard impacts whirl: tan(pi/2Z) for odd Z, tan(pi/Z) for even; None below 3."""
+    if ball_count < 3:
+        return None
+    return math.tan(math.pi / (2 * ball_count if ball_count % 2 else ball_count))
+
+
+def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilitySettings) -> HardLimit | None:
+    """Critical friction in hard impacts at one restitution factor; None for a cage without clearance."""
+    if cage.pocket_clearance == 0.0:
+        return None
+    if restitution_factor >= 1.0:
+        return HardLimit(restitution_factor=restitution_factor, critical_friction=0.0)
+    settings = settings_for(settings, cage)
+    lasting = CROSSINGS * cage.pocket_clearance / ANY_KICK
+    # without land, gravity, unbalance or anything uneven
+    kept = {name: getattr(cage, name) for name in OF_A_HARD_CAGE}
+    still = PlanarCage(**kept, cage_speed=0.0, ball_cage_friction=0.0, guidance=Guidance.BALL)
+    even = replace(settings, ball_scatter=0.0, duration=lasting)
+
+    def look(friction: Ratio, first_run: int, runs: int) -> Count:
+        rubbing = cage_at(still, restitution_factor, friction)
+        found = run_hard_ensemble(
+            rubbing, even, kicks=(ANY_KICK,), runs=runs, first_run=first_run, may_turn=False,
+            restitution=restitution_factor,
+        )  # fmt: skip
+        return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
+
+    found = Response(look, settings.runs).crossing(0.5, settings.runs, LADDER[-24])
+    return HardLimit(
+        restitution_factor=restitution_factor,
+        critical_friction=found.value if isinstance(found, Crossing) else None,
+    )
+
+
+BAND_FEW, BAND_MOST = 0.1, 0.9  # shares of whirling runs at which a kick counts as settling, and as whirling
 MIDDLE_RUNS, END_RUNS, FIRST_RUNS = 1.5, 0.75, 0.25
 """Runs spent near a crossing, in parts of those of the settings: on the critical friction; on an end of the
 band, for kicks that may set it, and on a critical friction without its band; on a first look at where each
 kick's crossings are."""
 
-APART = 1.4
-"""A guess of the ratio between two crossings of one kick; it costs or saves time only."""
-
+APART = 1.4  # a guess of the ratio between two crossings of one kick; it costs or saves time only
 Found = Crossing | Side
 
 
@@ -34,43 +111,25 @@ Found = Crossing | Side
 class CriticalFriction:
     """Critical friction at one restitution factor; None where there is none, with the reason.
 
-    Attributes
-    ----------
-    restitution_factor : float
-        eta [-].
-    critical_friction : float or None
-        Friction at which half the runs whirl from the reference kick [-].
-    critical_friction_low, critical_friction_high : float or None
-        The sub-critical band: below the first nine in ten runs settle from every kick, above the second nine
-        in ten whirl from every kick [-].
-    scatter_low, scatter_high : float or None
-        95 % interval of `critical_friction` from the number of runs [-].
-    low_scatter_low, low_scatter_high, high_scatter_low, high_scatter_high : float or None
-        The same of the ends of the band [-].
-    kick_low, kick_critical_friction, kick_high : tuple
-        Frictions at which a tenth, half, nine tenths of the runs whirl, for each kick by itself; None where
-        there is none, or the band was not asked for [-].
-    side : Side or None
-        Where `critical_friction` is None: whether P(whirl) lies above one half throughout, or below.
-    reason : str or None
-        Why one of the first three is None.
+    The intervals come from the number of runs. The frictions of each kick by itself are None, too, where the
+    band was not computed.
     """
 
-    restitution_factor: Ratio
-    critical_friction: Ratio | None = None
-    critical_friction_low: Ratio | None = None
-    critical_friction_high: Ratio | None = None
-    scatter_low: Ratio | None = None
-    scatter_high: Ratio | None = None
-    low_scatter_low: Ratio | None = None
-    low_scatter_high: Ratio | None = None
-    high_scatter_low: Ratio | None = None
-    high_scatter_high: Ratio | None = None
-    kick_low: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()
-    kick_critical_friction: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()
-    kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()
-    side: Side | None = None
-    reason: str | None = None
+    restitution_factor: Ratio  # nominal, of the whole cage mass
+    critical_friction: Ratio | None = None  # at which half the runs whirl from the reference kick
+    critical_friction_low: Ratio | None = None  # below it nine in ten runs settle from every kick
+    critical_friction_high: Ratio | None = None  # above it nine in ten runs whirl from every kick
+    scatter_low: Ratio | None = None  # lower end of the 95 % interval of `critical_friction`
+    scatter_high: Ratio | None = None  # upper end of the 95 % interval of `critical_friction`
+    low_scatter_low: Ratio | None = None  # lower end of the interval of `critical_friction_low`
+    low_scatter_high: Ratio | None = None  # upper end of the interval of `critical_friction_low`
+    high_scatter_low: Ratio | None = None  # lower end of the interval of `critical_friction_high`
+    high_scatter_high: Ratio | None = None  # upper end of the interval of `critical_friction_high`
+    kick_low: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which a tenth of its runs whirl
+    kick_critical_friction: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which half do
+    kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which nine tenths do
+    side: Side | None = None  # of one half on which P(whirl) lies throughout, if `critical_friction` is None
+    reason: str | None = None  # why one of the first three frictions is None
 
 
 def critical_friction(
@@ -86,16 +145,14 @@ def critical_friction(
 
     Parameters
     ----------
-    cage : PlanarCage
-        Its friction is replaced, and its race damping unless that is asked for.
+    cage, settings
+        The friction of the cage is replaced, and its race damping unless `restitution_factor` is None.
     restitution_factor : float or None
         Nominal, of the whole cage mass [-]; None for the cage's own race damping.
-    settings : StabilitySettings
-        Kicks, runs and seed.
     counter : GrowthCounter, optional
-        To share counts with other questions about the same cage and settings.
+        Counts the runs.
     band : bool
-        Whether the other kicks and the band are wanted; without it half the runs do.
+        Whether the other kicks and the band are wanted; without it half the runs are enough.
     guess : float, optional
         A friction near the critical one, to save time; by default from the linear law.
     """
@@ -110,19 +167,19 @@ def critical_friction(
     most = max(1, round((MIDDLE_RUNS if band else END_RUNS) * settings.runs))
     found = responses[reference].crossing(0.5, most, start)
     if not band:
-        return _point(eta, settings, found, {})
+        return _point(eta, settings, found, {}, {}, {})
     start = found.value if isinstance(found, Crossing) else start
     few, more = (max(1, round(part * settings.runs)) for part in (FIRST_RUNS, END_RUNS))
     each = {kick: _crossings(responses[kick], few, start) for kick in kicks}
     middles = {kick: three[1] for kick, three in each.items()} | {reference: found}
     lows = _first_settled(responses, BAND_FEW, more, {kick: three[0] for kick, three in each.items()}, 1)
     highs = _first_settled(responses, BAND_MOST, more, {kick: three[2] for kick, three in each.items()}, -1)
-    return _point(eta, settings, found, {kick: (lows[kick], middles[kick], highs[kick]) for kick in kicks})
+    return _point(eta, settings, found, lows, middles, highs)
 
 
 def own_restitution_factor(cage: PlanarCage) -> Ratio:
     """Nominal restitution factor of a cage's own race damping."""
-    if not isfinite(cage.race_damping):
+    if not math.isfinite(cage.race_damping):
         return 1.0
     return nominal(damping_ratio(cage.ball_cage_stiffness, cage.mass, cage.race_damping))
 
@@ -157,11 +214,10 @@ def _first_settled(
     way: int,
 ) -> dict[MetrePerSecond, Found]:
     """Spend runs on the kicks whose crossing may come first, going up (`way` 1) or down (-1) in friction."""
-    settled = dict(found)
-    crossings = {kick: end for kick, end in found.items() if isinstance(end, Crossing)}
-    if len(crossings) < len(found) and (Side.ABOVE if way > 0 else Side.BELOW) in found.values():
+    settled, farthest = dict(found), math.inf
+    if _side(way) in found.values():
         return settled
-    farthest = math.inf
+    crossings = {kick: end for kick, end in found.items() if isinstance(end, Crossing)}
     for kick, end in sorted(crossings.items(), key=lambda item: way * item[1].value):
         if min(way * end.low, way * end.high) > farthest:
             continue
@@ -176,74 +232,51 @@ def _point(
     eta: Ratio,
     settings: StabilitySettings,
     found: Found,
-    each: Mapping[MetrePerSecond, tuple[Found, Found, Found]],
+    lows: Mapping[MetrePerSecond, Found],
+    middles: Mapping[MetrePerSecond, Found],
+    highs: Mapping[MetrePerSecond, Found],
 ) -> CriticalFriction:
-    """Record of the crossings, with the reasons of those that are missing."""
-    none: tuple[Ratio | None, ...] = () if each else (None,) * len(settings.kicks)
-    lows = {kick: three[0] for kick, three in each.items()}
-    highs = {kick: three[2] for kick, three in each.items()}
-    low, high = _first(lows), _last(highs)
-    middle = (found, 0.5, settings.middle_kick)
-    band = [(low[0], BAND_FEW, low[1]), (high[0], BAND_MOST, high[1])] if each else []
+    """Record of the crossings, those of the band by kick, with the reasons of those that are missing."""
+    none: tuple[Ratio | None, ...] = () if lows else (None,) * len(settings.kicks)
+    (low, low_kick), (high, high_kick) = _outermost(lows, 1), _outermost(highs, -1)
+    value, scatter_low, scatter_high = ends_of(found)
+    low_value, low_low, low_high = ends_of(low)
+    high_value, high_low, high_high = ends_of(high)
+    targets = (found, 0.5, settings.middle_kick), (low, BAND_FEW, low_kick), (high, BAND_MOST, high_kick)
+    reasons = [_REASONS[end].format(share, kick) for end, share, kick in targets if isinstance(end, Side)]
     return CriticalFriction(
         restitution_factor=eta,
-        critical_friction=_value(found),
-        critical_friction_low=_value(low[0]),
-        critical_friction_high=_value(high[0]),
-        scatter_low=_low(found),
-        scatter_high=_high(found),
-        low_scatter_low=_low(low[0]),
-        low_scatter_high=_high(low[0]),
-        high_scatter_low=_low(high[0]),
-        high_scatter_high=_high(high[0]),
-        kick_low=none or tuple(_value(three[0]) for three in each.values()),
-        kick_critical_friction=none or tuple(_value(three[1]) for three in each.values()),
-        kick_high=none or tuple(_value(three[2]) for three in each.values()),
+        critical_friction=value,
+        critical_friction_low=low_value,
+        critical_friction_high=high_value,
+        scatter_low=scatter_low,
+        scatter_high=scatter_high,
+        low_scatter_low=low_low,
+        low_scatter_high=low_high,
+        high_scatter_low=high_low,
+        high_scatter_high=high_high,
+        kick_low=none or tuple(ends_of(end)[0] for end in lows.values()),
+        kick_critical_friction=none or tuple(ends_of(middles[kick])[0] for kick in lows),
+        kick_high=none or tuple(ends_of(end)[0] for end in highs.values()),
         side=found if isinstance(found, Side) else None,
-        reason=_reason([middle, *band]),
+        reason="; ".join(dict.fromkeys(reasons)) or None,
     )
 
 
-def _first(found: Mapping[MetrePerSecond, Found]) -> tuple[Found | None, MetrePerSecond]:
-    """Smallest crossing over the kicks; ABOVE if one kick is above its target without friction."""
+def _side(way: int) -> Side:
+    """Side of a kick without a crossing that comes before all crossings, going up (1) or down in friction."""
+    return Side.ABOVE if way > 0 else Side.BELOW
+
+
+def _outermost(found: Mapping[MetrePerSecond, Found], way: int) -> tuple[Found | None, MetrePerSecond]:
+    """Crossing that comes first, going up (`way` 1) or down (-1) in friction, and its kick; or a side."""
     if not found:
         return None, 0.0
-    above = [kick for kick, end in found.items() if end is Side.ABOVE]
-    if above:
-        return Side.ABOVE, above[0]
-    crossings = [(end.value, kick) for kick, end in found.items() if isinstance(end, Crossing)]
-    kick = min(crossings)[1] if crossings else max(found)
+    if _side(way) in found.values():
+        return _side(way), next(kick for kick, end in found.items() if end is _side(way))
+    crossings = [(way * end.value, way * kick) for kick, end in found.items() if isinstance(end, Crossing)]
+    kick = way * (min(crossings)[1] if crossings else max(way * kick for kick in found))
     return found[kick], kick
-
-
-def _last(found: Mapping[MetrePerSecond, Found]) -> tuple[Found | None, MetrePerSecond]:
-    """Largest crossing over the kicks; BELOW if one kick is below its target at the top."""
-    if not found:
-        return None, 0.0
-    below = [kick for kick, end in found.items() if end is Side.BELOW]
-    if below:
-        return Side.BELOW, below[0]
-    crossings = [(end.value, kick) for kick, end in found.items() if isinstance(end, Crossing)]
-    kick = max(crossings)[1] if crossings else min(found)
-    return found[kick], kick
-
-
-def _value(found: Found | None) -> Ratio | None:
-    return found.value if isinstance(found, Crossing) else None
-
-
-def _low(found: Found | None) -> Ratio | None:
-    return found.low if isinstance(found, Crossing) else None
-
-
-def _high(found: Found | None) -> Ratio | None:
-    return found.high if isinstance(found, Crossing) else None
-
-
-def _reason(ends: Sequence[tuple[Found | None, Ratio, MetrePerSecond]]) -> str | None:
-    """Return why a crossing is missing; None if none is."""
-    reasons = [_REASONS[side].format(target, kick) for side, target, kick in ends if isinstance(side, Side)]
-    return "; ".join(dict.fromkeys(reasons)) or None
 
 
 _REASONS = {

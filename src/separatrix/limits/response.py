@@ -1,25 +1,118 @@
-"""At which friction a counted probability passes a target: a response curve fitted to few runs.
+"""Whirling runs, counted, and the friction at which their share passes a target: a response curve.
 
-Near its target P is taken as logistic in the logarithm of friction. Place and slope are not known; both are
+Near its target P is taken as logistic in the logarithm of friction. Place and slope are unknown; both are
 summed over on a grid, weighted with the probability of the counts. So the estimate has an interval from the
-first run on, and the next runs are counted where it says that the target lies.
+first run on, and the next runs are counted where the target most likely is.
 """
 
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
+from math import inf
 
 import numpy as np
 
-from separatrix.limits.growth import Count
-from separatrix.units import Array, Ratio
+from separatrix.cage import Cause, PlanarCage, RunOutcome, settings_for, wilson_interval
+from separatrix.chain.restitution import damping_for
+from separatrix.errors import ValidityWarning
+from separatrix.runner import Runner
+from separatrix.study import StabilitySettings
+from separatrix.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
 
-SEARCHED_FRICTION: Ratio = 1.0
-"""Critical friction is looked for from 0 up to here."""
+UNRESOLVED = (
+    "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
+)
 
+ALIKE: Ratio = 0.08
+"""Chance by which runs that all agree may hide a share at the target: 8 runs for one half (0.4 %), 24 for a
+tenth."""
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """Number of whirling runs among the runs made."""
+
+    whirling: int
+    runs: int
+
+    @property
+    def share(self) -> Ratio:
+        """Estimate of P(whirl)."""
+        return self.whirling / self.runs
+
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """Wilson's 95 % interval of P(whirl)."""
+        return wilson_interval(self.whirling, self.runs)
+
+    def unanimous(self, target: Ratio) -> bool:
+        """Whether all runs agree, more than would do so by chance where P is at a target."""
+        agree = self.runs > 0 and self.whirling in (0, self.runs)
+        return agree and max(target, 1.0 - target) ** self.runs < ALIKE
+
+    def __add__(self, other: Count) -> Count:
+        return Count(self.whirling + other.whirling, self.runs + other.runs)
+
+
+def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
+    """Return the same cage with the race damping of this restitution factor, and this pocket friction.
+
+    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at eta
+    = 1 their races grip them.
+    """
+    damping = race_damping_at(cage, restitution_factor)
+    law = cage.traction
+    if law is not None:
+        law = law.stiffened(damping / cage.race_damping) if damping < inf else None
+    return replace(cage, race_damping=damping, ball_cage_friction=friction, traction=law)
+
+
+def race_damping_at(cage: PlanarCage, restitution_factor: Ratio) -> NewtonSecondPerMetre:
+    """C_mu of a nominal restitution factor; infinite for 1: the races grip the balls."""
+    if restitution_factor >= 1.0:
+        return inf
+    return damping_for(restitution_factor, cage.ball_cage_stiffness, cage.mass)
+
+
+class GrowthCounter:
+    """Counts whirling runs at points (eta, f, kick).
+
+    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers).
+    """
+
+    def __init__(self, cage: PlanarCage, settings: StabilitySettings, runner: Runner | None = None) -> None:
+        self.cage, self.settings, self.runner = cage, settings_for(settings, cage), runner or Runner()
+
+    def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> PlanarCage:
+        """Return the cage with this pocket friction, and the race damping of an eta, or its own for None."""
+        if restitution_factor is None:
+            return replace(self.cage, ball_cage_friction=friction)
+        return cage_at(self.cage, restitution_factor, friction)
+
+    def count(
+        self,
+        restitution_factor: Ratio | None,
+        friction: Ratio,
+        kick: MetrePerSecond,
+        *,
+        first_run: int,
+        runs: int,
+    ) -> Count:
+        """Count the whirling runs among those numbered from `first_run`."""
+        cage = self.cage_at(restitution_factor, friction)
+        found = self.runner.ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
+        unresolved = found.outcome == RunOutcome.UNRESOLVED
+        open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
+        if open_ends:  # a motion that still falls does not whirl
+            note = UNRESOLVED.format(open_ends, runs, kick, friction)
+            warnings.warn(note, ValidityWarning, stacklevel=2)
+        return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
+
+
+SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
 _STEPS_A_DECADE = 24  # neighbours differ by 10 %, well inside the band
 LADDER: tuple[Ratio, ...] = (
     0.0,
@@ -29,22 +122,17 @@ LADDER: tuple[Ratio, ...] = (
 
 LAST = len(LADDER) - 1
 STEP = math.log(10.0) / _STEPS_A_DECADE
-BATCH = 8
-"""Runs counted at a time, or a twelfth of all if that is more."""
-
+BATCH = 8  # runs counted at a time, or a twelfth of all if that is more
 TURNS = 40
 """Counts for one crossing at most, where a dozen do: a centre may move away from what was counted before."""
 
-NEAR = 4.0
-"""Steps of the ladder on either side in which P is taken as logistic: a factor of 1.5."""
-
+NEAR = 4.0  # steps of the ladder on either side in which P is taken as logistic: a factor of 1.5
 SLOPES: Array = np.geomspace(3.0, 100.0, 13)
 """Slopes of logit P in ln f that are thought possible, equally likely each; measured ones lie between."""
 
 PLACES: Array = np.linspace(-1.3 * NEAR, 1.3 * NEAR, 81) * STEP
 EITHER_SIDE = (0.1, 0.9)
 ENDS_95 = (0.025, 0.975)
-
 Look = Callable[[Ratio, int, int], Count]
 """Whirling runs at a friction: number of the first run, and how many."""
 
@@ -65,15 +153,15 @@ class Crossing:
     high: Ratio
 
 
+def ends_of(found: Crossing | Side | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, None, None]:
+    """Value and interval of a crossing; None where there is none."""
+    return (found.value, found.low, found.high) if isinstance(found, Crossing) else (None, None, None)
+
+
 class Response:
     """Counts on the ladder for one restitution factor and kick; no run is counted twice.
 
-    Parameters
-    ----------
-    look : callable
-        Counts runs.
-    runs : int
-        Runs of the settings: the scale of what a side of the ladder may cost.
+    `look` counts runs; `runs` of the settings limit those at an end of the ladder.
     """
 
     def __init__(self, look: Look, runs: int) -> None:
@@ -88,7 +176,7 @@ class Response:
         return self.counts[cell]
 
     def first(self, cell: int) -> Count:
-        """Return what is known at a place, after a first look."""
+        """Return the count at a place, after a first look."""
         return self.counts.get(cell) or self.add(cell, min(BATCH, self._runs))
 
     def reaches(self, cell: int, target: Ratio) -> bool:
@@ -104,17 +192,9 @@ class Response:
     def crossing(self, target: Ratio, runs: int, guess: Ratio) -> Crossing | Side:
         """Friction at which P passes the target, or the side on which P lies all along.
 
-        Both ends of the ladder are looked at first, since P need not rise. Where P wavers through the target
-        more than once, one of the crossings is found.
-
-        Parameters
-        ----------
-        target : float
-            The probability looked for [-].
-        runs : int
-            Runs to be spent near the crossing.
-        guess : float
-            A friction near it; it changes the time, and the result only within its interval.
+        Both ends of the ladder are counted first, since P need not rise. Where P wavers through the target
+        more than once, one of the crossings is found. `runs` are spent near it. `guess`, a friction near it,
+        changes the time, and the result only within its interval.
         """
         if self.reaches(0, target):
             return Side.ABOVE
@@ -135,7 +215,7 @@ class Response:
         else:
             while high < LAST and self.first(high).share < target:
                 low, high, step = high, min(LAST, high + step), 2 * step
-        while high - low > (NEAR if low > 0 else 1):  # what is further off tells nothing of the middle
+        while high - low > (NEAR if low > 0 else 1):  # what is farther off does not show the middle
             middle = (low + high) // 2
             low, high = (low, middle) if self.first(middle).share >= target else (middle, high)
         return low, high
@@ -166,7 +246,7 @@ class Response:
         }
 
     def _jump(self, centre: float, target: Ratio) -> Crossing | None:
-        """Return the whole cell if P jumps inside it from none to all: nothing more is known of it."""
+        """Return the whole cell if P jumps inside it from none to all."""
         high = next((i for i in range(1, LAST) if math.log(LADDER[i]) > centre), LAST)
         below, above = (self.counts.get(i, Count(0, 0)) for i in (high - 1, high))
         agree = below.unanimous(target) and above.unanimous(target)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from separatrix.present.arrays import dataset, load, save, to_dataframe, to_xarray
-    from separatrix.present.json import NotFiniteError, document, plain
+    from separatrix.present.nodes import NotFiniteError, document, plain
     from separatrix.present.text.answer import in_words, whereabouts
 
 _HOME = {
-    "json": "NotFiniteError document plain",
+    "nodes": "NotFiniteError document plain",
     "arrays": "dataset load save to_dataframe to_xarray",
     "text.answer": "in_words whereabouts",
 }

@@ -11,13 +11,12 @@ import math
 import struct
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
 
 from separatrix.errors import InputError
-from separatrix.regular_file import size_of
+from separatrix.input_files import size_of
 from separatrix.units import printable
 
 MOST_BYTES = 512 * 1024**2
@@ -42,7 +41,7 @@ _SAVE_AGAIN = "Only files that separatrix wrote are read; compute this one again
 
 
 def check_container(path: Path) -> None:
-    """Refuse a file of results that is no plain one.
+    """Refuse a file of results that is not a plain one.
 
     It is not HDF5, is larger than `MOST_BYTES`, has links, groups, external, virtual or compressed data, data
     of a type that no result has, or more data than bytes.
@@ -86,11 +85,11 @@ def damaged(where: str, error: Exception) -> InputError:
     return InputError(where, "is not a readable netCDF result", cure=printable(str(error), 200))
 
 
-def _check(file: Any, path: Path, size: int) -> None:
+def _check(file: h5py.File, path: Path, size: int) -> None:
     where = str(path)
     left = size - sum(_attribute_sizes(file, where))
     if len(file) > MOST_VARIABLES:
-        raise _refusal(where, f"holds more than {MOST_VARIABLES} variables", str(len(file)))
+        raise _refusal(where, f"has more than {MOST_VARIABLES} variables", str(len(file)))
     for name in file:
         at = f'{where}, variable "{printable(name)}"'
         variable = _variable(file, name, at)
@@ -106,7 +105,7 @@ def _refusal(where: str, rule: str, value: str = "") -> InputError:
     return InputError(where, rule, value, _SAVE_AGAIN)
 
 
-def _variable(file: Any, name: str, at: str) -> Any:
+def _variable(file: h5py.File, name: str, at: str) -> h5py.Dataset:
     """One variable of a file: a plain array, in the file itself."""
     if not isinstance(file.get(name, getlink=True), h5py.HardLink):
         raise _refusal(at, "is a link")
@@ -122,14 +121,14 @@ def _variable(file: Any, name: str, at: str) -> Any:
     return found
 
 
-def _is_plain(dtype: np.dtype[Any]) -> bool:
+def _is_plain(dtype: np.dtype[np.generic]) -> bool:
     is_text = h5py.check_string_dtype(dtype) is not None
     is_number = dtype.kind in "iuf" and h5py.check_enum_dtype(dtype) is None and dtype.shape == ()
     return is_text or is_number
 
 
-def _attribute_sizes(owner: Any, where: str) -> Iterator[int]:
-    """Bytes of each attribute of a file or a variable; those that are no number or text are refused."""
+def _attribute_sizes(owner: h5py.File | h5py.Dataset, where: str) -> Iterator[int]:
+    """Bytes of each attribute of a file or a variable; others than numbers and texts are refused."""
     if len(owner.attrs) > MOST_ATTRIBUTES:
         raise _refusal(where, f"has more than {MOST_ATTRIBUTES} attributes", str(len(owner.attrs)))
     for name in owner.attrs:
@@ -144,8 +143,8 @@ def _attribute_sizes(owner: Any, where: str) -> Iterator[int]:
             yield len(str(owner.attrs[name]))
 
 
-def _text_bytes(variable: Any, path: Path, at: str) -> int:
-    """Length of all texts of a variable, as their entries say: they may share one long text, or lie.
+def _text_bytes(variable: h5py.Dataset, path: Path, at: str) -> int:
+    """Length of all texts of a variable, as their entries state: they may share one long text, or be wrong.
 
     HDF5 file format specification, version 3.0, IV.B: an entry is the length, then where the text is.
     """

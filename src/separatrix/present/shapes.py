@@ -33,9 +33,9 @@ from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import NotDrawn, UncertainMaterial
 from separatrix.explore.sweep import Sweep
-from separatrix.present.walk import Group, Leaf, Node, Table, absent, fields_of
-from separatrix.present.walk import shape as shape
-from separatrix.ranking import NotFinished, NotMeasured, Ranked
+from separatrix.present.nodes import Group, Leaf, Node, Table, absent, fields_of
+from separatrix.present.nodes import shape as shape
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
 from separatrix.units import Rows
 
 Key = TypeVar("Key")

@@ -1,21 +1,23 @@
-"""Answer of the verb `tribometer` as plain data, and each test as labelled arrays for its page of plots."""
+"""Answer of `tribometer` as plain data and text, and each test as labelled arrays for its page of plots."""
 
 from __future__ import annotations
 
 import json
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from separatrix.friction.fit import FrictionFit
+from separatrix.friction.law import in_words as range_words
 from separatrix.friction.logs import described
 from separatrix.friction.logs.log import MEANINGS
-from separatrix.friction.reduction import Reduction, steady
+from separatrix.friction.reduction import Reduction, TestFriction, steady
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.present.arrays import variable
-from separatrix.present.json import plain
-from separatrix.present.walk import Leaf
+from separatrix.present.nodes import Document, Leaf, plain
+from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
 from separatrix.units import Array
 
 Node = dict[str, Leaf]
@@ -35,16 +37,8 @@ NUMBERS = (
 FACTS = ("run_in_method", "rows", "steady_rows", "cycles", "degrees_of_freedom")
 
 
-def tribometer(found: ReducedLogs, *, written: str | None) -> dict[str, Any]:
-    """Return the answer as plain data: SI units, None where something is absent.
-
-    Parameters
-    ----------
-    found : ReducedLogs
-        From `separatrix.friction.tribometer.tribometer`.
-    written : str or None
-        Path of the friction file, if one is written.
-    """
+def document(found: ReducedLogs, *, written: str | None) -> Document:
+    """Return the answer as plain data: SI units, None for absent values; `written` is the friction file."""
     from separatrix import __version__
 
     fit = found.fit
@@ -89,13 +83,7 @@ def tribometer(found: ReducedLogs, *, written: str | None) -> dict[str, Any]:
 
 
 def page_data(reduction: Reduction) -> xr.Dataset:
-    """Return what the page of plots of one test is drawn from; small, whatever the length of the log.
-
-    Parameters
-    ----------
-    reduction : Reduction
-        From `separatrix.friction.reduction`.
-    """
+    """Return the data of the page of plots of one test; small, whatever the length of the log."""
     test, unit = reduction.test, MEANINGS[reduction.test.run_in_axis]
     rate = "-" if unit == "-" else "Hz" if unit == "s" else f"1/{unit}"
     node = {name: Leaf(getattr(test, name), "-") for name in NUMBERS}
@@ -188,9 +176,105 @@ def autocorrelation(values: Array) -> tuple[Array, Array]:
 
 
 def _means(values: Array, starts: NDArray[np.int64]) -> Array:
-    """Return the mean of each column that begins at these rows; absent where none of its values is there."""
+    """Return the mean of each column that begins at these rows; NaN where all its values are absent."""
     there = np.isfinite(values)
     counts = np.add.reduceat(there.astype(float), starts)
     sums = np.add.reduceat(np.where(there, values, 0.0), starts)
     means = np.divide(sums, counts, out=np.full(sums.size, np.nan), where=counts > 0)
     return np.asarray(means, dtype=float)
+
+
+HEADERS = (
+    *("test", "material", "medium, counterface", "slip\nspeed", "mean\npressure", "friction\n(95 %)"),
+    *("running-in\nends", "flags"),
+)
+FIT_HEADERS = (
+    *("material", "environment", "tests", "friction", "standard\nerror", "scatter of\na sample", "rests on"),
+)
+LEGEND = "friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
+FIT_LEGEND = (
+    "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
+    "standard deviation of a new sample about it."
+)
+WORDS = {"slip_speed": "slip speed", "pressure": "pressure", "pressure_velocity": "pV"}
+UNITS = {"slip_speed": "m/s", "pressure": "Pa"}
+
+
+def in_words(found: ReducedLogs, *, written: str | None, plots: str | None) -> str:
+    """Return the answer as text; `written` is the friction file, `plots` the folder of the pages."""
+    tests, count = found.tests, len(found.tests)
+    flags = list(dict.fromkeys(flag for test in tests for flag in test.flags))
+    meant = [paragraph(flag, first=f"  {i}: ", indent="     ") for i, flag in enumerate(flags, 1)]
+    rows = [_row(test, flags) for test in tests]
+    read = ("\n".join(described(log)) + "\n" for log in found.logs)
+    shown = [table(HEADERS, rows, left=3), *(["", *meant] if meant else []), "\n" + paragraph(LEGEND)]
+    lines = [paragraph(note) for note in found.notes]
+    lines += [f"{written} is written; a study reads it with [ranking] friction."] if written else []
+    lines += [f"A page of plots for each test is in {plots}/"] if plots else []
+    lines += [] if written else ["Nothing written; use --out friction.toml"]
+    several = "s"[: count != 1]
+    blocks = [
+        heading(f"Read {count} test{several} from {count} log{several}"),
+        section("What was read", *read),
+        section("Tests", *shown),
+        *([] if found.fit is None or not found.fit.groups else [_fits(found.fit)]),
+        "\n".join(lines),
+    ]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _row(test: TestFriction, flags: list[str]) -> list[str]:
+    known, (low, high), end = test.conditions, test.interval, f"{test.run_in_end:.4g} cycles"
+    if test.run_in_axis != "cycles":
+        end = quantity(test.run_in_end, MEANINGS[test.run_in_axis], 3)
+    return [
+        test.source,
+        known.material or ABSENT,
+        f"{known.medium or ABSENT}, {known.counterface or ABSENT}",
+        quantity(known.slip_speed, "m/s"),
+        quantity(known.pressure, "Pa"),
+        f"{test.friction:.4f} ({low:.4f} to {high:.4f})",
+        end,
+        ", ".join(str(flags.index(flag) + 1) for flag in test.flags) or ABSENT,
+    ]
+
+
+def _fits(fit: FrictionFit) -> str:
+    rows, notes = [], [*_slopes(fit), _components(fit)]
+    for (material, environment), one in fit.groups.items():
+        at = one.at()
+        errors = at.standard_error, at.standard_deviation or 0.0
+        shares = [f"{100.0 * error / at.mean:.1f} %" for error in errors]
+        cells = [material, environment, str(len(one.tests)), f"{at.mean:.4f}", *shares, one.scatter_source]
+        rows.append(cells)
+        notes += [f"{material}, {environment}: {note}." for note in one.covariates.notes]
+    lines = ["", *(paragraph(line, first="  ", indent="      ") for line in notes)]
+    legend = "\n" + paragraph(FIT_LEGEND)
+    return section("Friction of the materials", table(FIT_HEADERS, rows, left=2), legend, *lines)
+
+
+def _slopes(fit: FrictionFit) -> Iterator[str]:
+    for (material, environment), one in fit.groups.items():
+        for name, slope in one.slopes.items():
+            limits = one.ranges[name]
+            span = f" from {range_words(limits, UNITS[name])}" if name in UNITS and limits else ""
+            yield (
+                f"{material}, {environment}: friction goes as {WORDS[name]} to the power "
+                f"{slope.value:.3f} ({slope.low:.3f} to {slope.high:.3f}){span}."
+            )
+
+
+def _components(fit: FrictionFit) -> str:
+    """Return scatter between samples and between tests, where anything was repeated."""
+    found = fit.components()
+    if found is None:
+        share = 100.0 * fit.default_scatter
+        return f"No test was repeated: each is assumed to scatter by {share:.3g} % of its mean, a guess."
+    between = f"{100.0 * found.between_samples:.1f} %"
+    if found.between_tests is None:
+        return f"Scatter of samples over all materials, by restricted maximum likelihood: {between}."
+    tests = f"{100.0 * found.between_tests:.1f} %"
+    return (
+        f"Scatter over all materials, by restricted maximum likelihood: between samples {between}, between "
+        f"tests of one sample {tests}."
+    )

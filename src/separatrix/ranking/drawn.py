@@ -23,48 +23,24 @@ from separatrix.study import Friction, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import Array, MetrePerSecond, Ratio
 
-# Gives another cage for the one of a bearing, by its place.
-Change = Callable[[int, PlanarCage], PlanarCage]
-
-# Solution of each candidate, by its name.
-Solutions = Mapping[str, Solution]
+Change = Callable[[int, PlanarCage], PlanarCage]  # from the cage of a bearing, by its place, to another
+Solutions = Mapping[str, Solution]  # by the name of the candidate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnBearings:
-    """A bearing with its cages for each run.
+    """A bearing with its cages for each run."""
 
-    Attributes
-    ----------
-    study : Study
-        As it is stated.
-    stated : mapping
-        Friction of each measured case that is drawn: from tests as the central pocket sees it.
-    inputs : tuple of UncertainInput
-        What is drawn.
-    scores : ndarray
-        Draws as standard normal numbers of the same probability, shape (run, input) [-].
-    central : mapping
-        Chain of each candidate with every input at its central value.
-    runs : tuple of int
-        Numbers of the runs whose draw makes a bearing.
-    solved : tuple
-        Chains of each of them.
-    friction : mapping
-        Pocket friction of each case, shape (run,) [-].
-    failures : tuple of str
-        Why the other draws make no bearing, one reason each.
-    """
-
-    study: Study
+    study: Study  # as it is stated
     stated: Mapping[Case, Friction]
-    inputs: tuple[UncertainInput, ...]
-    scores: Array
-    central: Solutions
-    runs: tuple[int, ...]
-    solved: tuple[Solutions, ...]
-    friction: Mapping[Case, Array]
-    failures: tuple[str, ...]
+    """Friction of each measured case that is drawn: from tests as the central pocket sees it."""
+    inputs: tuple[UncertainInput, ...]  # what is drawn
+    scores: Array  # draws as standard normal numbers of the same probability, shape (run, input) [-]
+    central: Solutions  # chain of each candidate with every input at its central value
+    runs: tuple[int, ...]  # numbers of the runs whose draw makes a bearing
+    solved: tuple[Solutions, ...]  # chains of each of them
+    friction: Mapping[Case, Array]  # pocket friction of each case, shape (run,) [-]
+    failures: tuple[str, ...]  # why the other draws make no bearing, one reason each
 
     def judge(self, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner) -> Judgement:
         """Judge all the runs of a case, offsets by the central cage: see `ensemble`."""
@@ -87,25 +63,9 @@ class DrawnBearings:
         runner: Runner,
         change: Change | None = None,
     ) -> Ensemble:
-        """Run some of the bearings of a case once from each kick.
+        """Run the bearings at these places once from each kick [m/s], perhaps each with a changed cage.
 
-        Parameters
-        ----------
-        case : Case
-            Whose.
-        kicks : sequence of float
-            From each of them [m/s].
-        places : iterable of int
-            Which bearings.
-        runner : Runner
-            Runs them.
-        change : callable, optional
-            Gives another cage for the one of a place.
-
-        Raises
-        ------
-        Interrupted
-            The work was interrupted before the last run.
+        `Interrupted` if the work was interrupted before the last run.
         """
         parts = []
         for place in places:
@@ -119,17 +79,10 @@ class DrawnBearings:
 
 
 def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
-    """Draw a bearing for each run.
+    """Draw a bearing of a study with candidates for each run.
 
-    Frictions that the study gives no distribution for scatter as their tests do: drawn is that of a new cage.
-    A friction from tests follows the slip speed and the pressure in the pocket of its own draw.
-
-    Parameters
-    ----------
-    study : Study
-        With candidates.
-    runs : int
-        How many.
+    Frictions without a distribution in the study scatter as their tests do: drawn is that of a new cage. A
+    friction from tests follows the slip speed and the pressure in the pocket of its own draw.
 
     Raises
     ------

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,24 +17,39 @@ from separatrix.cage_choice import (
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case
-from separatrix.limits import (
-    CriticalFriction,
-    GrowthCounter,
+from separatrix.limits.curve import (
+    OWN_DAMPING,
+    Node,
     RestitutionThreshold,
     StabilityCurve,
     Tracer,
     curve_of_points,
+    height,
     restitution_threshold,
+    rising,
     threshold_factors,
 )
-from separatrix.limits.curve import OWN_DAMPING, Node, height
-from separatrix.limits.threshold import rising
+from separatrix.limits.point import CriticalFriction
+from separatrix.limits.response import GrowthCounter
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
-from separatrix.ranking.lowest import MeanFriction, lowest_among, measured, overall
-from separatrix.ranking.order import margin_interval, ranks, same_rank
-from separatrix.ranking.plausible import Moved, beyond_motion, transmitted_force, within_a_turn
-from separatrix.ranking.reason import NOT_FINISHED, PAPER_STATEMENT, not_finite, not_measured, reason
+from separatrix.ranking.reason import (
+    NOT_FINISHED,
+    PAPER_STATEMENT,
+    Moved,
+    Pocket,
+    Second,
+    beyond_motion,
+    is_beyond,
+    not_finite,
+    not_measured,
+    pocket_of,
+    reason,
+    second_verdict,
+    transmitted_force,
+    within_a_turn,
+)
 from separatrix.ranking.records import (
+    MeanFriction,
     NotFinished,
     NotMeasured,
     OwnCurve,
@@ -43,23 +57,25 @@ from separatrix.ranking.records import (
     RankedEnvironment,
     Ranking,
     Row,
+    lowest_among,
+    margin_interval,
+    measured,
+    overall,
+    ranks,
+    same_rank,
 )
-from separatrix.ranking.second import Pocket, Second, is_beyond, pocket_of, second_verdict
 from separatrix.runner import Runner
 from separatrix.study import RankingQuestion, StabilitySettings, Study
 from separatrix.units import Ratio
 
-Key = tuple[Pocket, Ratio]
-"""A pocket, and a friction: what a verdict is about."""
-
-
+Key = tuple[Pocket, Ratio]  # a pocket, and a friction: what a verdict is about
 Piece = tuple[Pocket, Ratio | Node] | Case | Second
 """A verdict, or with the pocket a node of its curve; of drawn bearings; a second verdict."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Question:
-    """Solutions by pocket, and the frictions of the candidates with them."""
+    """Solutions by pocket, and what is to be computed with them."""
 
     settings: StabilitySettings
     cages: Mapping[Pocket, Solution]
@@ -67,7 +83,8 @@ class _Question:
     pockets: Mapping[str, Pocket]
     reference: Pocket
     drawn: DrawnBearings | None
-    own: frozenset[Key]
+    keys: Sequence[Key]  # of all verdicts
+    own: frozenset[Key]  # of those in the bearing's own environment
     runner: Runner
 
 
@@ -85,19 +102,12 @@ class _Findings:
 
 
 def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
-    """Rank the candidate cage materials of a study.
+    """Rank the candidate cage materials of a study, in each environment and overall.
 
-    Parameters
-    ----------
-    study : Study
-        With [cage] and [ranking].
-    runner : Runner, optional
-        How the runs are made; the numbers do not depend on it.
-
-    Returns
-    -------
-    Ranking
-        For each environment and overall.
+    Ranked by margin: where all candidates have one restitution factor, that is the order of thresholds, as
+    in the paper (its section 5, Figs 9-12). The verdict is the ensemble's at the chain's own restitution
+    factor (docs/theory/ranking.md). Only there the critical friction has its band over the kicks. The numbers
+    do not depend on the runner.
 
     Raises
     ------
@@ -105,32 +115,23 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
         The study has no candidates, or its environment or a candidate's pocket stiffness is not known.
     Interrupted
         With a ranking in which what was not finished is None, with that reason.
-
-    Notes
-    -----
-    Ranked by margin: where all candidates have one restitution factor, that is the order of thresholds, as
-    in the paper (its section 5, Figs 9-12). The verdict is the ensemble's at the chain's own restitution
-    factor (docs/theory/ranking.md). Only there the critical friction has its band over the kicks.
     """
     asked = ranking_question(study)
     environment = required_environment(study, asked)
-    question = _question(study, asked, runner or Runner())
-    seen = {c.name: solve(study, c).frictions for c in asked.candidates}
+    solved = {one.name: solve(study, one) for one in asked.candidates}
     frictions = {
-        place: {name: measured(f) if (f := own.get(place)) else None for name, own in seen.items()}
+        place: {
+            name: measured(f) if (f := one.frictions.get(place)) else None for name, one in solved.items()
+        }
         for place in asked.environments
     }
-    means = {name: overall(own.get(e) for e in asked.environments) for name, own in seen.items()}
-    tables = (*frictions.values(), means)
-    keys = sorted(
-        {(question.pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
-    )
-    here = {(question.pockets[n], f.mean) for n, f in frictions[environment].items() if f is not None}
-    question = replace(question, tracers=_tracers(question, study.stability, keys), own=frozenset(here))
+    means = {name: overall(map(one.frictions.get, asked.environments)) for name, one in solved.items()}
+    question = _question(study, asked, solved, [frictions[environment], *frictions.values(), means], runner)
 
     def ranking(found: _Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
         reference = question.cages[question.reference]
+        own_eta, own_curves = _own_curves(question, found)
         return Ranking(
             environment=environment,
             candidate=reference_candidate(study, asked).name,
@@ -144,7 +145,8 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
             overall=_ranked(question, found, means, ""),
             stability=_curve(question, found),
-            **_own_curves(question, found),
+            own_eta=own_eta,
+            own_curves=own_curves,
             kicks=question.settings.kicks,
             runs=question.settings.runs,
             duration=question.settings.duration,
@@ -155,68 +157,77 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             complete=found.complete,
         )
 
-    return _compute(question, keys, ranking)
+    return _compute(question, ranking)
 
 
 def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
     other = other_than_candidates(study, asked) if len(question.cages) > 1 else ""
-    failures = question.drawn.failures if question.drawn else ()
-    left_out = f"{len(failures)} of {study.stability.runs} draws of the uncertain inputs make no bearing: "
-    said = [*([other] if other else []), *([left_out + failures[0]] if failures else [])]
+    notes = [other] if other else []
+    if question.drawn and (failures := question.drawn.failures):
+        share = f"{len(failures)} of {study.stability.runs}"
+        notes.append(f"{share} draws of the uncertain inputs make no bearing: {failures[0]}")
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
     reference = question.cages[question.reference]
-    return (*said, *within_a_turn(reference), *beyond_motion(reference, moved))
+    return (*notes, *within_a_turn(reference), *beyond_motion(reference, moved))
 
 
-def _question(study: Study, asked: RankingQuestion, runner: Runner) -> _Question:
-    solved = {c.name: solve(study, c) for c in asked.candidates}
-    cages = {pocket_of(one): one for one in solved.values()}
-    reference = pocket_of(solved[reference_candidate(study, asked).name])
+def _question(
+    study: Study,
+    asked: RankingQuestion,
+    solved: Mapping[str, Solution],
+    tables: Sequence[Mapping[str, MeanFriction | None]],
+    runner: Runner | None,
+) -> _Question:
+    """What a ranking computes for tables of mean frictions, the first that of the bearing's own environment.
+
+    The curve of the reference pocket is shown; of the others only the thresholds count.
+    """
+    pockets = {name: pocket_of(one) for name, one in solved.items()}
+    cages = {pockets[name]: one for name, one in solved.items()}
+    reference = pockets[reference_candidate(study, asked).name]
+    each = [{(pockets[n], f.mean) for n, f in table.items() if f is not None} for table in tables]
+    keys, runner = sorted(set[Key]().union(*each)), runner or Runner()
+    tracers = {
+        pocket: Tracer(
+            GrowthCounter(one.cage_with(0.0), study.stability, runner),
+            threshold_factors(study.stability),
+            band=False,
+            frictions=None if pocket == reference else [f for other, f in keys if other == pocket],
+        )
+        for pocket, one in cages.items()
+    }
     return _Question(
         settings=cages[reference].stability,
         cages=cages,
-        tracers={},
-        pockets={name: pocket_of(one) for name, one in solved.items()},
+        tracers=tracers,
+        pockets=pockets,
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
-        own=frozenset(),
+        keys=keys,
+        own=frozenset(each[0]),
         runner=runner,
     )
-
-
-def _tracers(question: _Question, settings: StabilitySettings, keys: Sequence[Key]) -> dict[Pocket, Tracer]:
-    """For each pocket: the reference's curve is shown, of the others the thresholds count."""
-    factors = threshold_factors(settings)
-    return {
-        k: Tracer(
-            GrowthCounter(one.cage_with(0.0), settings, question.runner),
-            factors,
-            band=False,
-            frictions=None if k == question.reference else [f for pocket, f in keys if pocket == k],
-        )
-        for k, one in question.cages.items()
-    }
 
 
 def _eta(question: _Question, pocket: Pocket) -> Ratio:
     return question.cages[pocket].restitution.restitution_factor
 
 
-def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findings], Ranking]) -> Ranking:
+def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ranking:
     """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
-    verdicts: list[Piece] = list(keys)  # first, so that an interrupt leaves some
-    cases: list[Case] = list(question.drawn.friction) if question.drawn else []
+    keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
     nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
 
     def ranked(results: Mapping[Piece, CriticalFriction | Judgement]) -> Ranking:
         points = {k: _points_of(results, k) for k in question.cages}
         here = points[question.reference].pop((OWN_DAMPING, None), None)
-        judged = {key: found for key in keys if isinstance(found := results.get(key), Judgement)}
-        drawn = {case: found for case in cases if isinstance(found := results.get(case), Judgement)}
+        verdicts = {piece: found for piece, found in results.items() if isinstance(found, Judgement)}
+        judged = {key: verdicts[key] for key in keys if key in verdicts}
+        drawn = {case: verdicts[case] for case in cases if case in verdicts}
         wanted = [key for key, found in judged.items() if _wants_second(question, key, found)]
-        seconds = {key: found for key in wanted if isinstance(found := results.get(Second(*key)), Judgement)}
+        seconds = {key: verdicts[Second(*key)] for key in wanted if Second(*key) in verdicts}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
         every = (len(judged), len(drawn), len(seconds)) == (len(keys), len(cases), len(wanted))
         return ranking(
@@ -233,7 +244,8 @@ def _compute(question: _Question, keys: Sequence[Key], ranking: Callable[[_Findi
 
     return question.runner.work_out(
         lambda piece: _computed(question, piece),
-        [*verdicts, *cases, (question.reference, (OWN_DAMPING, None)), *nodes],
+        # verdicts come first, so that an interrupt leaves some
+        [*keys, *cases, (question.reference, (OWN_DAMPING, None)), *nodes],
         into=ranked,
         more=lambda piece, results: _more(question, piece, results),
     )
@@ -294,20 +306,15 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     if not points:
         return None
     cage, complete = question.cages[question.reference].cage_with(0.0), found.traced[question.reference]
-    return curve_of_points(
-        cage,
-        question.settings,
-        points,
-        band=False,
-        here=found.here,
-        complete=complete,
-    )
+    return curve_of_points(cage, question.settings, points, band=False, here=found.here, complete=complete)
 
 
-def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
+def _own_curves(
+    question: _Question, found: _Findings
+) -> tuple[tuple[Ratio, ...], tuple[OwnCurve, ...]] | tuple[None, None]:
     """Return each candidate's own curve at the nodes of all; None where all share one, or one is missing."""
     if len(question.cages) < 2 or not all(found.traced.values()):
-        return {"own_eta": None, "own_curves": None}
+        return None, None
     nodes = {
         pocket: ([point.restitution_factor for point in points], [height(point) for point in points])
         for pocket, points in found.points.items()
@@ -317,7 +324,7 @@ def _own_curves(question: _Question, found: _Findings) -> dict[str, Any]:
         OwnCurve(name=name, own_critical_friction=tuple(np.interp(grid, *nodes[pocket]).tolist()))
         for name, pocket in question.pockets.items()
     )
-    return {"own_eta": tuple(grid), "own_curves": tuple(curves)}
+    return tuple(grid), tuple(curves)
 
 
 def _ranked(
@@ -325,7 +332,7 @@ def _ranked(
 ) -> tuple[Row, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
     known = {name: friction for name, friction in table.items() if friction is not None}
-    chances = lowest_among(known).probabilities
+    chances = lowest_among(known)
     rows = [_row(question, found, Case(n, environment), f, chances.get(n)) for n, f in known.items()]
     judged = [row for row in rows if isinstance(row, Ranked)]
     places = ranks(
@@ -365,15 +372,13 @@ def _row(
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
-    drawn = found.drawn.get(case)
     second = found.seconds.get((pocket, friction.mean))
+    row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case), other_ball=second)
     threshold = _threshold(found, pocket, friction)
     if threshold is None:
-        unfinished = f"{judgement.reason} Its threshold: {NOT_FINISHED}."
-        return replace(row, judgement=judgement, over_inputs=drawn, other_ball=second, reason=unfinished)
-    measured = {f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"}
+        return replace(row, reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.")
     return Ranked(
-        **measured | {"judgement": judgement, "over_inputs": drawn, "other_ball": second},
+        **{f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"},
         reason=reason(threshold, judgement),
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,

@@ -1,14 +1,159 @@
-"""The sentence of reason beside each verdict."""
+"""Sentences beside the verdicts: what decides them, and where the motion leaves the range of its model.
+
+Where the models of a ball may differ, a second verdict is computed by the other one.
+"""
 
 from __future__ import annotations
 
-from dataclasses import fields
-from math import isfinite
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
-from separatrix.cage import Judgement, Verdict
-from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.limits import RestitutionThreshold
-from separatrix.units import Ratio
+from separatrix.cage import Judgement, KickCount, PlanarCage, Verdict, judge
+from separatrix.chain.pocket import contact_radius
+from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
+from separatrix.chain.solution import Solution, solve
+from separatrix.limits.curve import RestitutionThreshold
+from separatrix.runner import PART, Runner
+from separatrix.study import (
+    BallBearing,
+    BallModel,
+    Material,
+    MotionModel,
+    PocketShape,
+    StabilitySettings,
+    Study,
+)
+from separatrix.units import Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
+
+STRONG: Ratio = 5.0
+"""Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
+
+BEYOND_LAND: Ratio = 1.2
+"""Offset over the land clearance beyond which the land's spring is the question, not the cage."""
+
+
+YIELDS: Ratio = 1.6
+"""Largest pressure of a ball on a flat over the strength in simple compression, at which the flat begins to
+yield (Johnson, Contact Mechanics, 1985, section 6.1)."""
+
+
+class Moved(NamedTuple):
+    """Whose cage moved, the largest pocket force and offset in any run, and where the runs ended."""
+
+    name: str
+    largest_contact_force: Newton
+    largest_offset: Metre
+    by_kick: tuple[KickCount, ...] = ()
+
+
+def transmitted_force(solution: Solution) -> Newton:
+    """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
+    contacts = solution.bearing
+    return solution.study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
+
+
+def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
+    """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
+    if not rows:
+        return
+    most, limit = max(row.largest_contact_force for row in rows), transmitted_force(solution)
+    design = solution.design
+    if most > limit and design.ball is BallModel.DAMPER:
+        yield (
+            f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
+            f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
+            "the ball slides, and the linear race damping is outside its range. It then returns too much "
+            "speed to the cage: `--ball traction` gives the answer with the ball's inertia and traction."
+        )
+    if design.motion is MotionModel.PLANE:
+        yield from _beyond_plane(solution)
+    yield from _beyond_strength(solution.study, rows)
+    cage = solution.cage_with(0.0)
+    gap = cage.land_gap
+    far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
+    if far:
+        worst = max(row.largest_offset for row in far)
+        names = "All" if len(far) == len(rows) > 1 else ", ".join(row.name for row in far)
+        yield (
+            f"{names}: the cage centre reaches {format_quantity(worst, 'm', 3)}, beyond the land at "
+            f"{format_quantity(gap, 'm', 3)} by more than {100 * (BEYOND_LAND - 1):.0f} %. The land's "
+            "stiffness decides such numbers, a real cage may break first: they are bounds."
+        )
+    kept = {row.name: text for row in rows if (text := _kept_by_land(row))}
+    if kept:
+        yield (
+            f"Friction on the land, {cage.land_friction:g}, keeps the cage whirling in some runs: "
+            f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
+            "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
+        )
+
+
+def _beyond_plane(solution: Solution) -> Iterator[str]:
+    """Sentences where a cage is kicked so hard that friction would turn round, or that it tilts."""
+    kick, sliding = max(solution.stability.kicks), solution.pocket.slip_speed
+    if kick > sliding:
+        yield (
+            f"The strongest kick, {kick:.3g} m/s, is faster than the balls slide in their pockets, "
+            f"{sliding:.3g} m/s. Friction then brakes the cage, but in the plane it always acts along the "
+            "ball's spin: it drives the cage too much. With `--motion space` it follows the true sliding."
+        )
+    speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
+    if solution.design.pocket_shape is not PocketShape.SQUARE and kick > STRONG * speed:
+        yield (
+            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times "
+            f"the speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage "
+            "tilts, and in space it may whirl at a fifth to a third less friction: `--motion space`."
+        )
+
+
+def within_a_turn(solution: Solution) -> Iterator[str]:
+    """A sentence where runs end before the cage has turned once."""
+    duration = solution.stability.duration
+    turns = duration * abs(solution.bearing.cage_speed) / math.tau
+    if 0.0 < turns < 1.0:
+        turn = format_quantity(duration / turns, "s", 3)
+        yield (
+            f"Runs of {format_quantity(duration, 's', 3)} are {turns:.2g} turns of the cage: what comes once "
+            "a turn, by gravity, unbalance or an uneven land, is not judged. Whole turns need [stability] "
+            f'duration = "{turn}" or longer.'
+        )
+
+
+def pocket_pressure(bearing: BallBearing, wall: Material, force: Newton) -> Pascal:
+    """Largest pressure of a ball that is pressed on a flat pocket wall (Hertz); a bore shares it out [Pa]."""
+    K = hertz_coefficient(bearing.ball_diameter, bearing.ball_material, wall)
+    return 1.5 * force / (math.pi * contact_radius(force, K, bearing.ball_diameter) ** 2)
+
+
+def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
+    """A sentence on the pockets that yield, of candidates, or a cage beside them, whose strength is known."""
+    walls = {one.name: one.material for one in (study.ranking.candidates if study.ranking else ())}
+    own = study.cage.material if study.cage else None
+    weak = []
+    for row in rows:
+        wall, force = walls.get(row.name, own), row.largest_contact_force
+        if wall is None or wall.compressive_strength is None or force == 0.0:
+            continue
+        pressure, limit = pocket_pressure(study.bearing, wall, force), YIELDS * wall.compressive_strength
+        if pressure > limit:
+            both = (format_quantity(each, "Pa", 2) for each in (pressure, limit))
+            weak.append(f"{row.name} {' against '.join(both)}")
+    if weak:
+        yield (
+            f"The largest pocket force presses a ball into a flat pocket wall beyond {YIELDS:g} times its "
+            f"compressive strength, where it begins to yield: {', '.join(weak)}. The pocket dents and wears; "
+            "its elastic stiffness is outside its range."
+        )
+
+
+def _kept_by_land(row: Moved) -> str:
+    """In how many runs from which kick, for one candidate; empty if in none."""
+    counts = [count for count in row.by_kick if count.kept_by_land]
+    runs = (f"{count.kept_by_land} of {count.runs} from {count.kick:.3g} m/s" for count in counts)
+    return f"{row.name} {', '.join(runs)}" if counts else ""
+
 
 PAPER_STATEMENT = (
     f"The paper (section 5): a restitution factor below {SOLID_LUBRICATION_LIMIT:g} "
@@ -25,14 +170,18 @@ def not_measured(environment: str) -> str:
 def not_finite(judgement: Judgement) -> str:
     """Return the reason of a verdict that is not given, as a number of its evidence is not finite; or ""."""
     values = ((f.name, getattr(judgement, f.name)) for f in fields(judgement))
-    bad = [f"{name} is {value}" for name, value in values if isinstance(value, float) and not isfinite(value)]
+    bad = [
+        f"{name} is {value}"
+        for name, value in values
+        if isinstance(value, float) and not math.isfinite(value)
+    ]
     if not bad:
         return ""
     return f"no verdict: {bad[0].replace('_', ' ')}. The inputs are far from those of a bearing"
 
 
 def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
-    """Return what decides a verdict in words; friction, threshold and margin stand beside it as numbers."""
+    """Return what decides a verdict in words; friction, threshold and margin are beside it as numbers."""
     stable = judgement.verdict is Verdict.STABLE
     always = "Stable at any" if stable else "Pocket friction starts no whirl at any"
     ends = {0.0: "Stable at no restitution factor above 0.", 1.0: f"{always} restitution factor."}
@@ -43,12 +192,60 @@ def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
 def disagreement(threshold: Ratio, verdict: Verdict) -> str:
     """Return how the paper's statement differs from the verdict; empty if it does not.
 
-    The paper calls a material inapt if it needs a restitution factor below 0.6, whatever its film gives;
-    `PAPER_STATEMENT` says so once for all of them.
+    The paper rejects a material that needs a restitution factor below 0.6, whatever its film gives.
     """
-    inapt = threshold < SOLID_LUBRICATION_LIMIT
-    if inapt and verdict is Verdict.STABLE:
+    rejected = threshold < SOLID_LUBRICATION_LIMIT
+    if rejected and verdict is Verdict.STABLE:
         return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be rejected."
-    if not inapt and verdict is Verdict.UNSTABLE:
+    if not rejected and verdict is Verdict.UNSTABLE:
         return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be kept."
     return ""
+
+
+NOTICED: Ratio = 0.1
+"""Pocket force over the races' capacity from which the models of a ball may differ: there the law of
+traction still has its slope, and at the capacity itself a fifth less."""
+
+
+class Pocket(NamedTuple):
+    """What the cages of candidates differ in besides friction; 0 without a land."""
+
+    stiffness: NewtonPerMetre
+    clearance: Metre
+    land: Metre
+
+
+def pocket_of(solution: Solution) -> Pocket:
+    """Stiffness and running clearances of the cage."""
+    design = solution.design
+    return Pocket(solution.ball_cage_stiffness, design.pocket_clearance, design.land_clearance or 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Second:
+    """What a second verdict is about."""
+
+    pocket: Pocket
+    friction: Ratio
+
+
+def is_beyond(solution: Solution, judgement: Judgement) -> bool:
+    """Whether a run pressed a pocket with more than a tenth of what the races can transmit to its ball."""
+    return judgement.largest_contact_force > NOTICED * transmitted_force(solution)
+
+
+def with_other_ball(solution: Solution, friction: Ratio) -> PlanarCage:
+    """Return the cage with the model of a ball that its study does not use."""
+    design = solution.stated_design
+    other = BallModel.TRACTION if design.ball is BallModel.DAMPER else BallModel.DAMPER
+    study = replace(solution.study, cage=replace(design, ball=other))
+    return solve(study, solution.candidate).cage_with(friction)
+
+
+def second_verdict(
+    solution: Solution, friction: Ratio, settings: StabilitySettings, runner: Runner
+) -> Judgement:
+    """Verdict by the other model of a ball, of the first 16 runs from each kick."""
+    cage = with_other_ball(solution, friction)
+    few = replace(settings, runs=min(PART, settings.runs))
+    return judge(cage, runner.whole_ensemble(cage, few))

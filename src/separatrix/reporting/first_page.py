@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from separatrix.present.text.tables import ABSENT, grouped, interval, number, significant
-from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import own_candidates, picture
-from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import (
+from separatrix.reporting.record import (
+    Block,
+    Kept,
+    Paragraph,
     Row,
+    Section,
+    Table,
     margin,
     own_rows,
     places,
@@ -35,11 +38,9 @@ EXPLAINED = (
 def first_page(kept: Mapping[str, Kept], about: Sequence[str]) -> Section:
     """Return the answer on one page; `about` are caveats on the answers themselves."""
     if "rank" in kept:
-        blocks = [*_ranking(kept["rank"])]
-    elif "stability" in kept:
-        blocks = [*_stability(kept["stability"])]
+        blocks = _ranking(kept["rank"])
     else:
-        blocks = [*_without_cage(kept)]
+        blocks = _stability(kept["stability"]) if "stability" in kept else _without_cage(kept)
     main = next(kept[verb] for verb in ("rank", "stability", *kept) if verb in kept).document
     return Section("Answer", (*blocks, *_caveats(main, about)))
 
@@ -55,8 +56,7 @@ def _ranking(kept: Kept) -> Iterator[Block]:
     ]
     yield Table(HEAD, tuple(cells), f"Candidates in {rank['environment']}. {EXPLAINED}", left=3)
     yield from picture(
-        "rank",
-        kept.data,
+        kept,
         own_candidates(kept.data),
         "The candidates on the stability curve of this bearing: below the curve the cage is stable.",
         "Critical friction against restitution factor, with the friction of each candidate at the "
@@ -137,8 +137,7 @@ def _stability(kept: Kept) -> Iterator[Block]:
     why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
     yield Paragraph(f"{why}: no cage materials were compared.", "lead")
     yield from picture(
-        "stability",
-        kept.data,
+        kept,
         "stability-curve",
         "Critical friction against restitution factor: below the curve the cage is stable.",
         "Stability curve with its band and limits, and the bearing's own restitution factor.",
@@ -181,7 +180,7 @@ def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:
     """Yield what a reader of the first page must know; the rest has a section of its own."""
     found = [*about]
     if main.get("complete") is False:
-        found.append("The computation was interrupted: this answer holds only what was finished.")
+        found.append("The computation was interrupted: this answer has only what was finished.")
     if main["verb"] == "rank":
         found += _by_the_other_ball(main)
     found += main["warnings"]

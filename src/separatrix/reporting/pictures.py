@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.figures import draw
 from separatrix.figures.drawing import bearing_drawing, guesses
-from separatrix.figures.envelope_hover import envelope_plots, sweep_plots
-from separatrix.figures.hover import candidates_plot, map_plot, stability_plot, traction_plot
+from separatrix.figures.envelope import envelope_plots, sweep_plots
+from separatrix.figures.hover import Place, candidates_plot, map_plot, places, stability_plot, traction_plot
 from separatrix.figures.ranking import file_name, own_environment
-from separatrix.figures.style import journal, settled
-from separatrix.figures.svg import Place, formula, places, svg_of
-from separatrix.reporting.record import Equation, Picture, Target
+from separatrix.figures.style import formula, journal, settled, svg_of
+from separatrix.reporting.record import Equation, Kept, Picture, Row, Target
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,12 +26,12 @@ MOST_CELLS = 900
 """Places to point at in a series, and in a map."""
 
 
-def picture(verb: str, data: xr.Dataset | None, name: str, caption: str, alt: str) -> Iterator[Picture]:
+def picture(kept: Kept, name: str, caption: str, alt: str) -> Iterator[Picture]:
     """Yield the picture of this name of an answer, with its places to point at; nothing without one."""
-    if data is None:
+    if kept.data is None:
         return
-    for _, figure in draw(verb, data, only=name):
-        yield picture_of(figure, name, caption, alt, tuple(_targets(name, figure, data)))
+    for _, figure in draw(str(kept.document["verb"]), kept.data, only=name):
+        yield picture_of(figure, name, caption, alt, tuple(_targets(name, figure, kept.data)))
         return
 
 
@@ -47,11 +46,9 @@ def _targets(name: str, figure: Figure, data: xr.Dataset) -> Iterator[Target]:
     found: list[Place] = []
     radius = REACH
     first = figure.axes[0]
-    if name == "stability-curve":
-        found += places(first, stability_plot(data), MOST_TARGETS)
-    elif name == "rank-overview":
+    if name == "rank-overview":
         found += places(first, candidates_plot(data), MOST_TARGETS)
-    elif name.startswith("rank-"):
+    elif name == "stability-curve" or name.startswith("rank-"):
         found += places(first, stability_plot(data), MOST_TARGETS)
     elif name == "stability-map":
         found, radius = [*places(first, map_plot(data), MOST_CELLS)], CELL
@@ -74,7 +71,7 @@ def own_candidates(data: xr.Dataset | None) -> str:
     return f"rank-{place + 1}-{file_name(str(data['environment'].values[place]))}"
 
 
-def drawing(study: Mapping[str, Any], bearing: Mapping[str, Any] | None) -> Picture:
+def drawing(study: Row, bearing: Row | None) -> Picture:
     """Return the bearing to scale, with the contact angles under load where they are known."""
     angle = None
     if bearing is not None:
@@ -83,24 +80,18 @@ def drawing(study: Mapping[str, Any], bearing: Mapping[str, Any] | None) -> Pict
     with journal():
         figure = settled(bearing_drawing(study, angle))
     cage = " and its cage" if study.get("cage") else ""
+    line = f"line of contact {'under' if angle else 'without'} load"
     return picture_of(
         figure,
         "bearing-drawing",
-        f"The bearing{cage} to scale. Red: line of contact under load; blue: clearances. {guesses(study)}"
-        if angle
-        else f"The bearing{cage} to scale. Red: line of contact without load; blue: clearances. "
-        f"{guesses(study)}",
+        f"The bearing{cage} to scale. Red: {line}; blue: clearances. {guesses(study)}",
         f"Drawing to scale: a section through one ball with rings{cage}, all balls along the axis, and one "
         "ball enlarged.",
     )
 
 
 @cache
-def _formula(latex: str) -> tuple[str, float, float]:
-    return formula(latex)
-
-
 def equation(latex: str, words: str) -> Equation:
     """Return a formula, drawn."""
-    svg, width, height = _formula(latex)
+    svg, width, height = formula(latex)
     return Equation(latex, words, svg=svg, width=width, height=height)

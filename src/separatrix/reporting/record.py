@@ -1,10 +1,30 @@
-"""What a report holds: titled sections of paragraphs, tables, pictures and equations, all of it text."""
+"""A report: titled sections of paragraphs, tables, pictures and equations; and numbers as its text."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+from separatrix.present.text import tables
+from separatrix.present.text.tables import ABSENT, interval
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Row = Mapping[str, Any]
+"""A document of an answer, or a part of one."""
+
+MICRO = ("um", "uJ", "uW", "us", "uN")
+"""Units that the program writes in ASCII."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """One answer: its document, and its dataset if that was kept, too."""
+
+    document: Row
+    data: xr.Dataset | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +105,7 @@ class Report:
     title: str
     subtitle: str
     sections: tuple[Section, ...]
-    documents: Mapping[str, Mapping[str, Any]] = field(repr=False)
+    documents: Mapping[str, Row] = field(repr=False)
 
     @property
     def lead(self) -> tuple[str, ...]:
@@ -99,40 +119,76 @@ class Report:
 
     def html(self) -> str:
         """One HTML file, as text, that needs no other file and no network."""
-        from separatrix.reporting.html import html
+        from separatrix.reporting.formats import html
 
         return html(self)
 
     def pdf(self) -> bytes:
         """The same as PDF; needs the extra ``pdf``."""
-        from separatrix.reporting.pdf import pdf
+        from separatrix.reporting.formats import pdf
 
         return pdf(self)
 
 
-def as_data(report: Report) -> dict[str, Any]:
-    """Return a report as plain data: text, tables and captions, without its pictures and documents."""
-    return {
-        "title": report.title,
-        "subtitle": report.subtitle,
-        "sections": [
-            {"title": one.title, "level": one.level, "blocks": [_block(block) for block in one.blocks]}
-            for one in report.sections
-        ],
-    }
+def quantity(value: float | None, unit: str, digits: int | None = None) -> str:
+    """Return a value in a unit a reader likes, with the micro sign; a dash if it is absent."""
+    number, space, symbol = tables.quantity(value, unit, digits).partition(" ")
+    return number + space + (symbol.replace("u", "\N{MICRO SIGN}", 1) if symbol in MICRO else symbol)
 
 
-def _block(block: Block) -> dict[str, Any]:
-    match block:
-        case Paragraph():
-            return {"paragraph": block.text, "kind": block.kind}
-        case Facts():
-            return {"facts": [list(pair) for pair in block.pairs]}
-        case Table():
-            rows = [list(row) for row in block.rows]
-            return {"table": block.caption, "head": list(block.head), "rows": rows}
-        case Picture():
-            points = [target.text for target in block.hover]
-            return {"picture": block.name, "caption": block.caption, "alt": block.alt, "points": points}
-        case Equation():
-            return {"equation": block.latex, "words": block.words}
+def with_interval(row: Row, name: str, ends: str = "") -> str:
+    """Return a number of a row with its interval, or a dash; `ends` is how the names of its ends begin."""
+    if row.get(name) is None:
+        return ABSENT
+    return interval(row[name], *(row[f"{ends or name}_{end}"] for end in ("low", "high")))
+
+
+def probability(row: Row, by: str = "") -> str:
+    """Return P(stable) with its interval, or a dash; `by` begins the names of another model's."""
+    return with_interval(row, f"{by}probability_stable", f"{by}probability")
+
+
+def threshold(row: Row) -> str:
+    """Return the restitution threshold with its interval, or a dash."""
+    return with_interval(row, "restitution_threshold")
+
+
+def margin(row: Row) -> str:
+    """Return the margin with its sign, or a dash."""
+    return ABSENT if row.get("margin") is None else f"{row['margin']:+.2f}"
+
+
+def verdict(row: Row) -> str:
+    """Return the verdict, or why there is none."""
+    if row.get("verdict"):
+        return str(row["verdict"])
+    return "not measured" if row.get("friction") is None else "not finished"
+
+
+def own_rows(rank: Row) -> list[Row]:
+    """Return the rows of the bearing's own environment."""
+    found = [one["materials"] for one in rank["environments"] if one["name"] == rank["environment"]]
+    return list(found[0]) if found else []
+
+
+def places(rows: Iterable[Row]) -> list[str]:
+    """Return the ranks, = after a shared one, a dash for none."""
+    ranks = [row.get("rank") for row in rows]
+    return [ABSENT if rank is None else f"{rank}{'=' * (ranks.count(rank) > 1)}" for rank in ranks]
+
+
+def entry(item: Row, digits: int | None = None) -> str:
+    """Return a value of a resolved study with its unit; a dash without one."""
+    value, unit = item.get("value"), item.get("unit")
+    if value is None:
+        return ABSENT
+    if isinstance(value, list):
+        return ", ".join(entry({"value": one, "unit": unit}, digits) for one in value) or ABSENT
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value)
+    return quantity(value, unit, digits) if unit else f"{value:g}"
+
+
+def facts(*pairs: tuple[str, str]) -> Facts:
+    """Return labels with their values, without those that have none."""
+    return Facts(tuple((label, value) for label, value in pairs if value and value != ABSENT))

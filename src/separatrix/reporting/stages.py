@@ -6,10 +6,8 @@ from collections.abc import Iterator, Mapping
 from math import degrees
 
 from separatrix.present.text.tables import ABSENT, interval, kick_list, number, significant
-from separatrix.reporting.kept import Kept
 from separatrix.reporting.pictures import drawing, equation, picture
-from separatrix.reporting.record import Block, Paragraph, Section, Table
-from separatrix.reporting.words import Row, both, entry, facts, quantity
+from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, entry, facts, quantity
 
 CONTACT = {
     "load": ("Load Q", "N"),
@@ -24,7 +22,6 @@ CREEP = {
     "creep_spin": ("Creep by spin s", "1/m"),
     "creep_curvature": ("Creep by curvature q", "1/m2"),
 }
-RACES = ("quantity", "inner race", "outer race")
 MISSING = "Not in this folder: run `separatrix {verb} {name}` into it, then the report again."
 
 
@@ -150,8 +147,7 @@ def _equilibrium(kept: Kept) -> Iterator[Block]:
     yield Table(head, tuple(rows), "Ball loads and contact angles under load and speed.")
     if not alike:
         yield from picture(
-            "bearing",
-            kept.data,
+            kept,
             "bearing-balls",
             "Ball loads and contact angles around the bearing.",
             "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers.",
@@ -164,11 +160,9 @@ def _contacts(kept: Kept) -> Iterator[Block]:
         r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
         "Hertz: maximum pressure p\u2080 of the ellipse with semi-axes a and b.",
     )
-    rows = both(at["inner"], at["outer"], CONTACT)
-    yield Table(RACES, rows, "Contacts of the most loaded ball.")
+    yield _both_races(at, CONTACT, "Contacts of the most loaded ball.")
     yield from picture(
-        "bearing",
-        kept.data,
+        kept,
         "bearing-contacts",
         "The contacts of the most loaded ball.",
         "Three panels: both contact ellipses to scale, pressure across the groove, creep across the groove.",
@@ -182,9 +176,16 @@ def _creep(kept: Kept) -> Iterator[Block]:
         "Creep across the groove [14, 16]: free-rolling offset, spin, curvature (Heathcote), and the "
         "increment that an impact of the cage adds.",
     )
-    yield Table(
-        RACES, both(at["inner"], at["outer"], CREEP), "Creep in the contacts of the most loaded ball."
+    yield _both_races(at, CREEP, "Creep in the contacts of the most loaded ball.")
+
+
+def _both_races(contacts: Row, names: Mapping[str, tuple[str, str]], caption: str) -> Table:
+    """Return a table of both races; `names` has words and unit of each key."""
+    rows = tuple(
+        (words, *(quantity(contacts[race].get(key), unit, 4) for race in ("inner", "outer")))
+        for key, (words, unit) in names.items()
     )
+    return Table(("quantity", "inner race", "outer race"), rows, caption)
 
 
 def _traction(kept: Kept) -> Iterator[Block]:
@@ -206,8 +207,7 @@ def _traction(kept: Kept) -> Iterator[Block]:
     head = ("model", "pressure", "slope inner", "slope outer", "race damping", "restitution factor")
     yield Table(head, rows, "Slopes by each model of the contact, and what follows from them.", left=2)
     yield from picture(
-        "traction",
-        kept.data,
+        kept,
         "traction-curves",
         "Traction curves of the most loaded ball (the paper's Fig. 7), and at other pivoting to rolling "
         "ratios.",
@@ -253,8 +253,7 @@ def _restitution(kept: Kept) -> Iterator[Block]:
         if name == "restitution-wear":
             caption = "Restitution factor against the width of the worn band; the star is this bearing."
         yield from picture(
-            "restitution",
-            kept.data,
+            kept,
             name,
             caption,
             f"Two panels: restitution factor against {what}, dampings summed and with the ball free to spin.",
@@ -312,8 +311,7 @@ def _stability(kept: Kept) -> Iterator[Block]:
         )
     if found["verb"] == "rank":
         yield from picture(
-            "rank",
-            kept.data,
+            kept,
             "rank-overview",
             "Restitution threshold of every candidate in every environment, and overall.",
             "One row for each candidate, the best at the top: thresholds of the restitution factor.",

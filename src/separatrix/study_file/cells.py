@@ -1,4 +1,4 @@
-"""Cells of a study workbook, read by openpyxl: what each holds.
+"""Cells of a study workbook, read by openpyxl.
 
 Nothing is evaluated: a formula has the value that was saved with it. Macros and links to other files are
 never followed.
@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeGuard
 
 from separatrix.errors import InputError
-from separatrix.kept_files import note
-from separatrix.regular_file import size_of, unreadable
+from separatrix.input_files import note, size_of, unreadable
 from separatrix.units import NUMBER, printable, shown
-from separatrix.workbook_guard import SAVE_AGAIN, refuse_unsafe
+from separatrix.workbook_files import SAVE_AGAIN, refuse_unsafe
 
 if TYPE_CHECKING:
     from openpyxl.cell.read_only import ReadOnlyCell
@@ -41,7 +40,7 @@ _BEGINS_AS_NUMBER = re.compile(r"\s*[+-]?\.?[0-9]")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell that holds a value: its file, sheet and name, and whether it is shown as a percentage."""
+    """A cell with a value: its file, sheet and name, and whether it is shown as a percentage."""
 
     value: Plain
     place: str
@@ -58,7 +57,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """Cells of a sheet by row and column, from 1; a cell with a fault raises it when it is asked for."""
+    """Cells of a sheet by row and column, from 1; a cell with a fault raises it when it is used."""
 
     name: str
     place: str
@@ -67,7 +66,7 @@ class Sheet:
     """Place of the first cell that was not read because it is too far from the first one."""
 
     formulas: dict[str, None] = field(default_factory=dict)
-    """Sheet and name of the cells with formulas that were asked for."""
+    """Sheet and name of the cells with formulas that were used."""
 
     def at(self, row: int, column: int) -> str:
         """Return file, sheet and cell."""
@@ -81,7 +80,7 @@ class Sheet:
         return max((row for row, _ in self.cells), default=0)
 
     def given(self, row: int, column: int | None) -> Cell | None:
-        """Return a cell that holds a value; None if it is empty."""
+        """Return a cell with a value; None if it is empty."""
         cell = None if column is None else self.cells.get((row, column))
         if isinstance(cell, InputError):
             raise cell
@@ -102,7 +101,7 @@ class Sheet:
 
 
 def sheets_of(path: Path, label: str, is_whole: Callable[[str], bool]) -> list[Sheet]:
-    """Return the worksheets of a workbook: whole where `is_whole` wants it, of others the first two rows."""
+    """Return the worksheets of a workbook: all rows of those that `is_whole` selects, two of the others."""
     from openpyxl.reader.excel import ExcelReader
 
     has_links = _refuse_other_kinds(path, label)
@@ -160,7 +159,7 @@ def _refuse_other_kinds(path: Path, label: str) -> bool:
 
 
 def _formulas(part: IO[bytes], place: str, most: int) -> dict[tuple[int, int], str]:
-    """Return the formulas of a sheet by row and column, up to a row."""
+    """Return the formulas of a sheet by row and column, down to the row `most`."""
     from openpyxl.utils.cell import coordinate_to_tuple
     from openpyxl.xml.functions import iterparse
 
@@ -189,7 +188,11 @@ def _formulas(part: IO[bytes], place: str, most: int) -> dict[tuple[int, int], s
 
 
 def _sheet(
-    saved: Any, formulas: Mapping[tuple[int, int], str], sheet: Sheet, most: int, has_links: bool
+    saved: Any,
+    formulas: Mapping[tuple[int, int], str],
+    sheet: Sheet,
+    most: int,
+    has_links: bool,
 ) -> Sheet:
     found: dict[tuple[int, int], Cell | InputError] = {}
     saved.reset_dimensions()  # what a file states of its size may be wrong
@@ -208,7 +211,7 @@ def _sheet(
 
 
 def _cell(cell: ReadOnlyCell, formula: str, where: str, has_links: bool) -> Cell | InputError:
-    """Return a cell with its value, or why it has none that can be taken."""
+    """Return a cell with its value, or the refusal of its value."""
     value: Any = cell.value
     if cell.data_type == "e":
         return InputError(where, "shows an error instead of a value", str(value))
@@ -217,10 +220,10 @@ def _cell(cell: ReadOnlyCell, formula: str, where: str, has_links: bool) -> Cell
         return InputError(where, rule, cure="Paste it as a value.")
     if formula and value is None:
         cure = "Open the workbook in a spreadsheet program and save it, or enter the value."
-        return InputError(where, "holds a formula without a saved value", shown(formula), cure)
+        return InputError(where, "has a formula without a saved value", shown(formula), cure)
     if isinstance(value, datetime.date | datetime.time | datetime.timedelta):
         cure = "Format the cell as a number, and enter the value again."
-        return InputError(where, "holds a date or a time of day", cure=cure)
+        return InputError(where, "has a date or a time of day", cure=cure)
     if isinstance(value, float) and not math.isfinite(value):
         return InputError(where, "must be a finite number", shown(value))
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
@@ -246,7 +249,7 @@ def begins_as_number(text: str) -> bool:
 
 
 def plain_number(value: float) -> int | float:
-    """Return a number of a cell, which does not tell 64 from 64.0, as an integer if it is one."""
+    """Return a number of a cell, in which 64 and 64.0 are the same, as an integer if it is one."""
     return int(value) if value == math.floor(value) and abs(value) < 1e15 else value
 
 

@@ -1,4 +1,4 @@
-"""A study document: its sections key by key, each with its place, after `extends` has been followed."""
+"""A study document: its sections key by key, each with its place, merged over the file it extends."""
 
 from __future__ import annotations
 
@@ -9,14 +9,12 @@ from difflib import get_close_matches
 from functools import cache
 from os.path import exists, isfile
 from pathlib import Path
-from typing import Any
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, noted, together
-from separatrix.kept_files import place
+from separatrix.input_files import place
 from separatrix.library import Library, beside, library_files, with_files
-from separatrix.toml_text import Places, label_of, path_text, places_of, read_toml
-from separatrix.toml_values import folded, nearest
+from separatrix.toml_files import Places, folded, label_of, nearest, path_text, places_of, read_toml
 from separatrix.units import printable, shown
 
 SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")
@@ -37,7 +35,7 @@ ALTERNATIVES = {
     "film": (("elastic_modulus", "poisson_ratio"), ("material",)),
     "ranking": (("candidates",), ("friction", "materials")),
 }
-"""Keys that exclude each other: a variant that gives one side drops the other side of its base."""
+"""Keys that exclude each other: a variant with one side drops the other side of its base."""
 
 TOP = ("title", "extends", "library")
 """Keys before the first section."""
@@ -61,22 +59,22 @@ class Unfinished(Exception):  # noqa: N818 - not an error: it never leaves this 
 
 @dataclass(slots=True)
 class Document:
-    """Sections of a study, from a text file or a workbook, before anything is converted.
+    """Sections of a study, from a text file or a workbook, before any value is converted.
 
-    A value may be an InputError: why it has none. What is wrong is noted under the path of its key,
+    A value may be an InputError, where a cell has none. A fault is noted under the path of its key,
     ``[cage] mass`` or ``[ranking] candidates[2].name``; `places` has its place.
     """
 
     path: Path
-    top: dict[str, Any] = field(default_factory=dict)
-    sections: dict[str, dict[str, Any]] = field(default_factory=dict)
+    top: dict[str, object] = field(default_factory=dict)
+    sections: dict[str, dict[str, object]] = field(default_factory=dict)
     places: Places = field(default_factory=lambda: Places(""))
     problems: list[InputError] = field(default_factory=list)
     distributions: dict[str, Distribution] = field(default_factory=dict)
-    """Of the uncertain numbers, by their names, as they are read."""
+    """Distributions of the uncertain numbers by their names."""
 
-    libraries: list[tuple[Path, Any]] = field(default_factory=list)
-    """The study files of the chain, and what each has as `library`: these and their neighbours are read."""
+    libraries: list[tuple[Path, object]] = field(default_factory=list)
+    """The study files of the chain, and the key `library` of each."""
 
     friction_folder: Path = field(default_factory=Path)
     """Folder of the file that gives [ranking] friction."""
@@ -86,7 +84,7 @@ class Document:
 
     @contextmanager
     def noting(self) -> Iterator[None]:
-        """Note what is refused, instead of raising it."""
+        """Note a refusal instead of raising it."""
         with suppress(Unfinished), noted(self.problems):
             yield
 
@@ -203,7 +201,7 @@ def _merged(base: Document, document: Document) -> Document:
     return merged
 
 
-def _kept(name: str, below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+def _kept(name: str, below: dict[str, object], above: dict[str, object]) -> dict[str, object]:
     """Keys of the base that the variant does not replace by an alternative."""
     dropped: set[str] = set()
     one, other = ALTERNATIVES.get(name, ((), ()))
@@ -224,7 +222,7 @@ def _shipped_names(text: str) -> str:
 
 
 def library_of(document: Document) -> Library:
-    """Library of a study: what is shipped, stands beside its files, or is named in them."""
+    """Library of a study: the shipped records, and those of files beside it or named in it."""
     paths: list[Path] = []
     for study, given in document.libraries:
         if study not in shipped_studies().values():
@@ -239,7 +237,7 @@ def library_of(document: Document) -> Library:
     return with_files(paths)
 
 
-def _named(folder: Path, name: Any) -> list[Path]:
+def _named(folder: Path, name: object) -> list[Path]:
     if not isinstance(name, str) or not name or not name.isprintable():
         raise InputError("library", "must be the path of a file or a folder, in quotes", shown(name))
     path = place(folder, name)

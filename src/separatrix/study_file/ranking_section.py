@@ -1,4 +1,4 @@
-"""The section [ranking], and which of its candidates and environments are those of the study's own cage."""
+"""The section [ranking]; the candidate and the environment of the study's own cage."""
 
 from __future__ import annotations
 
@@ -8,23 +8,22 @@ from dataclasses import replace
 from math import exp, log
 from os.path import isfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.cage_choice import NAMELESS
 from separatrix.distribution import Normal
 from separatrix.errors import InputError, noted, together
-from separatrix.friction.file import read_friction
+from separatrix.friction.file import CONDITIONS, read_friction
 from separatrix.friction.law import StatedFriction
-from separatrix.friction.records import CONDITIONS
-from separatrix.kept_files import place
-from separatrix.library import FrictionTable
+from separatrix.input_files import place
+from separatrix.library.records import FrictionTable
 from separatrix.measured_friction import refuse_scatter_about_zero
 from separatrix.study import CageDesign, Candidate, Friction, RankingQuestion
-from separatrix.study_file import values
 from separatrix.study_file.document import Document, Unfinished
 from separatrix.study_file.sections import record_of
-from separatrix.study_file.values import Uncertain, friction_deviation, gathered, number, unwrapped
-from separatrix.toml_values import Reader, build, folded, nearest, ratio, table, text, whole
+from separatrix.study_file.uncertain import Uncertain, friction_deviation, gathered, number, unwrapped
+from separatrix.study_file.values import context, known_name, material
+from separatrix.toml_files import Reader, Values, build, folded, nearest, ratio, table, text, whole
 from separatrix.units import shown
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ DEFAULT_SCATTER = RankingQuestion.__dataclass_fields__["friction_scatter"].defau
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
 
 
-def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
+def ranking(document: Document, given: Values) -> RankingQuestion:
     """Build the question of a ranking from the converted keys of its section."""
     if any(key not in given for key in document.sections["ranking"]):
         raise Unfinished
@@ -47,9 +46,7 @@ def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
         environments, candidates = _of_tests(document, given)
     else:
         raise InputError("[ranking]", "lacks: friction (or candidates)")
-    question: dict[str, Any] = {
-        key: given[key] for key in ("friction_scatter", "environment") if key in given
-    }
+    question: Values = {key: given[key] for key in ("friction_scatter", "environment") if key in given}
     if "environment" in given:
         known = {folded(name): name for name in environments}
         question["environment"] = known.get(folded(given["environment"]), given["environment"])
@@ -57,22 +54,22 @@ def ranking(document: Document, given: dict[str, Any]) -> RankingQuestion:
     return record_of(document, RankingQuestion, question)
 
 
-def _of_tests(document: Document, given: dict[str, Any]) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
+def _of_tests(document: Document, given: Values) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
     """Environments and candidates of a friction file beside the study, or of a table of the library."""
     name, scatter = given["friction"], float(given.get("friction_scatter", DEFAULT_SCATTER))
     frictions: Mapping[str, Mapping[str, Friction | None]]
     if name.endswith(".toml"):
         environments, frictions = _of_file(place(document.friction_folder, name), given, scatter)
     else:
-        name = values.known_name(name, "friction table", "[ranking] friction")
-        found = values.current_library().friction_table(name)
+        name = known_name(name, "friction table", "[ranking] friction")
+        found = context().library.friction_table(name)
         environments = found.environments
         frictions = {
-            material: {env: f and _stated(f, env, found, scatter) for env, f in row.items()}
-            for material, row in found.friction.items()
+            name: {env: f and _stated(f, env, found, scatter) for env, f in row.items()}
+            for name, row in found.friction.items()
         }
-    library, kind = values.current_library(), "cage material"
-    temperature, known = values.current_temperature(), library.names(kind)
+    library, kind = context().library, "cage material"
+    temperature, known = context().temperature, library.names(kind)
     candidates = [
         Candidate(
             name=material,
@@ -85,7 +82,7 @@ def _of_tests(document: Document, given: dict[str, Any]) -> tuple[tuple[str, ...
 
 
 def _of_file(
-    path: Path, given: dict[str, Any], scatter: float
+    path: Path, given: Values, scatter: float
 ) -> tuple[tuple[str, ...], dict[str, dict[str, Friction | None]]]:
     """Environments and frictions of a friction file, in the order in which they are first tested."""
     from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
@@ -108,20 +105,19 @@ def _of_file(
     return environments, frictions
 
 
-def _chosen(given: dict[str, Any], known: tuple[str, ...], name: str) -> tuple[str, ...]:
-    """Materials that the study ranks, in any spelling; by default all that are known."""
-    by_spelling = {folded(material): material for material in known}
-    chosen = [by_spelling.get(folded(material), material) for material in given.get("materials", known)]
-    for material in chosen:
-        if material not in known:
-            rule, cure = f"names a material that {name} lacks", nearest(material, known)
-            raise InputError("[ranking] materials", rule, shown(material), cure)
+def _chosen(given: Values, known: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """Materials that the study ranks, in any spelling; by default all known ones."""
+    by_spelling = {folded(one): one for one in known}
+    chosen = [by_spelling.get(folded(one), one) for one in given.get("materials", known)]
+    if absent := [one for one in chosen if one not in known]:
+        rule, cure = f"names a material that {name} lacks", nearest(absent[0], known)
+        raise InputError("[ranking] materials", rule, shown(absent[0]), cure)
     return tuple(chosen)
 
 
 def _mean_of(law: TestedFriction, source: str) -> Friction:
-    """Mean over the tests, until the law predicts that at the pocket's conditions."""
-    own = law.serving(values.current_temperature())
+    """Mean over the tests, until the law predicts the friction at the conditions of the pocket."""
+    own = law.serving(context().temperature)
     if others := len(law.own) - len(own):
         source += f" ({others} of {len(law.own)} tests, at other temperatures, left out)"
     sources = "; ".join(dict.fromkeys(test.source for test in own if test.source))
@@ -148,7 +144,7 @@ def _stated(friction: Friction, environment: str, table: FrictionTable, scatter:
     return replace(friction, law=law)
 
 
-def _in_place(document: Document, items: Any) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
+def _in_place(document: Document, items: object) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
     if not isinstance(items, list) or not 0 < len(items) <= MOST_CANDIDATES:
         rule = f"must be 1 to {MOST_CANDIDATES} tables, each under [[ranking.candidates]]"
         raise InputError("[ranking] candidates", rule, shown(items))
@@ -165,7 +161,7 @@ def _in_place(document: Document, items: Any) -> tuple[tuple[str, ...], tuple[Ca
     )
 
 
-def _candidate(document: Document, item: Any, at: str) -> Candidate:
+def _candidate(document: Document, item: object, at: str) -> Candidate:
     given, found = gathered(table(item, at, _CANDIDATE, ("name", "friction")))
     for key, one in found.items():
         document.distributions[f"ranking.{given['name']}.{key.removeprefix('friction.')}"] = one
@@ -177,7 +173,8 @@ def _candidate(document: Document, item: Any, at: str) -> Candidate:
 
 def place_of_candidate(document: Document, name: str) -> str:
     """Return the path of an uncertain number, named by its candidate and its environment or property."""
-    for i, item in enumerate(document.sections["ranking"]["candidates"], 1):
+    candidates = document.sections["ranking"]["candidates"]
+    for i, item in enumerate(candidates if isinstance(candidates, list) else (), 1):
         places = {environment: f'friction."{environment[:60]}"' for environment in item["friction"]}
         if isinstance(item.get("material"), dict):
             places |= {place: place for place in (f"material.{key}" for key in item["material"])}
@@ -186,7 +183,7 @@ def place_of_candidate(document: Document, name: str) -> str:
     raise KeyError(name)
 
 
-def _frictions(value: Any, at: str) -> Uncertain:
+def _frictions(value: object, at: str) -> Uncertain:
     if not isinstance(value, dict) or not 0 < len(value) <= MOST_CANDIDATES:
         cure = 'Write it like { "liquid nitrogen, 440C" = 0.11 }.'
         got = f"{len(value)} of them" if isinstance(value, dict) else shown(value)
@@ -203,10 +200,10 @@ def _frictions(value: Any, at: str) -> Uncertain:
     return Uncertain(*gathered(frictions))
 
 
-def _friction(value: Any, where: str) -> Friction | Uncertain:
+def _friction(value: object, where: str) -> Friction | Uncertain:
     """Read a friction: a number, a table with mean, standard_deviation and count, or a distribution."""
     if isinstance(value, dict) and not {"between", "samples"} & set(value):
-        readers: dict[str, Reader] = {"mean": ratio, "standard_deviation": ratio, "count": whole}
+        readers: dict[str, Reader[object]] = {"mean": ratio, "standard_deviation": ratio, "count": whole}
         given = {**value, "standard_deviation": friction_deviation(value, where)}
         kept = {key: item for key, item in given.items() if key in value}
         stated = table(kept, where, {**readers, "source": text}, ("mean",))
@@ -221,14 +218,14 @@ def _friction(value: Any, where: str) -> Friction | Uncertain:
     return Uncertain(known, found)
 
 
-_CANDIDATE: dict[str, Reader] = {
+_CANDIDATE: dict[str, Reader[object]] = {
     "name": text,
     "friction": _frictions,
-    "material": values.material("cage material"),
+    "material": material("cage material"),
 }
 
 
-def name_cage(document: Document, parts: dict[str, Any]) -> None:
+def name_cage(document: Document, parts: Values) -> None:
     """Give the cage the candidate of its name."""
     cage: CageDesign | None = parts.get("cage")
     question: RankingQuestion | None = parts.get("ranking")
@@ -244,10 +241,10 @@ def name_cage(document: Document, parts: dict[str, Any]) -> None:
     elif cage.material is None:
         names = ", ".join(candidate.name for candidate in known.values())
         more = f" Candidates are {names}." if names else ""
-        values.known_name(name, "cage material", "[cage] material", more)
+        known_name(name, "cage material", "[cage] material", more)
 
 
-def name_environment(parts: dict[str, Any]) -> bool:
+def name_environment(parts: Values) -> bool:
     """Give the ranking the one environment that fits the bearing; return whether there is one.
 
     It is the environment of the bearing's fluid and balls, else of fluid and rings.
@@ -258,22 +255,22 @@ def name_environment(parts: dict[str, Any]) -> bool:
     if len(question.environments) == 1 or operation.fluid is None:
         return False
     for surface in (bearing.ball_material.name, bearing.ring_material.name):
-        found = [name for name in question.environments if _is(name, operation.fluid, surface)]
+        found = [name for name in question.environments if _fits(name, operation.fluid, surface)]
         if len(found) == 1:
             parts["ranking"] = replace(question, environment=found[0])
             return True
     return False
 
 
-def _is(environment: str, fluid: str, surface: str) -> bool:
-    """Whether an environment, "medium, counterface", is this fluid and, if it names one, this counterface."""
+def _fits(environment: str, fluid: str, surface: str) -> bool:
+    """Whether an environment, "medium, counterface", has this fluid and, if it names one, this surface."""
     medium, comma, counterface = environment.partition(",")
     alike = not comma or _alike(counterface, surface, "bearing material")
     return alike and _alike(medium, fluid, "fluid")
 
 
 def _alike(one: str, other: str, kind: str) -> bool:
-    """Whether two names are of the same record, or of what is in no library."""
-    library = values.current_library()
+    """Whether two names are of the same record, or the same where the library has no record."""
+    library = context().library
     first, second = (library.named(kind, name.strip()) or folded(name) for name in (one, other))
     return first == second

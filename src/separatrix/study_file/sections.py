@@ -1,22 +1,18 @@
-"""From the sections of a document to the records of a study; everything wrong is collected."""
+"""From the sections of a document to the records of a study; all faults are collected."""
 
 from __future__ import annotations
 
-import types
-import typing
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, replace
-from enum import Enum
+from dataclasses import replace
 from itertools import product
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError, ValidityWarning, together
 from separatrix.library import Library
 from separatrix.study import SECTIONS as RECORDS
-from separatrix.study import Guidance, KinematicModel, Material, Study, Wear, key_of
-from separatrix.study_file import values
+from separatrix.study import Guidance, KinematicModel, Material, Study, key_of
 from separatrix.study_file.document import (
     ALTERNATIVES,
     MOST_PROBLEMS,
@@ -25,10 +21,11 @@ from separatrix.study_file.document import (
     Unfinished,
     library_of,
 )
-from separatrix.study_file.wear import wear
+from separatrix.study_file.uncertain import unwrapped, written
+from separatrix.study_file.values import READERS, required_fields, using
 from separatrix.study_numbers import ANGLE_FROM, MOST_DISTRIBUTIONS, contact_angle_of, settled_in
-from separatrix.toml_values import Reader, choice, list_of, nearest, quantity, ratio, text, whole
-from separatrix.units import printable, shown, unit_of
+from separatrix.toml_files import Values, nearest, text
+from separatrix.units import printable, shown
 
 Record = TypeVar("Record")
 
@@ -36,18 +33,6 @@ LEFT_OUT = "cage"
 """In `Study.records`: the refusal of a cage that the study is built without, for the verbs that need none."""
 
 _ELASTIC = ("elastic_modulus", "poisson_ratio")
-_CERTAIN = frozenset({"reference_kick", "runs", "seed"})
-_LISTS = {
-    "kicks": values.kicks,
-    "pocket_angles": values.items("rad", "evenly spaced pockets"),
-    "restitution_factors": values.restitution_factors,
-}
-_MATERIALS = {
-    ("bearing", "ball_material"): values.material("bearing material"),
-    ("bearing", "ring_material"): values.material("bearing material"),
-    ("film", "material"): values.material("film"),
-    ("cage", "material"): values.cage_material,
-}
 _USELESS_ALONE = {
     "operation": ("ramp_start", "ramp_time", "the speeds are steady"),
     "cage": ("land_lobes", "land_out_of_round", "the land is round"),
@@ -55,74 +40,19 @@ _USELESS_ALONE = {
 """A key that has no effect without another one, and why."""
 
 
-def required_fields(record: type) -> list[str]:
-    """Fields of a record that have no default."""
-    return [f.name for f in fields(record) if f.default is f.default_factory is MISSING]
-
-
-def _reader(section: str, record: type, name: str) -> Reader:
-    """Reader of a field of a record, by its type."""
-    hint = typing.get_type_hints(record, include_extras=True)[name]
-    if isinstance(hint, types.UnionType):
-        hint = next(part for part in typing.get_args(hint) if part is not types.NoneType)
-    if name in _LISTS:
-        return values.certain(_LISTS[name])
-    if hint is Material:
-        return _MATERIALS[section, name]
-    if hint is Wear:
-        return wear
-    if hint is int:
-        return values.certain(whole) if name in _CERTAIN else values.count
-    if hint is str:
-        return text
-    if isinstance(hint, type) and issubclass(hint, Enum):
-        return choice(hint)
-    unit = unit_of(record, name)
-    return values.certain(quantity(unit)) if name in _CERTAIN else values.number(unit)
-
-
-READERS: dict[str, dict[str, Reader]] = {
-    **{
-        # the name of the cage's candidate follows from its material
-        section: {
-            f.name: _reader(section, record, f.name) for f in fields(record) if f.name != "material_name"
-        }
-        for section, record in RECORDS.items()
-    },
-    "kinematics": {"model": choice(KinematicModel)},
-    "ranking": {
-        "friction": text,
-        "materials": list_of(text),
-        "environment": text,
-        "candidates": lambda value, _: value,  # read one by one by `ranking_section`
-        "friction_scatter": values.certain(ratio),
-    },
-}
-"""How each key of each section is read: the contract of a study file."""
-
-READERS["bearing"]["radial_clearance"] = values.number("m")
-READERS["film"] |= {"elastic_modulus": values.number("Pa"), "poisson_ratio": values.number("-")}
-
-
 def build_study(document: Document, name: str) -> Study:
-    """Build the study of a document.
-
-    Raises
-    ------
-    InputError
-        With everything that is wrong, a line each.
-    """
+    """Build the study of a document; a refusal has everything that is wrong, a line each."""
     from separatrix.study_file.ranking_section import FROM_BEARING, name_cage, name_environment
 
     title, library, fits = name, None, False
-    parts: dict[str, Any] = {}
+    parts: Values = {}
     with document.noting():
         title = text(document.top.get("title", name), "title")
     with document.noting():
         library = library_of(document)
     if library is None:
         raise document.refusal()
-    with values.using(library, _temperature(document), document.film_folder):
+    with using(library, _temperature(document), document.film_folder):
         for section in SECTIONS:
             if section in document.sections:
                 given = _converted(document, section)
@@ -148,7 +78,7 @@ def build_study(document: Document, name: str) -> Study:
     raise document.refusal()
 
 
-def _study(document: Document, made: dict[str, Any]) -> Study:
+def _study(document: Document, made: Values) -> Study:
     """Build the study; without its cage where nothing gives the stiffness of its pockets."""
     try:
         return record_of(document, Study, made)
@@ -156,7 +86,7 @@ def _study(document: Document, made: dict[str, Any]) -> Study:
         if error.path != "[cage] ball_cage_stiffness":
             raise
         refusal = error.at(document.locate(error.path))
-    sentence = f"{refusal.path} {refusal.rule}: the section is left out, and what needs it is refused."
+    sentence = f"{refusal.path} {refusal.rule}: the section is left out, and verbs that need it are refused."
     warnings.warn(sentence, ValidityWarning, stacklevel=4)
     for key in [key for key in document.distributions if key.startswith("cage.")]:
         del document.distributions[key]
@@ -164,7 +94,7 @@ def _study(document: Document, made: dict[str, Any]) -> Study:
     return record_of(document, Study, {**made, "cage": None, "records": left})
 
 
-def record_of(document: Document, record: Callable[..., Record], given: Mapping[str, Any]) -> Record:
+def record_of(document: Document, record: Callable[..., Record], given: Mapping[str, object]) -> Record:
     """Build a record; its refusals name the keys of the file, and the values as the file has them."""
     try:
         return record(**given)
@@ -214,26 +144,26 @@ def _temperature(document: Document) -> float | None:
     """Temperature of the study, by which data of the library are chosen; None if absent or refused."""
     value = document.sections.get("operation", {}).get("temperature")
     try:
-        found = None if value is None else READERS["operation"]["temperature"](value, "")
+        mean, _ = unwrapped(READERS["operation"]["temperature"](value, ""))
     except (InputError, TypeError):  # it is refused in its own place
         return None
-    return None if found is None else float(values.unwrapped(found)[0])
+    return mean if isinstance(mean, float) else None
 
 
-def _used_records(library: Library, document: Document) -> dict[str, Any]:
-    """Whole records of what a study names besides materials: its fluid, its friction table."""
+def _used_records(library: Library, document: Document) -> dict[str, object]:
+    """Whole records of the fluid and the friction table that a study names."""
     fluid = document.sections["operation"].get("fluid")
-    known = None if fluid is None else library.fluid(fluid)
-    records = {} if known is None else {"operation.fluid": known.plain()}
+    known = library.fluid(fluid) if isinstance(fluid, str) else None
+    records: dict[str, object] = {} if known is None else {"operation.fluid": known.plain()}
     table = document.sections.get("ranking", {}).get("friction")
     if table in library.names("friction table"):
         records["ranking.friction"] = library.friction_table(table).plain()
     return records
 
 
-def _converted(document: Document, section: str) -> dict[str, Any]:
-    """Values of a section's known keys; what is wrong goes to the document's problems."""
-    converted: dict[str, Any] = {}
+def _converted(document: Document, section: str) -> Values:
+    """Values of a section's known keys; faults go to the document's problems."""
+    converted: Values = {}
     readers = READERS[section]
     for key, value in document.sections[section].items():
         if len(document.problems) > MOST_PROBLEMS:
@@ -246,13 +176,13 @@ def _converted(document: Document, section: str) -> dict[str, Any]:
                 homes = [f"[{other}]" for other in SECTIONS if key in READERS[other]]
                 cure = f"It belongs in {' or '.join(homes)}." if homes else nearest(key, readers)
                 raise InputError(at, "is not a valid key in this section", cure=cure)
-            converted[key], found = values.unwrapped(readers[key](value, at))
+            converted[key], found = unwrapped(readers[key](value, at))
             prefix = section if (section, key) == ("film", "material") else f"{section}.{key}"
             document.distributions |= {f"{prefix}.{part}".strip("."): one for part, one in found.items()}
     return converted
 
 
-def _record(document: Document, section: str, given: dict[str, Any]) -> Any:
+def _record(document: Document, section: str, given: Values) -> object:
     """Build the record of a section from its converted keys."""
     from separatrix.study_file.ranking_section import ranking
 
@@ -280,8 +210,8 @@ def _record(document: Document, section: str, given: dict[str, Any]) -> Any:
     return record_of(document, record, given)
 
 
-def _bearing(document: Document, given: dict[str, Any]) -> dict[str, Any]:
-    """Give the contact angle without load that the radial clearance makes."""
+def _bearing(document: Document, given: Values) -> Values:
+    """Replace the radial clearance by the contact angle without load."""
     if "radial_clearance" not in document.sections["bearing"]:
         return given
     if "radial_clearance" not in given:
@@ -294,7 +224,7 @@ def _bearing(document: Document, given: dict[str, Any]) -> dict[str, Any]:
     return {**given, "contact_angle": angle}
 
 
-def _film(document: Document, given: dict[str, Any]) -> dict[str, Any]:
+def _film(document: Document, given: Values) -> Values:
     """Make the film's material of its modulus and Poisson's ratio where they are given in place of a name."""
     written = document.sections["film"]
     lacking = [key for key in _ELASTIC if key not in written]
@@ -312,7 +242,7 @@ def _film(document: Document, given: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
-def _cage(document: Document, given: dict[str, Any]) -> dict[str, Any]:
+def _cage(document: Document, given: Values) -> Values:
     """Check the keys of the land against the guidance, and leave a candidate's name to `name_cage`."""
     written = document.sections["cage"]
     if _is_refused(document, "cage", given):
@@ -333,7 +263,7 @@ def _cage(document: Document, given: dict[str, Any]) -> dict[str, Any]:
 _OWN_RULES = {"bearing": _bearing, "film": _film, "cage": _cage}
 
 
-def _is_refused(document: Document, section: str, given: Mapping[str, Any]) -> bool:
+def _is_refused(document: Document, section: str, given: Mapping[str, object]) -> bool:
     """Whether a value of the section was refused."""
     return any(key in READERS[section] and key not in given for key in document.sections[section])
 
@@ -344,13 +274,13 @@ def _origins(document: Document) -> dict[str, str]:
     for section, given in document.sections.items():
         for key, value in given.items():
             plain = not isinstance(value, dict | list) or f"{section}.{key}" in document.distributions
-            text = f": {values.written(value)}" if plain else ""
+            text = f": {written(value)}" if plain else ""
             origins[f"{section}.{key}"] = document.places.of(f"[{section}] {key}") + text
             inside = value.items() if (section, key) == ("film", "wear") and isinstance(value, dict) else ()
             for part, one in inside:
                 place = document.places.of(f"[film] wear.{part}")
                 for name in ("across", "thicknesses") if part == "profile" else (part,):
-                    origins[f"film.wear.{name}"] = f"{place}: {values.written(one)}"
+                    origins[f"film.wear.{name}"] = f"{place}: {written(one)}"
     if "bearing.radial_clearance" in origins:
         origins["bearing.contact_angle"] = f"from radial_clearance, {origins['bearing.radial_clearance']}"
     return origins

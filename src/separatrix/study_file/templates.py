@@ -1,4 +1,4 @@
-"""The workbook to fill in: keys and remarks of the commented template, units in a column."""
+"""Forms to fill in: keys and remarks of the commented template, names to choose from, and the workbook."""
 
 from __future__ import annotations
 
@@ -6,30 +6,19 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from enum import Enum
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
-from separatrix import library
+from separatrix.errors import DataError, InputError
+from separatrix.input_files import place
+from separatrix.library import Library
 from separatrix.study import SECTIONS as RECORDS
-from separatrix.study import (
-    BallModel,
-    ClearanceState,
-    ContactPressure,
-    Guidance,
-    KinematicModel,
-    MotionModel,
-    PocketContact,
-    PocketShape,
-    PressureSlip,
-    TractionModel,
-)
 from separatrix.study_file.cells import COLUMNS, SEPARATOR, with_unit
-from separatrix.study_file.document import SECTIONS, TEMPLATE, load
-from separatrix.study_file.sections import required_fields
+from separatrix.study_file.document import SECTIONS, TEMPLATE, Document, library_of, load
+from separatrix.study_file.values import options_of, required_fields
 from separatrix.study_file.workbook import CANDIDATES, MEASURED, OWN, STUDY_SHEET
 from separatrix.units import NUMBER, UNITS
-from separatrix.workbook_looks import (
+from separatrix.workbook_files import (
     HEADING,
     INPUT,
     SMALL,
@@ -70,18 +59,6 @@ EMPTY_ROWS = 12
 TEXTS = frozenset({"title", "extends", "fluid"})
 """Keys that are words even if they look like a quantity."""
 
-_CHOICES: dict[str, type[Enum]] = {
-    "kinematics.model": KinematicModel,
-    "traction.model": TractionModel,
-    "traction.pressure": ContactPressure,
-    "traction.pressure_slip": PressureSlip,
-    "cage.guidance": Guidance,
-    "cage.clearances": ClearanceState,
-    "cage.pocket_shape": PocketShape,
-    "cage.ball": BallModel,
-    "cage.motion": MotionModel,
-    "cage.pocket_contact": PocketContact,
-}
 _NAMES = {
     "bearing.ball_material": "bearing material",
     "bearing.ring_material": "bearing material",
@@ -101,7 +78,7 @@ class TemplateKey:
 
     section: str
     key: str
-    example: Any
+    example: object
     meaning: str
 
     @property
@@ -131,46 +108,30 @@ def template_keys() -> tuple[TemplateKey, ...]:
 
 @cache
 def section_remarks() -> dict[str, str]:
-    """Return what the template states of a section as a whole."""
+    """Return the remark of the template on each section as a whole."""
     found = (_HEADER.fullmatch(line) for line in TEMPLATE.read_text(encoding="utf-8").splitlines())
     return {match[2]: match[3] for match in found if match and match[3] and not match[1]}
 
 
-class Written(NamedTuple):
-    """A row of the template: its key, the cells of its value and its unit."""
-
-    key: str
-    value: Any
-    unit: str
-
-
-def cells_of(key: str, value: Any) -> Iterator[Written]:
-    """Yield the rows of a value of the template; a table has a row for each of its parts."""
+def cells_of(key: str, value: object) -> Iterator[tuple[str, object, str]]:
+    """Yield key, value and unit of the rows of a value of the template; a table has a row for each part."""
     if isinstance(value, dict):
         for part, item in value.items():
             yield from cells_of(f"{key}.{part}", item)
     elif isinstance(value, list):
-        found = [_quantity(item) for item in value]
+        found = [quantity_of(item) for item in value]
         texts = [
-            item if number is None else with_unit(number, "")
+            str(item) if number is None else with_unit(float(number), "")
             for item, (number, _) in zip(value, found, strict=True)
         ]
-        yield Written(key, f"{SEPARATOR} ".join(texts), found[0][1])
+        yield key, f"{SEPARATOR} ".join(texts), found[0][1]
     else:
-        number, unit = (None, "") if key in TEXTS else _quantity(value)
-        yield Written(key, value if number is None else number, unit)
+        number, unit = (None, "") if key in TEXTS else quantity_of(value)
+        yield key, float(number) if number and unit else value, unit
 
 
-def _quantity(value: Any) -> tuple[float | None, str]:
-    """Return number and unit of a text; None if it is none."""
-    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-    if match is None or not any((match[2] or "") in known for known in UNITS.values()):
-        return None, ""
-    return float(match[1]), match[2] or ""
-
-
-def quantity_of(value: Any) -> tuple[str | None, str]:
-    """Return number and unit of a value of a study file as texts; None for one that is something else."""
+def quantity_of(value: object) -> tuple[str | None, str]:
+    """Return number and unit of a value of a study file as texts; None for one that is not a quantity."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return str(value), ""
     match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
@@ -185,15 +146,15 @@ def units_like(unit: str) -> tuple[str, ...]:
 
 
 def choices_of(section: str, key: str) -> tuple[tuple[str, ...], bool]:
-    """Return what a key may hold, and whether another name is allowed too; empty for what has no list."""
-    name = f"{section}.{key}"
-    if name in _CHOICES:
-        return tuple(str(one.value) for one in _CHOICES[name]), False
-    return (library.names(_NAMES[name]), True) if name in _NAMES else ((), True)
+    """Return the choices of a key, none if it has no list, and whether another name is allowed too."""
+    if (options := options_of(section, key)) is not None:
+        return tuple(str(one.value) for one in options), False
+    kind = _NAMES.get(f"{section}.{key}")
+    return (Library().names(kind) if kind else ()), True
 
 
 def is_name(section: str, key: str) -> bool:
-    """Whether a key holds a name, which is text even if it looks like a number: steel 52100."""
+    """Whether the value of a key is a name, which is text even if it looks like a number: steel 52100."""
     return key in TEXTS or bool(choices_of(section, key)[0])
 
 
@@ -213,7 +174,7 @@ def template_workbook() -> bytes:
     return workbook_bytes(book)
 
 
-def _section(sheet: Worksheet, section: str, values: Mapping[str, Any], choices: _Choices) -> None:
+def _section(sheet: Worksheet, section: str, values: Mapping[str, object], choices: _Choices) -> None:
     """Write the keys of a section, those without a value too."""
     headings(sheet, COLUMNS, keep_columns=1)
     row = 1
@@ -234,7 +195,8 @@ def _candidates(sheet: Worksheet, choices: _Choices) -> None:
     """Write the headings of the candidates, with room for some."""
     examples = {(one.section, one.key): one.example for one in template_keys()}
     columns = [("", "name"), ("", "material"), ("GPa", "elastic_modulus"), ("", "poisson_ratio")]
-    for environment in examples["ranking.candidates", "friction"]:
+    frictions = examples["ranking.candidates", "friction"]
+    for environment in frictions if isinstance(frictions, dict) else ():
         columns += [(environment, part) for part in MEASURED if part != "source"]
     for number, (above, below) in enumerate(columns, 1):
         put(sheet, 1, number, above, HEADING, exact=True)
@@ -255,7 +217,7 @@ class _Choices:
         self._cells: list[tuple[Worksheet, str, tuple[str, ...], bool]] = []
 
     def add(self, sheet: Worksheet, row: int, key: str, unit: str) -> None:
-        """Give a row the lists for its value and its unit."""
+        """Add the lists for value and unit of a row."""
         items, is_open = choices_of(*key.split(".", 1))
         if items:
             self._cells.append((sheet, f"B{row}", items, not is_open))
@@ -281,3 +243,50 @@ class _Choices:
             validation.error = "Choose one of the list."
             sheet.add_data_validation(validation)
             validation.add(cell)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Offered:
+    """Names for the candidates of a study; empty where there are none to offer."""
+
+    cage_materials: tuple[str, ...] = ()
+    """Of the library of the study."""
+
+    environments: tuple[str, ...] = ()
+    """Those of the friction tables of the library."""
+
+    tested: tuple[str, ...] = ()
+    """Materials of the table of the library, or the file, in [ranking] friction."""
+
+
+NOTHING = Offered()
+
+
+def offered_by(document: Document) -> Offered:
+    """Return the names that a study may use; none if its library cannot be read."""
+    try:
+        library = library_of(document)
+    except InputError:  # refused where the study is read
+        return NOTHING
+    tables = [library.friction_table(name) for name in library.names("friction table")]
+    return Offered(
+        cage_materials=library.names("cage material"),
+        environments=tuple(dict.fromkeys(env for one in tables for env in one.environments)),
+        tested=_tested(document, library),
+    )
+
+
+def _tested(document: Document, library: Library) -> tuple[str, ...]:
+    """Materials of the table or file in [ranking] friction; none if it cannot be read."""
+    name = document.sections.get("ranking", {}).get("friction")
+    if not isinstance(name, str):
+        return ()
+    try:
+        if not name.endswith(".toml"):
+            return tuple(library.friction_table(library.named("friction table", name) or name).friction)
+        from separatrix.friction.file import read_friction
+
+        tests = read_friction(place(document.friction_folder, name))
+        return tuple(dict.fromkeys(test.material for test in tests))
+    except (DataError, InputError):  # refused where the study is read
+        return ()

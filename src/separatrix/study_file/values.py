@@ -1,348 +1,116 @@
-"""Readers of single values of a study: to what a record has, a number perhaps with its distribution."""
+"""Readers of the values of a study file: how each key of each section is read."""
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Iterator, Mapping
+import types
+import typing
+from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import MISSING, fields
+from enum import Enum
+from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
 
-from separatrix import study
 from separatrix.cage_choice import NAMELESS
-from separatrix.distribution import (
-    COVERAGE,
-    MOST_SAMPLES,
-    Distribution,
-    LogUniform,
-    Normal,
-    Samples,
-    Uniform,
-)
-from separatrix.errors import InputError
+from separatrix.errors import InputError, noted, together
+from separatrix.film_design import MOST_PLACES, Wear, Worn
+from separatrix.input_files import place
 from separatrix.library import Library
-from separatrix.study import Material
-from separatrix.toml_values import (
+from separatrix.study import SECTIONS as RECORDS
+from separatrix.study import KinematicModel, Material, evenly_spaced
+from separatrix.study_file.uncertain import Uncertain, certain, count, gathered, number
+from separatrix.toml_files import (
+    Kind,
     Reader,
     build,
+    choice,
     cut_list,
     list_of,
     nearest,
+    path_text,
     quantity,
     ratio,
+    read_text,
     table,
     text,
     whole,
 )
-from separatrix.units import NUMBER, parse, printable, shown
+from separatrix.units import parse, shown, unit_of
 
-Made = TypeVar("Made", bound=Distribution)
-
-_SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
-_PLAIN = re.compile(NUMBER)
-_PERCENT = re.compile(rf"({NUMBER}) ?%")
-_BRACKETS = re.compile(r"\(([^()]*)\) ?([^()]+)")
-_FORM_OF = {"between": "between", "log": "between", "mean": "mean", "standard_deviation": "mean"} | {
-    "samples": "samples"
-}
-"""Keys of a distribution, and the form that each belongs to."""
-
-_FORMS = "between, or mean with standard_deviation, or samples"
-_ALONE = "Write the value alone if it is certain."
+_CURE = 'Write its first row like "y [mm],thickness [um]".'
+PROFILE = Kind(noun="a profile of a film", most_bytes=5_000_000, empty=_CURE)
+HEADS = ("y", "thickness")
+_HEAD = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
 
 
-@dataclass(frozen=True, slots=True)
-class Uncertain:
-    """A value whose numbers are uncertain: the value with the means, and the distributions by their names."""
+class Context(typing.NamedTuple):
+    """Where the names of a study are looked up."""
 
-    value: Any
-    distributions: Mapping[str, Distribution] = field(default_factory=dict)
-    """Under ``""`` that of the value itself, under the name of a property that of the property."""
+    library: Library = Library()
+    temperature: float | None = None
+    """By which data of the library are chosen; None where the study states none."""
 
-
-def unwrapped(value: Any) -> tuple[Any, Mapping[str, Distribution]]:
-    """The value with its means, and the distributions in it."""
-    return (value.value, value.distributions) if isinstance(value, Uncertain) else (value, {})
+    folder: Path = Path()
+    """Of the files that [film] names."""
 
 
-def gathered(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Distribution]]:
-    """Values of a table with their means, and the distributions in them by dotted names."""
-    values: dict[str, Any] = {}
-    found: dict[str, Distribution] = {}
-    for key, item in given.items():
-        values[key], inside = unwrapped(item)
-        found |= {f"{key}.{name}".removesuffix("."): one for name, one in inside.items()}
-    return values, found
-
-
-def number(unit: str) -> Reader:
-    """Read a number, or what is known of an uncertain one, as `Uncertain`."""
-    reader = quantity(unit)
-
-    def read(value: Any, where: str) -> Any:
-        found: Distribution
-        if isinstance(value, list):
-            found = _samples(value, where, reader, written(value))
-        elif isinstance(value, dict):
-            found = _table(value, where, unit)
-        elif _is_spread(value):
-            found = _plus_minus(value, where, unit)
-        else:
-            return reader(value, where)
-        return Uncertain(found.mean, {"": found})
-
-    return read
-
-
-def count(value: Any, where: str) -> Any:
-    """Read a whole number, or a list of those that it may be, as `Uncertain`."""
-    if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
-        rule = "must be a whole number, or a list of whole numbers that are equally likely"
-        raise InputError(where, rule, shown(value), "Write it like [12, 13].")
-    items = value["samples"] if isinstance(value, dict) else value
-    if not isinstance(items, list):
-        return whole(value, where)
-    found = _samples(items, where, whole, written(value))
-    return Uncertain(int(found.mean), {"": found})
-
-
-def certain(reader: Reader) -> Reader:
-    """Read with `reader`; a distribution is refused as one."""
-
-    def read(value: Any, where: str) -> Any:
-        is_table = isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value)
-        if is_table or _is_spread(value):
-            cure = "This key takes one certain value."
-            raise InputError(where, "takes no distribution", written(value), cure)
-        return reader(value, where)
-
-    return read
-
-
-def written(value: Any) -> str:
-    """The value as the file has it, on one short line."""
-    if isinstance(value, dict):
-        inside = ", ".join(f"{printable(str(key))} = {written(item)}" for key, item in value.items())
-        return f"{{ {inside} }}"
-    if isinstance(value, list):
-        few = [written(item) for item in (value if len(value) <= 6 else value[:3])]
-        return f"[{', '.join(few)}{f', ... {len(value)} of them' if len(value) > 6 else ''}]"
-    return shown(value)
-
-
-def friction_deviation(value: Mapping[str, Any], where: str) -> Any:
-    """Standard deviation of a friction: a number, or percent of the mean."""
-    width, mean = value.get("standard_deviation"), value.get("mean")
-    if not isinstance(width, str) or "%" not in width:
-        return width
-    return _width(width, ratio(mean, f"{where}.mean"), str(mean), f"{where}.standard_deviation", "-")
-
-
-def _is_spread(value: Any) -> bool:
-    return isinstance(value, str) and _SIGN.search(value) is not None
-
-
-def _plus_minus(text: str, where: str, unit: str) -> Normal:
-    """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations.
-
-    ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4).
-    """
-    shared = _BRACKETS.fullmatch(text.strip())
-    parts = _SIGN.split(text.strip() if shared is None else shared[1].strip())
-    if shared is not None:
-        parts = [f"{part} {shared[2]}" for part in parts]
-    like = f'Write it like "{_example(unit)} +- 20 %"'
-    if len(text) > 120 or len(parts) != 2 or not all(parts):
-        raise InputError(where, "must be one value, +- and one expanded uncertainty", shown(text), f"{like}.")
-    if unit != "-" and _PLAIN.fullmatch(parts[0]):
-        cure = f"{like}, with a unit on either side of +-."
-        raise InputError(where, "needs a unit before +- too", shown(text), cure)
-    mean = _written_number(parts[0], where, unit)
-    half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
-    return _made(Normal, where, mean=mean, standard_deviation=half / COVERAGE, text=shown(text))
-
-
-def _table(value: dict[str, Any], where: str, unit: str) -> Distribution:
-    """Read a table with bounds, with mean and standard deviation, or with samples."""
-    for key in value:
-        if key not in _FORM_OF:
-            at, cure = f"{where}.{printable(key) or chr(34) * 2}", nearest(key, _FORM_OF)
-            raise InputError(at, f"is not a key of a distribution: {_FORMS}", cure=cure)
-    found = {_FORM_OF[key] for key in value if key != "log"}
-    if len(found) != 1:
-        rule = f"must have {_FORMS}" if not found else f"must have only one of {_FORMS}"
-        raise InputError(where, rule, written(value))
-    if "log" in value and "between" not in value:
-        raise InputError(f"{where}.log", "has a meaning only with between")
-    if "between" in found:
-        return _between(value, where, quantity(unit))
-    if "mean" in found:
-        return _moments(value, where, unit)
-    if not isinstance(value["samples"], list):
-        raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(value["samples"]))
-    return _samples(value["samples"], f"{where}.samples", quantity(unit), written(value))
-
-
-def _between(value: dict[str, Any], where: str, reader: Reader) -> Distribution:
-    bounds, log, at = value["between"], value.get("log", False), f"{where}.between"
-    if not isinstance(log, bool):
-        raise InputError(f"{where}.log", "must be true or false", shown(log))
-    if not isinstance(bounds, list) or len(bounds) != 2:
-        got = f"a list of {len(bounds)}" if isinstance(bounds, list) else shown(bounds)
-        raise InputError(at, "must be a list of two bounds", got)
-    low, high = (reader(bound, f"{at}, item {i},") for i, bound in enumerate(bounds, 1))
-    if not low < high:
-        cure = _ALONE if low == high else "Write the lower one first."
-        raise InputError(at, "must rise", f"{written(bounds[0])} and {written(bounds[1])}", cure)
-    if log and low <= 0.0:
-        cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
-        raise InputError(at, "must be > 0 with log = true", shown(bounds[0]), cure)
-    return _made(LogUniform if log else Uniform, at, low=low, high=high, text=written(value))
-
-
-def _moments(value: dict[str, Any], where: str, unit: str) -> Normal:
-    if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
-        raise InputError(where, f"lacks: {missing[0]}", written(value))
-    reader, at, width = quantity(unit), f"{where}.standard_deviation", value["standard_deviation"]
-    mean = reader(value["mean"], f"{where}.mean")
-    if isinstance(width, str) and (unit != "-" or "%" in width):
-        deviation = _width(width, mean, str(value["mean"]), at, unit)
-    else:
-        deviation = _not_zero(reader(width, at), width, at)
-    return _made(Normal, where, mean=mean, standard_deviation=deviation, text=written(value))
-
-
-def _samples(items: list[Any], where: str, reader: Reader, text: str) -> Samples:
-    """Read equally likely values."""
-    if not 2 <= len(items) <= MOST_SAMPLES:
-        cure = "Write one value without brackets." if len(items) == 1 else ""
-        raise InputError(where, f"must hold 2 to {MOST_SAMPLES} samples", str(len(items)), cure)
-    values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
-    if min(values) == max(values):
-        raise InputError(where, "must differ: there is no spread in them", written(items), _ALONE)
-    return _made(Samples, where, values=values, text=text)
-
-
-def _made(kind: type[Made], where: str, **values: Any) -> Made:
-    """Make a distribution; its refusals are given the place in the file."""
-    try:
-        return kind(**values)
-    except InputError as error:
-        raise error.at(where) from None
-
-
-def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> float:
-    """Read a width: percent of the mean, or a difference of two values of the quantity."""
-    percent = _PERCENT.fullmatch(text.strip())
-    if percent is None and unit != "-" and _PLAIN.fullmatch(text.strip()):
-        cure = f'Write "{printable(text.strip())} %", or the width with its unit.'
-        raise InputError(where, "needs a unit, or %", shown(text), cure)
-    if percent is None:
-        width = _written_number(text, where, unit)
-        if unit == "K":  # a difference, without the zero of the scale
-            scale = re.sub(r"^\s*[-+.0-9eE]+\s*", "", text)
-            width -= parse(f"0 {scale}", unit, where)
-        return _not_zero(width, text, where)
-    if unit == "K" and not re.search(r"[0-9] ?K$", mean_text.strip()):
-        cure = "Write the width in kelvin."
-        raise InputError(where, "is a share of a temperature, whose zero is arbitrary", shown(text), cure)
-    share = _not_zero(float(percent[1]) / 100.0, text, where)
-    if mean == 0.0:
-        raise InputError(where, "is a share of 0", shown(text), "Write the width with its unit.")
-    return share * abs(mean)
-
-
-def _written_number(text: str, where: str, unit: str) -> float:
-    """Read a number inside a text; a ratio stands there without quotes of its own."""
-    if unit != "-":
-        return parse(text, unit, where)
-    if _PLAIN.fullmatch(text.strip()) is None:
-        cure = "Write a decimal point." if "," in text else f'Write it like "{_example(unit)} +- 20 %".'
-        raise InputError(where, "must be a plain number, without a unit", shown(text), cure)
-    return ratio(float(text), where)
-
-
-def _not_zero(width: float, written_as: Any, where: str) -> float:
-    if not width > 0.0:
-        cure = _ALONE if width == 0.0 else "A width has no sign."
-        raise InputError(where, "must be a width > 0", shown(written_as), cure)
-    return width
-
-
-def _example(unit: str) -> str:
-    return {"m": "0.5 um", "N": "300 daN", "Pa": "1.5 GPa", "-": "0.1"}.get(unit, "1.5 " + unit)
-
-
-_Reading = tuple[Library, float | None, Path]
-_READING: ContextVar[_Reading] = ContextVar("reading", default=(Library(), None, Path()))
+_NOWHERE = Context()
+_READING: ContextVar[Context] = ContextVar("reading", default=_NOWHERE)
 
 
 @contextmanager
 def using(library: Library, temperature: float | None, folder: Path) -> Iterator[None]:
-    """Read names from this library, with the data that serve at this temperature, until the end.
-
-    `folder` has the files that [film] names.
-    """
-    before = _READING.set((library, temperature, folder))
+    """Look up names here until the end, see `Context`."""
+    before = _READING.set(Context(library, temperature, folder))
     try:
         yield
     finally:
         _READING.reset(before)
 
 
-def current_library() -> Library:
-    """The library of the study that is being read; the shipped one otherwise."""
-    return _READING.get()[0]
+def context() -> Context:
+    """Return that of the study that is being read."""
+    return _READING.get()
 
 
-def current_temperature() -> float | None:
-    """Temperature of the study that is being read; None where it states none."""
-    return _READING.get()[1]
-
-
-def current_folder() -> Path:
-    """Folder of the files that [film] of the study that is being read names."""
-    return _READING.get()[2]
-
-
-def items(unit: str, default: str) -> Reader:
+def items(unit: str, default: str) -> Reader[tuple[float, ...]]:
     """Read a list of numbers that is not empty; left out, there is a default."""
 
-    def read(value: Any, where: str) -> tuple[float, ...]:
-        if not value and isinstance(value, list):
+    def read(value: object, where: str) -> tuple[float, ...]:
+        if value == []:
             raise InputError(where, "must not be empty", cure=f"Leave it out to have {default}.")
-        found: tuple[float, ...] = list_of(quantity(unit))(value, where)
-        return found
+        return list_of(quantity(unit))(value, where)
 
     return read
 
 
-def kicks(value: Any, where: str) -> tuple[float, ...]:
+def kicks(value: object, where: str) -> tuple[float, ...]:
     """Read the speeds of the kicks, in any order."""
     return tuple(sorted(items("m/s", "them chosen")(value, where)))
 
 
-def restitution_factors(value: Any, where: str) -> tuple[float, ...]:
+def restitution_factors(value: object, where: str) -> tuple[float, ...]:
     """Read ``{ from = 0.05, to = 0.95, count = 19 }``, or a list of numbers."""
     if not isinstance(value, dict):
-        return tuple(items("-", "them chosen")(value, where))
+        return items("-", "them chosen")(value, where)
     given = table(value, where, {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
     if not 2 <= given["count"] <= 1000:
         raise InputError(where, "needs a count from 2 to 1000", shown(given["count"]))
-    return study.evenly_spaced(given["from"], given["to"], given["count"])
+    return evenly_spaced(given["from"], given["to"], given["count"])
 
 
-def material(kind: str) -> Reader:
+def material(kind: str) -> Reader[Material | Uncertain]:
     """Read a material: a name of the library, or a table with its properties."""
 
-    def read(value: Any, where: str) -> Material | Uncertain:
+    def read(value: object, where: str) -> Material | Uncertain:
         if isinstance(value, str):
             return named_material(value, kind, where)
         if not isinstance(value, dict):
             rule = f"must be the name of a {kind}, or its properties elastic_modulus and poisson_ratio"
-            cure = f'Write it like "{current_library().names(kind)[0]}".'
+            cure = f'Write it like "{context().library.names(kind)[0]}".'
             raise InputError(where, rule, shown(value), cure)
         given, found = gathered(table(value, where, _PROPERTIES, ("elastic_modulus", "poisson_ratio")))
         made = build(Material, {"name": NAMELESS, **given}, where)
@@ -351,7 +119,7 @@ def material(kind: str) -> Reader:
     return read
 
 
-_PROPERTIES: dict[str, Reader] = {
+_PROPERTIES: dict[str, Reader[object]] = {
     "elastic_modulus": number("Pa"),
     "poisson_ratio": number("-"),
     "density": number("kg/m3"),
@@ -364,24 +132,156 @@ _PROPERTIES: dict[str, Reader] = {
 
 
 def named_material(name: str, kind: str, where: str) -> Material:
-    """Material of the library, or a refusal that lists what there is."""
-    return current_library().material(kind, known_name(name, kind, where), current_temperature())
+    """Material of the library, or a refusal that lists its materials."""
+    return context().library.material(kind, known_name(name, kind, where), context().temperature)
 
 
-def cage_material(value: Any, where: str) -> Material | Uncertain | str:
+def cage_material(value: object, where: str) -> Material | Uncertain | str:
     """Read the cage's material; a name that the library lacks stays, for it may be that of a candidate."""
-    if isinstance(value, str) and current_library().named("cage material", value) is None:
+    if isinstance(value, str) and context().library.named("cage material", value) is None:
         return text(value, where)
-    found: Material | Uncertain = material("cage material")(value, where)
-    return found
+    return material("cage material")(value, where)
 
 
 def known_name(name: str, kind: str, where: str, more: str = "") -> str:
-    """Exact name in the library of one in any spelling, or a refusal with what there is."""
-    found = current_library().named(kind, name)
+    """Exact name in the library of one in any spelling, or a refusal that lists the names."""
+    found = context().library.named(kind, name)
     if found is not None:
         return found
-    names = current_library().names(kind)
+    names = context().library.names(kind)
     listed, near = cut_list(f"The library has {', '.join(names)}."), nearest(name, names)
     cure = f"{near} {listed}{more}" if near.startswith("Did") else f"{listed}{more}"
     raise InputError(where, f"is not a {kind} of the library", shown(name), cure)
+
+
+_WEAR: dict[str, Reader[object]] = {
+    "friction": number("-"),
+    "width": number("m"),
+    "share": number("-"),
+    "thickness": number("m"),
+    "across": list_of(quantity("m")),
+    "thicknesses": list_of(quantity("m")),
+    "profile": text,
+    "races": choice(Worn),
+}
+
+
+def wear(value: object, where: str) -> Wear | Uncertain:
+    """Read the wear of a film: a band, or a profile of thickness in the study or in a CSV file."""
+    given, found = gathered(table(value, where, _WEAR, ("friction",), "[film.wear]"))
+    if "profile" in given:
+        if {"across", "thicknesses"} & given.keys():
+            rule = "and across with thicknesses exclude each other"
+            raise InputError(f"{where}.profile", rule, cure="Give one of the two.")
+        given["across"], given["thicknesses"] = read_profile(
+            place(context().folder, str(given.pop("profile"))), f"{where}.profile"
+        )
+    made = build(Wear, given, where)
+    return Uncertain(made, found) if found else made
+
+
+def read_profile(path: Path, where: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Places across the groove and thicknesses there [m], of a table of two columns with their units."""
+    if not path.is_file():
+        cure = "It is looked for in the folder of the study."
+        raise InputError(where, "does not name a file", shown(str(path.name)), cure)
+    lines = enumerate(read_text(path, PROFILE).splitlines(), start=1)
+    rows = [(n, row) for n, line in lines if (row := next(csv.reader([line]), []))]
+    label = path_text(path)
+    heads = [_HEAD.fullmatch(cell) for cell in rows[0][1]] if rows else []
+    found = {head[1].casefold(): (i, head[2]) for i, head in enumerate(heads) if head is not None}
+    if set(found) != set(HEADS) or len(heads) != len(HEADS):
+        raise InputError(f"{label}, line 1", "must name two columns, y and thickness", cure=_CURE)
+    if len(rows) - 1 > MOST_PLACES:
+        raise InputError(label, f"must have at most {MOST_PLACES} rows", f"{len(rows) - 1}")
+    columns: dict[str, list[float]] = {name: [] for name in HEADS}
+    problems: list[InputError] = []
+    for line, row in rows[1:]:
+        with noted(problems):
+            at = f"{label}, line {line}"
+            if len(row) != len(HEADS):
+                raise InputError(at, "must have two cells", f"{len(row)}")
+            for name, (i, unit) in found.items():
+                columns[name].append(parse(f"{row[i].strip()} {unit}", "m", f"{at}: {name}"))
+    if problems:
+        raise together(problems)
+    return tuple(columns["y"]), tuple(columns["thickness"])
+
+
+_CERTAIN = frozenset({"reference_kick", "runs", "seed"})
+_LISTS: dict[str, Reader[tuple[float, ...]]] = {
+    "kicks": kicks,
+    "pocket_angles": items("rad", "evenly spaced pockets"),
+    "restitution_factors": restitution_factors,
+}
+_MATERIALS: dict[tuple[str, str], Reader[object]] = {
+    ("bearing", "ball_material"): material("bearing material"),
+    ("bearing", "ring_material"): material("bearing material"),
+    ("film", "material"): material("film"),
+    ("cage", "material"): cage_material,
+}
+
+
+def required_fields(record: type) -> list[str]:
+    """Fields of a record that have no default."""
+    return [f.name for f in fields(record) if f.default is f.default_factory is MISSING]
+
+
+@cache
+def _types(record: type) -> dict[str, object]:
+    """Types of the fields of a record, without None."""
+    hints = typing.get_type_hints(record).items()
+    return {
+        name: typing.get_args(hint)[0] if isinstance(hint, types.UnionType) else hint for name, hint in hints
+    }
+
+
+def options_of(section: str, key: str) -> type[Enum] | None:
+    """Choices of a key; None for a key that takes other values."""
+    if section == "kinematics":
+        return KinematicModel
+    record = RECORDS.get(section)
+    hint = None if record is None else _types(record).get(key)
+    return hint if isinstance(hint, type) and issubclass(hint, Enum) else None
+
+
+def _reader(section: str, record: type, name: str) -> Reader[object]:
+    """Reader of a field of a record, by its type."""
+    hint, options = _types(record)[name], options_of(section, name)
+    if name in _LISTS:
+        return certain(_LISTS[name])
+    if hint is Material:
+        return _MATERIALS[section, name]
+    if hint is Wear:
+        return wear
+    if hint is int:
+        return certain(whole) if name in _CERTAIN else count
+    if hint is str:
+        return text
+    if options is not None:
+        return choice(options)
+    unit = unit_of(record, name)
+    return certain(quantity(unit)) if name in _CERTAIN else number(unit)
+
+
+READERS: dict[str, dict[str, Reader[object]]] = {
+    **{
+        # the name of the cage's candidate follows from its material
+        section: {
+            f.name: _reader(section, record, f.name) for f in fields(record) if f.name != "material_name"
+        }
+        for section, record in RECORDS.items()
+    },
+    "kinematics": {"model": choice(KinematicModel)},
+    "ranking": {
+        "friction": text,
+        "materials": list_of(text),
+        "environment": text,
+        "candidates": lambda value, _: value,  # read one by one by `ranking_section`
+        "friction_scatter": certain(ratio),
+    },
+}
+"""How each key of each section is read: the contract of a study file."""
+
+READERS["bearing"]["radial_clearance"] = number("m")
+READERS["film"] |= {"elastic_modulus": number("Pa"), "poisson_ratio": number("-")}

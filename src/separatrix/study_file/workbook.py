@@ -1,19 +1,19 @@
 """A study in a workbook: one sheet for each section, one row for each key (docs/reference/workbook.md).
 
-A row gives a key, its value, perhaps its uncertainty, and its unit. It becomes what a TOML file would
-say, ``"25 g"`` or ``"0.5 um +- 20 %"``, and is read by the same readers; a dotted key is a table in place.
+A row gives a key, its value, perhaps its uncertainty, and its unit. It becomes the value of a TOML
+file, ``"25 g"`` or ``"0.5 um +- 20 %"``, and is read by the same readers; a dotted key is a table in place.
 The sheet `candidates` has one row for each cage material and its frictions by environment: its first row
 names the environments, the second what the columns hold.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import re
 import warnings
 from collections.abc import Iterator
+from dataclasses import fields
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import SECTIONS as RECORDS
@@ -36,12 +36,11 @@ from separatrix.study_file.cells import (
 )
 from separatrix.study_file.document import SECTIONS, TOP, Document
 from separatrix.study_numbers import numbers_of
-from separatrix.toml_text import Places, label_of
-from separatrix.toml_values import nearest
+from separatrix.toml_files import Places, label_of, nearest
 from separatrix.units import UNITS, missing_unit, printable, shown, unit_of
 
 STUDY_SHEET = "study"
-"""The sheet of what a TOML file has above its sections: title, extends, library."""
+"""The sheet of the keys above the sections of a TOML file: title, extends, library."""
 
 CANDIDATES = "candidates"
 OWN = ("name", "material")
@@ -49,9 +48,9 @@ PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "source")
 """Of a material in place; one with a unit has it in the first row."""
 
 MEASURED = ("mean", "standard_deviation", "count", "source")
-LISTS = frozenset(
-    {"kicks", "pocket_angles", "restitution_factors", "materials", "library", "between", "samples"}
-    | {"across", "thicknesses"}
+LISTS = (
+    *("kicks", "pocket_angles", "restitution_factors", "materials", "library", "between", "samples"),
+    *("across", "thicknesses"),
 )
 """Keys, and last parts of dotted keys, that are lists even of one item."""
 
@@ -65,7 +64,7 @@ def document_of(path: Path) -> Document:
     Warns
     -----
     ValidityWarning
-        It holds formulas: their saved values are taken.
+        It has formulas: their saved values are taken.
     """
     label = label_of(path)
     document = Document(path, places=Places(label), friction_folder=path.parent, film_folder=path.parent)
@@ -74,18 +73,15 @@ def document_of(path: Path) -> Document:
     for sheet in sheets_of(path, label, lambda name: name.strip().casefold() in _NAMES):
         name = sheet.name.strip().casefold()
         if name not in _NAMES:
-            second = {
-                str(c.value).strip()
-                for (row, _), c in sheet.cells.items()
-                if row == 2 and isinstance(c, Cell)
-            }
+            cells = sheet.cells.items()
+            second = {str(c.value).strip() for (row, _), c in cells if row == 2 and isinstance(c, Cell)}
             if {"key", "value"} <= sheet.headings().keys() or {"name", "mean"} <= second:
                 raise InputError(sheet.place, "is not a section of a study", cure=nearest(sheet.name, _NAMES))
             continue
         if sheet.beyond:
             from openpyxl.utils import get_column_letter
 
-            rule = f"lies beyond row {MOST_ROWS} or column {get_column_letter(MOST_COLUMNS)}, and is not read"
+            rule = f"is beyond row {MOST_ROWS} or column {get_column_letter(MOST_COLUMNS)}, and is not read"
             raise InputError(sheet.beyond, rule, cure="Move it, or clear it.")
         if (twin := known.setdefault(name, sheet.name)) != sheet.name:
             cure = "Delete one of them, or give it another name."
@@ -101,14 +97,14 @@ def document_of(path: Path) -> Document:
         raise InputError(label, "has no sheet of a study with a value in it", cure=cure)
     if formulas:
         listed = ", ".join(formulas[:5]) + (", ..." if len(formulas) > 5 else "")
-        what = "the cell holds a formula" if len(formulas) == 1 else f"{len(formulas)} cells hold formulas"
+        what = "the cell has a formula" if len(formulas) == 1 else f"{len(formulas)} cells have formulas"
         sentence = f"{label}: {what} ({listed}); the saved values are used, nothing is recomputed."
         warnings.warn(sentence, ValidityWarning, stacklevel=4)
     return document
 
 
 class _Row(NamedTuple):
-    """The cells of a row that has a value."""
+    """The cells of a row with a value."""
 
     number: int
     key: Cell
@@ -123,11 +119,11 @@ def _add_keys(document: Document, sheet: Sheet, section: str) -> None:
     if not {"key", "value"} <= columns.keys():
         cure = f"Its first row has the headings {', '.join(COLUMNS)}."
         raise InputError(sheet.place, "has no headings key and value", cure=cure)
-    entries: dict[str, Any] = {}
+    entries: dict[str, object] = {}
     for row in list(_rows(sheet, columns)):
         dotted, unit = row.key.text, "" if row.unit is None or row.unit.text == "-" else row.unit.text
         key, *inside = dotted.split(".")
-        value: Any = _written(dotted, row, unit)
+        value: object = _written(dotted, row, unit)
         path = f"[{section}] {dotted}" if section != STUDY_SHEET else dotted
         known |= {path: row.value.place, f"{path}, after +-,": (row.spread or row.value).place}
         known.setdefault(path.removesuffix("".join(f".{part}" for part in inside)), row.value.place)
@@ -161,7 +157,7 @@ def _add_keys(document: Document, sheet: Sheet, section: str) -> None:
 
 
 def _rows(sheet: Sheet, columns: dict[str, int]) -> Iterator[_Row]:
-    """Yield the rows that have a value; a key is written once, and as keys are."""
+    """Yield the rows with a value; a key may be written once."""
     seen: dict[str, str] = {}
     for number in range(2, sheet.last_row + 1):
         key, value, spread, unit = (sheet.given(number, columns.get(name)) for name in COLUMNS[:4])
@@ -182,7 +178,7 @@ def _rows(sheet: Sheet, columns: dict[str, int]) -> Iterator[_Row]:
 
 
 def _written(key: str, row: _Row, unit: str) -> Plain | list[Plain]:
-    """Return the value of a row as a TOML file would give it."""
+    """Return the value of a row as a TOML file has it."""
     value, spread = row.value, row.spread
     if isinstance(value.value, str) and _is_list(key, value.value):
         if spread is not None:
@@ -232,15 +228,16 @@ def _items(text: str, unit: str) -> list[Plain]:
 
 def _unit_of(section: str, key: str, inside: list[str]) -> str:
     """Unit of a key of a section, of a property of a material or of wear; empty where it has none."""
-    names = {"radial_clearance": "m", "elastic_modulus": "Pa"}
     within = Wear if key == "wear" else Material
-    name = inside[-1] if inside and inside[-1] in numbers_of(within) else key
-    record = RECORDS.get(section) if name == key else within
-    known = record is not None and name in {f.name for f in dataclasses.fields(record)}
-    return unit_of(record, name) if record is not None and known else names.get(name, "")
+    record, name = RECORDS.get(section), key
+    if inside and inside[-1] in numbers_of(within):
+        record, name = within, inside[-1]
+    if record is not None and name in {f.name for f in fields(record)}:
+        return unit_of(record, name)
+    return {"radial_clearance": "m", "elastic_modulus": "Pa"}.get(name, "")
 
 
-def _put(table: Any, keys: tuple[str, ...], value: Any) -> bool:
+def _put(table: object, keys: tuple[str, ...], value: object) -> bool:
     """Set an item of a table, itself perhaps in a table; return whether its place was free."""
     for key in keys[:-1]:
         table = table.setdefault(key, {}) if isinstance(table, dict) else None
@@ -251,7 +248,7 @@ def _put(table: Any, keys: tuple[str, ...], value: Any) -> bool:
 
 
 class _Column(NamedTuple):
-    """What a column of the candidates holds: a property, or a number of an environment."""
+    """A column of the candidates: a property, or a number of an environment."""
 
     number: int
     what: str
@@ -269,9 +266,9 @@ class _Column(NamedTuple):
 def _add_candidates(document: Document, sheet: Sheet) -> None:
     """Add the candidates as tables."""
     columns, known = list(_columns(sheet)), document.places.known
-    items: list[dict[str, Any]] = []
+    items: list[dict[str, object]] = []
     for row in range(3, sheet.last_row + 1):
-        item: dict[str, Any] = {}
+        item: dict[str, object] = {}
         at = f"[ranking] candidates[{len(items) + 1}]"
         for column in columns:
             if (cell := sheet.given(row, column.number)) is None:
@@ -290,9 +287,10 @@ def _add_candidates(document: Document, sheet: Sheet) -> None:
             rule = f"must name the candidate of row {row}"
             raise InputError(sheet.at(row, number), rule, cure="Name it, or clear the row.")
         if item:
-            given = item.get("friction", {})
-            alone = {name: one["mean"] if set(one) == {"mean"} else one for name, one in given.items()}
-            items.append(item | ({"friction": alone} if alone else {}))
+            if isinstance(given := item.get("friction"), dict):
+                alone = {name: one["mean"] if set(one) == {"mean"} else one for name, one in given.items()}
+                item["friction"] = alone
+            items.append(item)
             known[at] = f"{sheet.place}, row {row}"
     if items:
         known["[ranking] candidates"] = sheet.place
@@ -327,7 +325,7 @@ def _columns(sheet: Sheet) -> Iterator[_Column]:
         yield column
 
 
-def _part(cell: Cell, column: _Column) -> Any:
+def _part(cell: Cell, column: _Column) -> Plain | list[Plain]:
     value, is_measured = cell.value, column.what in MEASURED and column.what != "source"
     if is_measured and isinstance(value, str) and not begins_as_number(value):
         cure = "Leave the cell empty if it was not measured."

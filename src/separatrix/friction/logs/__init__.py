@@ -1,4 +1,4 @@
-"""Reading tribometer logs: the format is detected from what the file holds, not from its name."""
+"""Reading tribometer logs: the format is detected from its content, not from its name."""
 
 from __future__ import annotations
 
@@ -17,13 +17,11 @@ from separatrix.friction.logs.dialect import CLOCK, text_of
 from separatrix.friction.logs.header import Layout, layout_of
 from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
-from separatrix.friction.logs.raw import raw_log
-from separatrix.friction.logs.sliding import motion_columns
-from separatrix.regular_file import size_of, unreadable
+from separatrix.friction.logs.raw import motion_columns, raw_log
+from separatrix.input_files import size_of, unreadable
 from separatrix.units import format_quantity, printable, shown, unit_of
 
 __all__ = ["column_map", "described", "read_column_map", "read_log"]
-
 LARGEST = 2_000_000_000  # bytes that a log may have
 
 
@@ -58,9 +56,9 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     if raw.startswith(b"PK\x03\x04"):
         return _logs(_tables_of_workbook(file), file, "Excel workbook")
     if raw.startswith(b"TDSm"):
-        from separatrix.friction.logs import tdms
+        from separatrix.friction.logs.binary import tdms_tables
 
-        return _logs(tdms.read_tables(path), file, "LabVIEW TDMS")
+        return _logs(tdms_tables(path), file, "LabVIEW TDMS")
     text, encoding = text_of(raw, name, chosen.format.encoding)
     if not text[:65536].strip():
         raise InputError(name, "is empty")
@@ -148,7 +146,7 @@ def _goes_on(before: RawTable, table: RawTable, file: _File) -> bool:
 
 def _tables_of_workbook(file: _File) -> list[RawTable]:
     """Tables of all sheets, or of those that the column map names."""
-    from separatrix.friction.logs.sheet import checked, odd_cells, sheets_as_text
+    from separatrix.friction.logs.binary import checked, odd_cells, sheets_as_text
 
     texts, form = sheets_as_text(file.path, file.name), file.chosen.format
     given = "".join(choice.unit or "" for choice in file.chosen.columns.values())

@@ -6,14 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from pathlib import Path, PurePosixPath
-from typing import Any
 
 from separatrix import units
 from separatrix.errors import InputError
+from separatrix.friction.file import place
 from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
 from separatrix.friction.logs.names import MEANINGS, known_units, scale_of
-from separatrix.friction.records import place
-from separatrix.toml_text import Kind, read_toml
+from separatrix.toml_files import Kind, build, quantity, read_toml
 from separatrix.units import printable, shown
 
 KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')
@@ -34,7 +33,6 @@ QUANTITIES = {
 
 TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
 RUN_IN_END = "run_in_end"  # where running-in ends: not a condition, but stated with them
-
 _AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
 _DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
 
@@ -186,7 +184,7 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
 def _format(given: Mapping[str, object], where: str) -> TextFormat:
     _known(given, tuple(f.name for f in fields(TextFormat)), where, "key")
     options = {"separator": SEPARATORS, "decimal": _DECIMALS, "encoding": {name: name for name in ENCODINGS}}
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     for key, value in given.items():
         if key in options:
             if not isinstance(value, str) or value not in options[key]:
@@ -208,7 +206,7 @@ def _format(given: Mapping[str, object], where: str) -> TextFormat:
         raise InputError(where, "cannot have a comma both as separator and as decimal sign")
     if found.get("units_line") and not found.get("header_line"):
         raise InputError(f"{where} units_line", "needs a header_line, too")
-    return TextFormat(**found)
+    return build(TextFormat, found, where)
 
 
 def _conditions(given: Mapping[str, object], where: str) -> dict[str, str | float]:
@@ -216,7 +214,7 @@ def _conditions(given: Mapping[str, object], where: str) -> dict[str, str | floa
     return {key: _condition(key, value, f"{where} {key}") for key, value in given.items()}
 
 
-def _condition(key: str, value: Any, where: str) -> str | float:
+def _condition(key: str, value: object, where: str) -> str | float:
     if key in TEXTS:
         if not isinstance(value, str) or not 0 < len(value) <= 200 or not value.isprintable():
             raise InputError(where, "must be printable text of 1 to 200 characters", shown(value))
@@ -232,7 +230,7 @@ def _condition(key: str, value: Any, where: str) -> str | float:
             raise InputError(where, rule, shown(value), 'Write "3 mm2".')
         number = units.parse(f"{written} m", "m", where) * _AREAS[unit.strip()]
     else:
-        number = units.parse(value, QUANTITIES[key], where)
+        number = quantity(QUANTITIES[key])(value, where)
     if number <= 0.0:
         raise InputError(where, "must be > 0", shown(value))
     return number

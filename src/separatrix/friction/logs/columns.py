@@ -53,7 +53,7 @@ class Understood:
     unsettled: dict[str, list[int]] = field(default_factory=dict)
     """Columns that could have each meaning, had they a unit or were they the only one."""
     twins: dict[str, list[int]] = field(default_factory=dict)
-    """Other columns of the same name and unit as the one used; they must hold the same numbers."""
+    """Other columns of the same name and unit as the one used; they must have the same numbers."""
 
 
 def understand(
@@ -170,7 +170,8 @@ class _Table:
         if not found:
             rule = f"has no column {shown(name)}, which the column map names as {meaning}"
             raise InputError(self.source, rule, cure=f"It has {self.listed(range(len(self.headers)))}.")
-        cure = f"Below [columns], write its number instead: {meaning} = {_numbers(found)}."
+        numbers = " or ".join(str(i + 1) for i in found)
+        cure = f"Below [columns], write its number instead: {meaning} = {numbers}."
         raise InputError(self.source, f"has {len(found)} columns {shown(name)}", cure=cure)
 
     def options(self, i: int) -> list[Meant]:
@@ -189,8 +190,7 @@ class _Table:
         return [Meant(i, "time", CLOCK, Scale(), LAST)] if unit == CLOCK else []
 
 
-Options = dict[int, list[Meant]]
-"""What each column that the map does not name may mean."""
+Options = dict[int, list[Meant]]  # what each column that the map does not name may mean
 
 
 def _decided(options: Options, given: dict[str, Meant], headers: Sequence[str]) -> Understood:
@@ -299,10 +299,6 @@ def _why_not(options: Sequence[Meant], result: Understood) -> str:
         return f"the same as the column of {words}"
     used = one.meaning in result.used
     return f"another column is the {words}" if used else f"one of several that could be {words}"
-
-
-def _numbers(places: Sequence[int]) -> str:
-    return " or ".join(str(i + 1) for i in places)
 
 
 def _words(meaning: str) -> str:

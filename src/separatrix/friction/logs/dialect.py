@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 
 import numpy as np
@@ -18,16 +18,14 @@ _MISSING = (
     "#ref! #name? #wert! inf +inf -inf infinity -infinity 1.#inf -1.#inf 1.#qnan -1.#qnan 1.#ind -1.#ind "
     "nan(ind) -nan(ind)"
 )
-MISSING = frozenset({"", *_MISSING.split()})
-"""How files write a missing value, in small letters."""
-
+MISSING = frozenset({"", *_MISSING.split()})  # how files write a missing value, in small letters
 SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
 """What `[format] separator` of a column map may be, and the character meant."""
 
 ENCODINGS = ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk")
 """What `[format] encoding` of a column map may be."""
 
-QUOTED = "\x1f"  # stands for the comma between fields, where fields in quotes hold commas
+QUOTED = "\x1f"  # replaces the comma between fields, where fields in quotes contain commas
 _NAMES = {
     "\t": "tab",
     ";": "semicolon",
@@ -63,17 +61,29 @@ class Dialect:
 
     def fields(self, line: str) -> list[str]:
         """The fields of a line, without quotes and the blanks around them."""
-        return fields(line, self.separator)
+        parts = line.split() if self.separator == " " else line.split(self.separator)
+        return [part.strip().strip('"').strip() for part in parts]
 
     def is_data(self, line: str) -> bool:
-        """True for a row of the table: numbers or their absence, with few words or dates beside them."""
-        return _is_data(self.fields(line), self.missing, self.separator)
+        """True for a row of the table: numbers or their absence, with few words or dates beside them.
 
-
-def fields(line: str, separator: str) -> list[str]:
-    """The fields of a line, without quotes and the blanks around them."""
-    parts = line.split() if separator == " " else line.split(separator)
-    return [part.strip().strip('"').strip() for part in parts]
+        Two numbers, or one and a time, and at most twice as many words; between blanks only as many.
+        """
+        numbers = words = absent = clocks = 0
+        for field in self.fields(line):
+            if field.casefold() in self.missing:
+                absent += 1
+            elif is_number(field) or _several_signs(field):
+                numbers += 1
+            elif is_clock(field):
+                clocks += 1
+            elif _WORD.match(field):
+                words += 1
+            else:
+                return False
+        if numbers + clocks < 2 or not numbers:
+            return numbers == 1 and absent > 0 and words == 0
+        return words + (clocks if numbers > 1 else 0) <= (1 if self.separator == " " else 2) * numbers
 
 
 def dialect_of(
@@ -92,21 +102,21 @@ def dialect_of(
     """
     if separator is None:
         scores = dict.fromkeys(_NAMES, 0)
-        for line in lines:
-            for one in scores:
-                if one in line or (one == " " and "\t" in line):
-                    scores[one] += _is_data(fields(line, one), missing, one)
+        for one in scores:
+            dialect = Dialect(separator=one, decimal=".", missing=missing)
+            near = (line for line in lines if one in line or (one == " " and "\t" in line))
+            scores[one] = sum(map(dialect.is_data, near))
         separator = max(scores, key=lambda one: scores[one])
         if scores[separator] == 0:
             cure = "It needs a line of column names above at least two rows; a column map can state where."
             if any(is_moment(field) for line in lines for field in re.split(r"[\t;,| ]+", line)):
                 cure = NO_MOMENTS
             raise InputError(source, "has no table of numbers with two columns or more", cure=cure)
-    if decimal is None:
-        rows = (fields(line, separator) for line in lines)
-        rows_of_data = [row for row in rows if _is_data(row, missing, separator)]
-        decimal = "." if separator == "," else _decimal(rows_of_data, source)
-    return Dialect(separator=separator, decimal=decimal, missing=missing)
+    dialect = Dialect(separator=separator, decimal=decimal or ".", missing=missing)
+    if decimal is None and separator != ",":
+        rows = [dialect.fields(line) for line in lines if dialect.is_data(line)]
+        dialect = replace(dialect, decimal=_decimal(rows, source))
+    return dialect
 
 
 def is_number(field: str) -> bool:
@@ -117,25 +127,6 @@ def is_number(field: str) -> bool:
 def is_moment(field: str) -> bool:
     """True for a date or a time of day."""
     return _MOMENT.match(field) is not None
-
-
-def _is_data(row: Sequence[str], missing: frozenset[str], separator: str) -> bool:
-    """Two numbers, or one and a time, and at most twice as many words; between blanks only as many."""
-    numbers = words = absent = clocks = 0
-    for field in row:
-        if field.casefold() in missing:
-            absent += 1
-        elif is_number(field) or _several_signs(field):
-            numbers += 1
-        elif is_clock(field):
-            clocks += 1
-        elif _WORD.match(field):
-            words += 1
-        else:
-            return False
-    if numbers + clocks < 2 or not numbers:
-        return numbers == 1 and absent > 0 and words == 0
-    return words + (clocks if numbers > 1 else 0) <= (1 if separator == " " else 2) * numbers
 
 
 def _several_signs(field: str) -> bool:
@@ -183,7 +174,7 @@ _CONTROLS = bytes(c for c in range(32) if c not in b"\t\n\r\f")
 def text_of(raw: bytes, source: str, encoding: str | None = None) -> tuple[bytes, str]:
     """The file as UTF-8 with line feeds only, and the encoding it had.
 
-    A byte order mark decides; without one, UTF-16 is known by the NUL bytes that its Latin letters have in
+    A byte order mark decides; without one, UTF-16 is detected by the NUL bytes that its Latin letters have in
     every second place, UTF-8 by being valid, and what is left is Windows-1252 if no byte is undefined in it.
     """
     for magic, (what, cure) in _OTHERS.items() if encoding is None else ():
@@ -240,7 +231,6 @@ def _binary(source: str) -> InputError:
 
 CLOCK = "clock"  # unit of a column of times as text
 SHORT_CLOCKS = ("hh:mm", "h:min", "mm:ss", "min:s", "m:s")  # units of times of two numbers
-
 _DAY = 86_400.0
 _MONTHS = "jan feb mar apr may jun jul aug sep oct nov dec"
 _DATE = r"(?P<a>\d{1,4})(?P<sign>[-/. ])(?P<b>\d{1,2}|[A-Za-z]{3})[a-z]*(?P=sign)(?P<c>\d{1,4})"
@@ -250,7 +240,7 @@ _DATE_AND_TIME = re.compile(rf"(?:{_DATE}[\sT,_]\s*)?{_TIME}{_ZONE}")
 
 
 def is_clock(field: str) -> bool:
-    """Return whether a field holds a time of day or a duration, with or without a date before it.
+    """Return whether a field is a time of day or a duration, with or without a date before it.
 
     Examples
     --------

@@ -34,7 +34,6 @@ _REMARKS = frozenset(
 
 _PAIR = re.compile(r"[\s#%]*([^:=\t;,]{1,60}?)\s*(?:[:=\t;,]\s*)+(\S.*?)[\s;,]*$")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)\s*(\d+)\s*$", re.IGNORECASE)
-
 MOST = 400  # pairs kept of one table
 
 
@@ -198,7 +197,7 @@ class Layout:
     interruption: re.Pattern[str] | None = None
     """Lines that may appear between rows of the table and are not part of it."""
     heading: re.Pattern[bytes] | None = None
-    """Blocks of lines that are never rows, however many numbers they hold."""
+    """Blocks of lines that are never rows, however many numbers are in them."""
     keys_above: bool = False  # A line of keys is above one of values, even if there are only two of them
     numbered: Mapping[str, re.Pattern[str]] = field(default_factory=dict)
     """Lines before a table that number it, by the word for its name: ``run 1, step 2``."""
@@ -247,7 +246,7 @@ def _umt_series(head: str) -> str:
     return f"{data[1]} {script[1] if script else ''}" if data else ""
 
 
-PLAIN = Layout(name="plain text", recognised=lambda _: True)  # A table in text of no known instrument
+PLAIN = Layout(name="plain text", recognised=lambda _: True)  # a table of an unknown instrument
 LAYOUTS = (
     Layout(  # .lvm: a head and segments, each with a block of keys and its own table; X_Value is the time
         name="LabVIEW text",

@@ -74,7 +74,7 @@ class ColumnRead:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RawTable:
-    """One table as a file holds it, before its columns have a meaning."""
+    """One table of a file, before its columns have a meaning."""
 
     name: str  # of the sheet, channel group or section; empty where the file has one table only
     headers: tuple[str, ...]
@@ -91,31 +91,24 @@ class RawTable:
 class RawLog:
     """Friction of one test as it was logged, in SI units, with where it comes from."""
 
-    source: str
-    """Name of the file, and of the sheet, channel group or section in it."""
-    checksum: str
-    """SHA-256 of the file."""
+    source: str  # name of the file, and of the sheet, channel group or section in it
+    checksum: str  # SHA-256 of the file
     format: str  # of the file, in words
-    friction: Array
-    """Magnitude, shape (row,) [-]."""
+    friction: Array  # Magnitude, shape (row,) [-]
     time: Array | None = None  # since the start, shape (row,) [s]
     distance: Array | None = None  # slid, shape (row,) [m]
     cycles: Array | None = None  # turns or strokes, shape (row,)
     normal_force: Array | None = None  # shape (row,) [N]
-    tangential_force: Array | None = None
-    """With the sign that was logged, shape (row,) [N]."""
+    tangential_force: Array | None = None  # with the sign that was logged, shape (row,) [N]
     temperature: Array | None = None  # shape (row,) [K]
     wear_depth: Array | None = None  # shape (row,) [m]
     slip_speed: Array | None = None  # shape (row,) [m/s]
-    missing: int = 0
-    """Rows left out because friction or its abscissa was not there."""
+    missing: int = 0  # rows left out because friction or its abscissa was not there
     columns: tuple[ColumnRead, ...] = ()  # how each was understood
     metadata: Mapping[str, str] = field(default_factory=dict)  # what the header states, by its name there
     conditions: Conditions = field(default_factory=Conditions)  # from header, column map and columns
-    series: str = ""
-    """What the header states about the test that this is a part of; empty if nothing."""
-    notes: tuple[str, ...] = ()
-    """What the reading did that a user should know, a sentence each."""
+    series: str = ""  # what the header states about the test that this is a part of; empty if nothing
+    notes: tuple[str, ...] = ()  # what the reading did that a user should know, a sentence each
 
     def __post_init__(self) -> None:
         problems = []
@@ -174,8 +167,7 @@ MAP, MEDIAN = "column map", "median of its column"  # where a condition comes fr
 _VALUE = re.compile(
     r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*[\[(]?\s*([^\d\s\[\]()][^\[\]()]*?)?\s*[\])]?"
 )
-Found = dict[str, tuple[str | float, str]]
-"""Value of each condition, and where it comes from."""
+Found = dict[str, tuple[str | float, str]]  # value of each condition, and where it comes from
 
 
 def conditions_of(

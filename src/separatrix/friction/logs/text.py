@@ -20,7 +20,6 @@ from separatrix.friction.logs.dialect import (
     SHORT_CLOCKS,
     Dialect,
     dialect_of,
-    fields,
     is_clock,
     is_moment,
     is_number,
@@ -34,12 +33,12 @@ from separatrix.units import Array, printable
 Wanted = Callable[[Sequence[str], Sequence[str]], Sequence[int]]
 """From the headers and units of a table to the numbers of the columns to read."""
 
-HEAD = 300  # lines in which the table's separator and decimal sign are looked for first
+HEAD = 300  # lines in which the table's separator and decimal sign are searched first
 NEAR = 6  # rows below which a line of names makes metadata of them
 MOST_TABLES = 2000  # tables of one file; each keeps some 80 kB
 _COMMA_IN_QUOTES = re.compile(rb'"[^"\n]*,[^"\n]*"')
 _IN_QUOTES = re.compile(rb'(?m)(?:,"[^"\n]*,[^"\n]*"[ ]*(?=,|$)|^"[^"\n]*,[^"\n]*"[ ]*(?=,))')
-"""A field in quotes that holds a comma, beside a comma between fields."""
+"""A field in quotes with a comma in it, beside a comma between fields."""
 
 _FLOAT = re.compile(
     r"[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][+-]?[0-9]++)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
@@ -71,7 +70,7 @@ def read_tables(
 ) -> tuple[list[RawTable], Dialect]:
     """Every table of a text (UTF-8 with line feeds), and the dialect it is written in.
 
-    Columns that are not wanted are left NaN. Where the columns are known by their numbers (`headless`), a
+    Columns that are not wanted are left NaN. Where the column map has numbers of columns (`headless`), a
     table may lack headers.
     """
     quoted = form.separator in (None, ",") and _COMMA_IN_QUOTES.search(text) and _IN_QUOTES.search(text)
@@ -95,7 +94,7 @@ class _Text:
             where = f"{source}: header_line = {form.header_line}"
             raise InputError(where, "must be a line above the rows", f"a file of {len(self)} lines")
         missing = MISSING | form.missing
-        for count in (HEAD, 10 * HEAD):  # where the head holds no rows yet, of ten times as many lines
+        for count in (HEAD, 10 * HEAD):  # where the head has no rows yet, of ten times as many lines
             head = [self[i] for i in range(form.begin, min(len(self), form.begin + count))]
             try:
                 self.dialect = dialect_of(
@@ -229,7 +228,7 @@ class _Text:
             cure = "Delete it, or write a line of column names above the second table."
             where = f"{self.source}: line {before[0] + 1}"
             return InputError(where, "breaks the table", f'"{printable(self[before[0]])}"', cure)
-        above = fields(self[before[-1]], self.dialect.separator) if before else []
+        above = self.dialect.fields(self[before[-1]]) if before else []
         if self.dialect.separator == "," and 2 * len(above) == n + 1:
             rule = f"has {len(above)} names over {n + 1} fields: comma as separator and as decimal sign"
             return InputError(

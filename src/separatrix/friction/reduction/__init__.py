@@ -9,11 +9,11 @@ import numpy as np
 
 from separatrix import _check
 from separatrix.errors import InputError
+from separatrix.friction.file import UNITS, in_words, place
 from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.records import UNITS, in_words, place
 from separatrix.friction.reduction import cycles, steady
 from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
-from separatrix.friction.reduction.run_in import METHOD, RunIn, run_in
+from separatrix.friction.reduction.steady import METHOD, RunIn, run_in
 from separatrix.units import Array, Ratio, format_number
 
 GIVEN = "given"  # how the end of running-in was found, if a user gave it
@@ -21,7 +21,6 @@ PREFERRED = ("distance", "time", "cycles")  # the abscissa of ends and drift is 
 FEWEST_TESTS = 4  # tests from which an outlier can be detected
 OUTLIER = 1.5  # friction over the median of the others, or the reverse, from which a test may be an outlier
 FAR = 5.0  # distance from that median over the usual one, in standard deviations
-
 _PERCENT = _check.must(_check.between, 0.0, 100.0)
 
 
@@ -33,8 +32,7 @@ class ReductionOptions:
     """Where running-in ends, for instance ``"200 m"``, ``"10 min"`` or ``"500 cycles"``; None to find it."""
     axis: str | None = None
     """Abscissa of ends and drift; None for the first of distance, time, cycles that the log has."""
-    whole_cycles: bool = True
-    """Whether means are over whole cycles, where those are known."""
+    whole_cycles: bool = True  # whether means are over whole cycles, where those are known
     find_cycle: bool = False
     """Whether the length of an unknown cycle is taken from the strongest line of the spectrum."""
     seizure_ratio: Ratio = field(
@@ -72,43 +70,34 @@ class ReductionOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TestFriction:
-    """Friction of one test, with its error and what a reader should know about it."""
+    """Friction of one test, with its error and flags."""
 
     __test__ = False
 
     source: str  # name of the file, and of the part of it
     checksum: str  # SHA-256 of the file
     conditions: Conditions  # under which it was run
-    friction: Ratio
-    """Mean over the steady part."""
+    friction: Ratio  # mean over the steady part
     standard_error: Ratio
     """Of that mean: neighbouring values are alike, some running-in may be left, digits are few."""
-    degrees_of_freedom: int
-    """Of Student's t for its interval."""
+    degrees_of_freedom: int  # of Student's t for its interval
     standard_deviation: Ratio
     """Of the means of whole cycles in the steady part; of its rows where no cycle is known."""
-    effective_count: float
-    """Independent values that would have the same standard error."""
-    run_in_end: float
-    """In the SI unit of `run_in_axis`; the steady part begins here."""
-    run_in_axis: str
-    """``"time"``, ``"distance"`` or ``"cycles"``."""
+    effective_count: float  # independent values that would have the same standard error
+    run_in_end: float  # in the SI unit of `run_in_axis`; the steady part begins here
+    run_in_axis: str  # ``"time"``, ``"distance"`` or ``"cycles"``
     run_in_method: str  # how the end of running-in was found
-    steady_end: float
-    """Where the steady part ends, in the SI unit of `run_in_axis`."""
+    steady_end: float  # where the steady part ends, in the SI unit of `run_in_axis`
     rows: int  # of the log
     steady_rows: int  # of them in the steady part
-    cycles: int
-    """Whole cycles averaged; 0 where none are."""
-    drift_rate: float
-    """Change of friction per SI unit of `run_in_axis`, over the steady part."""
-    drift_error: float
-    """Standard error of `drift_rate`."""
+    cycles: int  # whole cycles averaged; 0 where none are
+    drift_rate: float  # change of friction per SI unit of `run_in_axis`, over the steady part
+    drift_error: float  # standard error of `drift_rate`
     stick_slip_amplitude: Ratio
     """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
     stick_slip_frequency: float
     """Of that oscillation, per SI unit of `run_in_axis`; 0 if none exceeds the noise."""
-    flags: tuple[str, ...] = ()  # what a reader should know, a sentence each
+    flags: tuple[str, ...] = ()  # what a reader has to consider, a sentence each
 
     @property
     def half_width(self) -> Ratio:
@@ -131,7 +120,7 @@ class Reduction:
     rows: slice  # rows between loading and the end of the test
     along: Array  # abscissa of every row of the log, shape (row,)
     stretch: cycles.Stretch  # rows in which the contact slid under its load
-    cycle: float | None  # length of a cycle in the unit of the abscissa; None where it is not known
+    cycle: float | None  # length of a cycle in the unit of the abscissa; None if unknown
     run_in: RunIn | None  # how the end of running-in was found; None where it was given
     spans: cycles.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""
@@ -141,7 +130,7 @@ class Reduction:
     """Step in which friction is written, and the standard error that it causes."""
     cycle_means: Array
     """Means of whole cycles of the steady part, shape (cycle,); empty where no cycle is known."""
-    oscillation: steady.Oscillation
+    oscillation: cycles.Oscillation
     events: tuple[Event, ...] = ()
 
 
@@ -185,7 +174,7 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
     spans = stretch.spans(cut)
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
-    strongest = steady.oscillation(stretch.along[first : first + friction.size], friction, cycle)
+    strongest = cycles.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
         test=_test(log, axis, stretch, spans, mean, found, strongest),
@@ -213,7 +202,7 @@ def _test(
     spans: cycles.Spans,
     mean: steady.SteadyMean,
     found: RunIn | None,
-    oscillation: steady.Oscillation,
+    oscillation: cycles.Oscillation,
 ) -> TestFriction:
     """Return the numbers of a test, without its flags."""
     friction, whole = stretch.within(spans), stretch.cycle_means(spans)

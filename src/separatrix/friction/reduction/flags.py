@@ -1,4 +1,4 @@
-"""What happens in a test, and what a reader should know about it: a plain sentence each, with its numbers."""
+"""What happens in a test, and what a reader has to consider: a sentence each, with its numbers."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
+from separatrix.friction.file import in_words
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.records import in_words
 from separatrix.friction.reduction.cycles import FEWEST, Spans, means
 from separatrix.friction.reduction.steady import LONG
 from separatrix.units import Ratio, format_number, format_quantity
@@ -172,7 +172,7 @@ GAP = 0.05  # share of the steady part without a row that is reported
 
 
 def flags(one: Reduction) -> Iterator[str]:
-    """Yield what a reader should know about a test."""
+    """Yield what a reader has to consider about a test."""
     for part in (_ends, _run_in, _drift, _oscillation, _changes, _length, _size, _rows):
         yield from part(one)
 

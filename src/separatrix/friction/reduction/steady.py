@@ -1,35 +1,43 @@
-"""Mean of a steady stretch and its standard error, when neighbouring values are alike and drift.
+"""Where running-in ends, and the mean of the steady stretch behind it with its standard error.
 
-The means over equal spans, their straight line taken off, are projected on cosines of 1, 2, ... half turns
-over the stretch. Each projection has the variance of the spectral density at its frequency, and is hardly
-correlated with another; the mean has that at frequency zero. So the lowest cosines give the standard error of
-the mean, with as many degrees of freedom as there are of them, less one for the line [1]_. How many are low
-enough is read from the spectrum that fits best by Whittle's likelihood: a level, and above it a part with one
-time of correlation. What these spectra still fall over the cosines used is corrected, each with the weight of
-its likelihood.
+No shape of running-in is assumed: the steady part is the longest tail of a test whose mean agrees with that
+of each later part of it. Let the tail begin at some span. Its mean is compared with the means of all shorter
+tails. Without running-in they differ by noise alone, and the variance of the difference of two nested means
+is the difference of their variances. The noise is taken from the shorter, later tail, by its lowest cosines,
+so that neighbouring values may be alike and running-in is not part of it. The steady part begins at the
+earliest place where no difference exceeds noise and `WORTH` together: the method of Lepski [1]_, which keeps
+as much of a series as its bias allows. What the later tails still differ by goes into the error. A test that
+as a whole is a straight line and noise has a drift, and no running-in.
 
-An oscillation is the strongest line of the spectrum of the rows that exceeds its noise.
+For the standard error the means over equal spans, their straight line taken off, are projected on cosines of
+1, 2, ... half turns over the stretch. Each projection has the variance of the spectral density at its
+frequency, and is hardly correlated with another; the mean has that at frequency zero. So the lowest cosines
+give the standard error of the mean, with as many degrees of freedom as there are of them, less one for the
+line [2]_. How many are low enough is read from the spectrum that fits best by Whittle's likelihood: a level,
+and above it a part with one time of correlation. What these spectra still fall over the cosines used is
+corrected, each with the weight of its likelihood.
 
 References
 ----------
-.. [1] E. Lazarus, D. J. Lewis, J. H. Stock and M. W. Watson, "HAR inference: recommendations for practice",
+.. [1] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise", Theory of Probability and
+   its Applications 35 (1991) 454-466.
+.. [2] E. Lazarus, D. J. Lewis, J. H. Stock and M. W. Watson, "HAR inference: recommendations for practice",
    Journal of Business & Economic Statistics 36 (2018) 541-559: the equal-weighted cosine estimate.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dct
-from scipy.ndimage import percentile_filter
-from scipy.signal import welch
-from scipy.special import gammaincc, stdtr, stdtrit
+from scipy.ndimage import median_filter
+from scipy.special import stdtr, stdtrit
 
 from separatrix.units import Array, Ratio
 
-LEVEL = 0.95  # of the interval
+CONFIDENCE = 0.95  # of the interval
 CORNERS = np.geomspace(2.0, 4096.0, 34)
 """Half turns of the stretch at which the correlated part has fallen to half: from a sixth of the
 stretch to none."""
@@ -37,9 +45,7 @@ stretch to none."""
 FLOORS = np.array([0.0, 0.003, 0.01, 0.03, 0.1, 0.3])  # white part of the spectrum at zero frequency
 FLAT = 0.75  # A cosine counts if the fitted spectrum has at least this share of its height at zero there
 FEWEST_COSINES, MOST_COSINES = 6, 60
-
 LONG = 4.5  # corner below which the correlation is too long for the stated interval: 7 % of the stretch
-
 ROUNDING = 1e-12  # share of friction below which differences are those of rounding
 MIXED = 0.2  # white part from which the correlated one is only a guess
 LIKELY = 0.5  # weight of the spectra of a long correlation from which it counts as long: more likely than not
@@ -80,7 +86,7 @@ class SteadyMean:
 
 def half_width(standard_error: float, degrees_of_freedom: int) -> float:
     """Return half the 95 % interval of Student's t."""
-    return float(standard_error * stdtrit(degrees_of_freedom, 0.5 + LEVEL / 2))
+    return float(standard_error * stdtrit(degrees_of_freedom, 0.5 + CONFIDENCE / 2))
 
 
 def steady_mean(values: Array) -> SteadyMean:
@@ -119,15 +125,11 @@ def cosines(values: Array) -> Array:
 
 
 def fitted_shapes(power: Array) -> tuple[Array, Array, tuple[int, int]]:
-    """Return spectra that may be, one at zero frequency, how likely each is, and the most likely one's place.
+    """Return spectra that may be, one at zero frequency, how likely each is, and the place of the likeliest.
 
-    The first cosine is left out, for the straight line has taken it.
-
-    Returns
-    -------
-    tuple
-        Spectra at cosines 2, 3, ..., shape (corner, floor, cosine - 1); Whittle's likelihood of each, its
-        height at its best, all together one, shape (corner, floor); place of the largest.
+    The spectra are at cosines 2, 3, ..., for the straight line has taken the first, shape (corner, floor,
+    cosine - 1). How likely is Whittle's likelihood of each, its height at its best, all together one, shape
+    (corner, floor).
     """
     shapes = spectrum(np.arange(2.0, power.size + 1.0), CORNERS[:, None, None], FLOORS[:, None])
     height = np.maximum((power[1:] / shapes).mean(axis=-1), 1e-300)
@@ -170,108 +172,110 @@ def _places(count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5) / count - 0.5, dtype=float)
 
 
-SEGMENTS = 8  # parts of the test whose spectra are averaged, overlapping by half
-LONGEST, SHORTEST = 4096, 64  # rows of a segment
-CHANCE = 1e-4  # probability with which noise alone would show a line as strong somewhere in the spectrum
-BESIDE = 8  # places on each side of a line from which the noise is estimated; the two next to it are left out
-LOWEST = 12
-"""First place of a spectrum where a line is looked for: there is no noise to the left of lower ones."""
+METHOD = "longest tail whose mean agrees with that of each later part"
+PLACES = 96  # places where the steady part may begin, at most
+LATEST = 0.75  # share of the test beyond which no steady part begins
+COSINES = 8  # cosines from which the noise of a tail is estimated
+CHANCE = 1e-3
+"""Probability with which the difference of two tails exceeds noise on one side without running-in."""
 
-HARMONICS = 12  # multiples of the cycle that are its own
+WORTH = 0.0075  # change of the mean, as a share of it, for which nothing is cut
+SEEN = 0.05
+"""Deviation of the first part of a tail, as a share of friction, that is cut however short that part is."""
 
+STRETCH = 1.3  # factor by which the place found may move up to where the differences are noise alone
+NOISE = 2.0  # squares of standard errors that are noise in a difference: the rest of it is what may be left
+UNEVEN = 0.02  # what may be left, as a share of the mean, from which a steady part is not level
+OUTLIER = 6.0
+"""Standard deviations from its neighbours at which a single span is a spike, which is not running-in."""
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Oscillation:
-    """The strongest line of the spectrum of friction."""
+DRIFT = 0.01  # probability without a drift below which a tail still drifts
+EVEN = 3.0
+"""Ratio of the power at the lowest cosines to that at the next from which friction wanders or bends."""
 
-    frequency: float  # in cycles per SI unit of the abscissa; 0 if no line exceeds the noise
-    amplitude: Ratio  # peak to peak of the sine with its power [-]; 0 if no line exceeds the noise
-    signal_to_noise: float  # its power over all other power but the cycle's
-    frequencies: Array
-    density: Array  # spectral density of friction at the frequencies
-
-
-NONE = Oscillation(
-    frequency=0.0, amplitude=0.0, signal_to_noise=0.0, frequencies=np.empty(0), density=np.empty(0)
-)
+FEWEST = 12  # spans below which running-in is not searched
 
 
-def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillation:
-    """Return the strongest oscillation of rows, shape (row,), that is not one of the cycle's.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunIn:
+    """End of running-in, as a share of the stretch."""
 
-    The length of the cycle is in the unit of the abscissa; None where it is not known.
-    """
-    span = float(along[-1] - along[0])
-    if span <= 0.0 or along.size < SHORTEST:
-        return NONE
-    step = span / (along.size - 1)
-    even = np.interp(along[0] + step * np.arange(along.size), along, friction)
-    length = int(np.clip(along.size // SEGMENTS, SHORTEST, LONGEST))
-    frequencies, density = welch(even, 1.0 / step, nperseg=length, detrend="constant")
-    noise = np.maximum(beside(density), 1e-300)
-    other = np.where(_own(frequencies, density, cycle), np.minimum(density, noise), density)
-    line = _line(other, noise, averages=2 * even.size / length - 1)
-    if line is None or np.ptp(even) <= ROUNDING * np.abs(even).max():
-        return replace(NONE, frequencies=frequencies, density=density)
-    reach = 3 + line // 20  # of the places next to the line that belong to it
-    part = slice(max(0, line - reach), line + reach + 1)
-    power = float(np.maximum(other[part] - noise[line], 0.0).sum()) * frequencies[1]
-    rest = max(float(other.sum() * frequencies[1]) - power, 1e-300)
-    frequency = float(np.average(frequencies[line - 1 : line + 2], weights=density[line - 1 : line + 2]))
-    return Oscillation(
-        frequency=frequency,
-        amplitude=float(np.sqrt(8.0 * power)),
-        signal_to_noise=power / rest,
-        frequencies=frequencies,
-        density=density,
-    )
+    end: Ratio
+    rest: Ratio
+    """Largest difference between the mean behind the end and that of a later part, less its noise [-]."""
+    ends: bool
+    """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
+    level: bool  # whether what may be left is at most `UNEVEN` of the mean
 
 
-def beside(density: Array) -> Array:
-    """Return the noise around each place: the larger of the medians of both sides.
+def run_in(values: Array) -> RunIn:
+    """Return where running-in ends, from means over equal spans, shape (span,)."""
+    n = values.size
+    if n < FEWEST or np.ptp(values) <= ROUNDING * np.abs(values).max():
+        return RunIn(end=0.0, rest=0.0, ends=True, level=True)
+    # spikes of one or two spans are replaced by the median of their neighbours
+    middle = median_filter(values, 5, mode="nearest")
+    excess = np.abs(values - middle)
+    scatter = 1.4826 * float(np.median(excess))
+    values = np.where(excess > OUTLIER * scatter, middle, values) if scatter > 0.0 else values
+    line = _without_line(values)
+    power = dct(line, type=2, norm="ortho")[1:] ** 2
+    even = power[:COSINES].mean() <= EVEN * power[COSINES : 4 * COSINES].mean()  # no slow wander, no curve
+    straight = _Tails(line, _without_line)
+    if even and straight.first(straight.noise) == 0:
+        return straight.from_place(0, abs(float(values.mean())))
+    tails = _Tails(values, _without_level)
+    # differences for which nothing is cut, shape (place, later place)
+    part = 1.0 - tails.left[None, :] / tails.left[:, None]
+    worth = np.minimum(WORTH, SEEN * part) * np.abs(tails.means)
+    first = tails.first(tails.noise + worth)
+    if first:
+        reach = int(np.searchsorted(tails.starts, STRETCH * tails.starts[first] + 1, side="right")) - 1
+        first = max(first, min(tails.first(tails.noise), reach))
+    found = tails.from_place(first, abs(float(tails.means[first])))
+    return replace(found, ends=False) if first and _goes_on(values, int(tails.starts[first])) else found
 
-    A line is above both. The slope of a red spectrum is below the side of low frequency.
-    """
-    size = BESIDE
-    middle = percentile_filter(density, 50.0, size=size, mode="nearest")
-    reach = size // 2 + 2
-    padded = np.pad(middle, reach, mode="edge")
-    return np.asarray(np.maximum(padded[: -2 * reach], padded[2 * reach :]), dtype=float)
+
+def _goes_on(values: Array, start: int) -> bool:
+    """Return whether the tail still drifts away from what was before it, beyond noise and `UNEVEN`."""
+    tail = steady_mean(values[start:])
+    away = tail.change * (tail.mean - float(values[:start].mean())) > 0.0
+    return away and tail.change_chance < DRIFT and abs(tail.change) > UNEVEN * abs(tail.mean)
 
 
-def _line(density: Array, noise: Array, averages: float) -> int | None:
-    """Return the place of the strongest line, if noise alone is unlikely to make it.
+class _Tails:
+    """The means of all tails of a series, their differences, and what noise makes of those."""
 
-    The limit is the density over the noise that one of all places exceeds with the probability `CHANCE`. The
-    mean of n overlapping spectra is a chi-square with about 1.9 n degrees of freedom (Welch's window).
-    """
-    half = max(1.0, 0.95 * averages)
-    ratios = np.geomspace(1.0, 60.0, 400)
-    limit = float(ratios[np.argmax(density.size * gammaincc(half, half * ratios) < CHANCE)])
-    ratio = density / noise
-    ratio[:LOWEST] = ratio[-1] = 0.0
-    strongest = int(np.argmax(density * (ratio > limit)))
-    return strongest if ratio[strongest] > limit else None
+    def __init__(self, values: Array, without: Callable[[Array], Array]) -> None:
+        n = values.size
+        self.starts = np.unique(np.linspace(0.0, min(LATEST * n, n - COSINES), PLACES + 1).astype(int))
+        self.left = (n - self.starts).astype(float)
+        self.share = self.starts / n
+        self.means = np.cumsum(values[::-1])[::-1][self.starts] / self.left
+        self.difference = np.abs(self.means[:, None] - self.means[None, :])
+        shorter = np.maximum(1.0 / self.left[None, :] - 1.0 / self.left[:, None], 0.0)
+        tails = (dct(without(values[start:]), type=2, norm="ortho") for start in self.starts.tolist())
+        densities = np.array([float((tail[1 : COSINES + 1] ** 2).mean()) for tail in tails])
+        self.variance = shorter * densities
+        self.noise = float(stdtrit(min(COSINES, n - 1), 1.0 - CHANCE)) * np.sqrt(self.variance)
+
+    def first(self, limit: Array) -> int:
+        """Return the first tail that agrees with all later ones within a limit; the last always does."""
+        earlier = np.tril(np.ones_like(limit, dtype=bool))
+        return int(np.argmax((earlier | (self.difference <= limit)).all(axis=1)))
+
+    def from_place(self, place: int, mean: float) -> RunIn:
+        """Return the end of running-in at a place."""
+        square = (self.difference[place] ** 2 - NOISE * self.variance[place])[place:]
+        rest = float(np.sqrt(max(0.0, float(square.max()))))
+        ends = place < self.starts.size - 1
+        return RunIn(end=float(self.share[place]), rest=rest, ends=ends, level=rest <= UNEVEN * mean)
 
 
-def _own(frequencies: Array, density: Array, cycle: float | None) -> NDArray[np.bool_]:
-    """Return where the lines of the cycle and its multiples are, with their feet.
+def _without_level(values: Array) -> Array:
+    return np.asarray(values - values.mean())
 
-    A strong line has feet wider than the window; they reach down to where the density stops falling. A
-    multiple above half the logging rate shows itself mirrored below.
-    """
-    own = np.zeros(frequencies.size, dtype=bool)
-    if cycle is None:
-        return own
-    last, spacing = frequencies.size - 1, frequencies[1]
-    for order in range(1, HARMONICS + 1):
-        folded = abs((order / cycle / spacing + last) % (2 * last) - last)
-        left, right = max(0, int(folded) - 2), min(last, int(folded) + 3)
-        peak = left + int(np.argmax(density[left : right + 1]))
-        first, end = peak, peak
-        while first > 0 and density[first - 1] < density[first]:
-            first -= 1
-        while end < last and density[end + 1] < density[end]:
-            end += 1
-        own[min(first, left) : max(end, right) + 1] = True
-    return own
+
+def _without_line(values: Array) -> Array:
+    x = np.arange(values.size) - (values.size - 1) / 2.0
+    return np.asarray(values - values.mean() - x * (x @ values) / (x @ x))

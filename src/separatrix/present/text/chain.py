@@ -1,13 +1,20 @@
-"""Text for the stages before the cage: ball loads, traction, restitution, and their summary."""
+"""Text for the stages before the cage: ball loads, traction, restitution, mobility of a ball, summary."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import degrees
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from separatrix.answers import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
+from separatrix.chain.clearances import Clearances
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.equilibrium import Equilibrium
+from separatrix.chain.mobility import Impacts, Mobility
+from separatrix.chain.models import ModelSlopes
+from separatrix.present.nodes import Leaf, Node, field_units, fields_of
 from separatrix.present.shapes import shape
-from separatrix.present.text.clearances import running_clearances
 from separatrix.present.text.tables import (
     facts,
     number,
@@ -18,16 +25,7 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.present.walk import Leaf, Node, fields_of
-from separatrix.study import PressureSlip, Worn
-
-if TYPE_CHECKING:
-    from separatrix.answers import OfCage, RestitutionAnswer, TractionAnswer
-    from separatrix.chain.clearances import Clearances
-    from separatrix.chain.contacts import BearingState
-    from separatrix.chain.equilibrium import Equilibrium
-    from separatrix.chain.models import ModelSlopes
-    from separatrix.study import Study
+from separatrix.study import PressureSlip, Study, Worn
 
 BALL_HEADERS = (
     *("ball", "azimuth\ndeg", "angle in\ndeg", "angle out\ndeg", "load in\nN", "load out\nN"),
@@ -204,7 +202,7 @@ def contact_words(study: Study) -> str:
 
 
 def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
-    """Return what a cage's answer is based on: bearing, operation, film, and the numbers of the chain."""
+    """Return the basis of a cage's answer: bearing, operation, film, and the numbers of the chain."""
     at, operation, film, solution = study.bearing, study.operation, study.film, answer.solution
     loads = (("axial", "axial_load"), ("radial", "radial_load"))
     loaded = [f"{stated(operation, key)} {words}" for words, key in loads if getattr(operation, key)]
@@ -238,6 +236,122 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
     facts += running_clearances(solution.clearances)
     if solution.orbital_share is not None:  # of a bearing whose balls do not run alike
         lead, clearance = (quantity(one, "m") for one in (answer.cage.lead_amplitude, answer.cage.half_play))
-        share = f"the harmonics used hold {100 * solution.orbital_share:.4g} % of the speed variance"
+        share = f"the harmonics used contain {100 * solution.orbital_share:.4g} % of the speed variance"
         facts.append(("Free balls lead and lag", f"up to {lead} (pockets {clearance} each way); {share}"))
     return facts
+
+
+def running_clearances(found: Clearances | None) -> list[tuple[str, str]]:
+    """Return each clearance at rest and as it runs, with its strains; empty if the study states it."""
+    if found is None:
+        return []
+    at = f"at {quantity(found.temperature, 'K')} and a cage speed of {quantity(found.cage_speed, 'rad/s')}"
+    rows = []
+    for words, rest, runs in (
+        ("Running pocket clearance", found.pocket_at_rest, found.pocket),
+        ("Along the axis", found.pocket_axial_at_rest, found.pocket_axial),
+        ("Running land clearance", found.land_at_rest, found.land),
+    ):
+        if rest is not None and runs is not None:
+            rows.append((words, f"{quantity(runs, 'm')} {at}, {quantity(rest, 'm')} at 293 K at rest"))
+    thermal = [("cage", found.cage_strain), ("balls", found.ball_strain), ("rings", found.ring_strain)]
+    strains = [f"{part} {100 * strain:.3g} %" for part, strain in thermal if strain is not None]
+    rows.append(("Thermal strain", ", ".join(strains)))
+    turning = f"cage +{found.hoop_strain * 100:.3g} % at its pitch radius"
+    for part, grown in (("its land", found.cage_land_growth), ("the ring's land", found.ring_land_growth)):
+        turning += "" if not grown else f", {part} +{quantity(grown, 'm', 3)} in radius"
+    rows.append(("Growth by rotation", turning))
+    return rows
+
+
+SMALL = {
+    "damping": "Damping C_f, attitude of the spin held",
+    "effective_mass": "Effective mass m_e",
+    "damping_relaxed": "Damping C_eff of a slow push",
+    "damping_locked": "Damping with all spin held",
+    "groove_damping": "Damping across the orbit, c_g",
+    "groove_stiffness": "Stiffness across the orbit, k_g",
+    "pitch_angle": "Pitch of the spin axis",
+    "pocket_friction_effect": "Effect k of pocket friction, 1 +- k f",
+    "slip_speed_inner": "Slip speed, inner race",
+    "slip_speed_outer": "Slip speed, outer race",
+}
+MODE_HEADERS = ("mode", "rate\n1/s", "time", "share of 1/C_eff\n%", "rate, rigid\n1/s")
+PUSH_HEADERS = ("speed\nm/s", "F forward\nN", "F backward\nN", "law\nN")
+IMPACT_HEADERS = (
+    *("speed\nm/s", "from behind\n-", "from front\n-", "by the law\n-"),
+    *("peak force\nN", "time\nus"),
+)
+SHOWN_PUSHES = 8
+
+
+def mobility(answer: MobilityAnswer, study: Study) -> list[str]:  # noqa: ARG001
+    """Small motion by both slip laws, the law of traction, and the restitution of impacts."""
+    found, rigid = answer.mobility, answer.rigid
+    linear, units = found.linear, field_units(type(found.linear))
+    cells = [
+        [words, *(quantity(getattr(one, name), units[name], 5) for one in (linear, rigid))]
+        for name, words in SMALL.items()
+    ]
+    rates = np.column_stack([linear.rates, linear.shares, rigid.rates]).tolist()
+    modes = [
+        [
+            str(i),
+            significant(of, 5),
+            quantity(1.0 / of, "s", 3),
+            f"{100.0 * share:.2f}",
+            significant(other, 5),
+        ]
+        for i, (of, share, other) in enumerate(rates, 1)
+    ]
+    forces = found.force_forward, found.force_backward, found.force_law
+    step = max(1, found.speed.size // SHOWN_PUSHES)
+    shown = np.column_stack([found.speed, *forces])[::-step][::-1].tolist()
+    pushes = [[significant(speed, 3), *map(significant, each)] for speed, *each in shown]
+    blocks = [
+        section("Small motion of the most loaded ball", table(("", "elastic creep", "rigid"), cells)),
+        section("Modes", table(MODE_HEADERS, modes)),
+        section("Push along the orbit", facts(_law(found)), table(PUSH_HEADERS, pushes, left=0)),
+    ]
+    if answer.impacts is None:
+        return [*blocks, section("Impacts of the cage", paragraph(f"Not computed: {answer.impacts_reason}"))]
+    return [*blocks, section("Impacts of the cage on the ball", *_impacts(answer.impacts))]
+
+
+def _law(found: Mobility) -> Sequence[tuple[str, str]]:
+    """Return what the races carry at most, the law, and how near it is to the slip fields."""
+    law = found.traction
+    elements = ", ".join(
+        f"{quantity(c, 'N s/m', 4)} to {quantity(v, 'm/s', 3)}"
+        for c, v in zip(law.slopes, law.speeds, strict=True)
+    )
+    largest = max(found.force_forward.max(), found.force_backward.max())
+    return [
+        ("Capacity f_BT (N_I + N_E)", stated(found, "capacity")),
+        ("Largest force of the slip fields", quantity(float(largest), "N", 4)),
+        ("Law of traction, C_i to v_i", elements),
+        ("Largest error of the law", f"{100 * found.law_error:.2g} % of the capacity"),
+        ("Forward and backward differ by", f"+-{100 * found.asymmetry:.2g} % of the capacity at most"),
+    ]
+
+
+def _impacts(found: Impacts) -> list[str]:
+    """Return a table of restitution against the speed of the impact, and what it is to be compared with."""
+    restitutions = found.restitution_forward, found.restitution_backward, found.restitution_law
+    rows = [
+        [significant(speed, 3), *map(number, each), significant(force), significant(1e6 * time)]
+        for speed, *each, force, time in np.column_stack(
+            [found.speed, *restitutions, found.peak_force, found.duration]
+        ).tolist()
+    ]
+    beside = [
+        ("Mass that the impact feels", stated(found, "felt_mass")),
+        ("Limit of gentle impacts", number(found.restitution_linear)),
+        ("Eq. 18 with this mass", number(found.restitution_summed)),
+        ("eta of the paper, all of the mass", number(found.nominal_restitution_factor)),
+    ]
+    return [
+        table(IMPACT_HEADERS, rows, left=0),
+        facts(beside),
+        paragraph("Share of its speed with which the cage returns; below 0 it goes on behind the ball."),
+    ]

@@ -1,12 +1,11 @@
-"""Text of the library: lists of records, records whole, and what a file holds."""
+"""Text of the library: lists of records, whole records, and the contents of a file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from separatrix.library import Datum, FrictionTable, LibraryFile, Record
-from separatrix.library.fluids import FluidState
+from separatrix.library.records import Datum, Facts, FluidState, FrictionTable, LibraryFile, Record
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -30,7 +29,7 @@ WORDS = {
 """Properties whose key is not their name."""
 
 POINTS = ("point", "critical temperature", "critical pressure")
-"""Properties that are no function of temperature."""
+"""Properties that do not depend on temperature."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +45,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """What a record of a library file holds, and how many of its numbers are guesses."""
+    """Contents of a record of a library file, and how many of its numbers are guesses."""
 
     kind: str
     name: str
@@ -126,7 +125,7 @@ def shown(records: Sequence[Shown]) -> str:
 def _whole(one: Shown) -> str:
     record, file = one.record, one.record.file
     keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
-    known = record.facts if isinstance(record, Record) else {}
+    known: Facts = record.facts if isinstance(record, Record) else {}
     values = ((key, known.get(key) or getattr(record, key, None)) for key in keys)
     about = [(key.capitalize(), str(value)) for key, value in values if value]
     if isinstance(record, FrictionTable):
@@ -141,8 +140,8 @@ def _whole(one: Shown) -> str:
         whole = section("Friction", friction_table(record.environments, record.friction))
     else:
         whole = section("Data", *_data(record, one))
-    if known.get("aliases"):
-        about.append(("Also", ", ".join(known["aliases"])))
+    if aliases := known.get("aliases"):
+        about.append(("Also", ", ".join(aliases)))
     origin = "shipped" if file.shipped else "of the user"
     about.append(("Library", f"{file.label}, {origin}, sha256 {file.checksum[:12]}..."))
     blocks = [heading(f"{record.name} ({record.kind})"), facts(about), whole]
@@ -192,7 +191,7 @@ def _state(state: FluidState) -> list[tuple[str, str]]:
 
 
 def checked(file: LibraryFile, records: Sequence[Counts]) -> str:
-    """Return what a library file holds."""
+    """Return the contents of a library file."""
     headers = ("kind", "name", "line", "numbers", "guesses", "no temperature")
     rows = [
         [r.kind, r.name, str(r.line or ABSENT), *map(str, (r.numbers, r.guesses, r.without_temperature))]
@@ -203,7 +202,7 @@ def checked(file: LibraryFile, records: Sequence[Counts]) -> str:
 
 
 def added(library: str, records: Sequence[Counts]) -> str:
-    """Return what was added."""
+    """Return the added records."""
     return f"Added to {library}: {', '.join(f'{record.kind} {record.name}' for record in records)}.\n"
 
 

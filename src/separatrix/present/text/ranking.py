@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
 
-from separatrix.cage import Verdict
-from separatrix.present.text.cage import judgement_facts, motion_words
+from separatrix.answers import RankingAnswer
+from separatrix.cage import Judgement, Verdict
+from separatrix.present.text.cage import by_the_other_ball, judgement_facts, motion_words
 from separatrix.present.text.chain import basis
-from separatrix.present.text.second import by_the_other_ball
 from separatrix.present.text.stability import ensemble_facts
 from separatrix.present.text.tables import (
     ABSENT,
@@ -25,13 +24,8 @@ from separatrix.present.text.tables import (
     significant,
     table,
 )
-from separatrix.ranking import NotMeasured, Ranked
-
-if TYPE_CHECKING:
-    from separatrix.answers import RankingAnswer
-    from separatrix.cage import Judgement
-    from separatrix.ranking import RankedEnvironment, Ranking, Row
-    from separatrix.study import Study
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking, Row
+from separatrix.study import Study
 
 HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)
 TILT = "tilt\nmrad"
@@ -81,7 +75,7 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
             rest = f" and {len(names) - LEADERS} more" if len(names) > LEADERS else ""
             leads.append(f"{one.name}: {', '.join(names[:LEADERS]) + rest or 'none'}")
     elsewhere = (
-        f"First elsewhere: {'; '.join(leads)}. {more}, for every environment." if leads else f"{more}."
+        f"First elsewhere: {'; '.join(leads)}. {more}, for every environment." if leads else more + "."
     )
     legend = ("", paragraph(LEGEND), *footnotes(rows), *lowest(rows))
     return [
@@ -114,10 +108,8 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
     if others:
         notes = footnotes(found.overall)
         blocks = [*([""] if notes else []), *notes, *gaps(found)]
-        overall = [
-            _environment("Overall: mean friction over the measured environments", found.overall, *blocks)
-        ]
-
+        title = "Overall: mean friction over the measured environments"
+        overall = [_environment(title, found.overall, *blocks)]
     return [
         paragraph(in_short(found), indent=""),
         environment(found, own),
@@ -126,7 +118,7 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
         paragraph(LEGEND),
         paragraph(EVIDENCE_LEGEND),
         *detail,
-        section("What the verdicts hold for", facts(_holds_for(answer, study))),
+        section("Basis of the verdicts", facts(_holds_for(answer, study))),
         *(environment(found, one) for one in others),
         *overall,
     ]
@@ -146,6 +138,10 @@ def _environment(name: str, rows: Sequence[Row], *blocks: str) -> str:
 def headline(found: Ranking) -> tuple[Row, ...]:
     """Return the rows of the bearing's own environment."""
     return next(one.materials for one in found.environments if one.name == found.environment)
+
+
+def _measured(rows: Iterable[Row]) -> list[Ranked | NotFinished]:
+    return [row for row in rows if not isinstance(row, NotMeasured)]
 
 
 def judgement(row: Row) -> Judgement | None:
@@ -186,8 +182,8 @@ def _probability(found: Judgement) -> str:
 
 
 def lowest(rows: Sequence[Row]) -> list[str]:
-    """Return who has the lowest mean friction, with what probability; nothing if none was measured."""
-    measured = [row for row in rows if not isinstance(row, NotMeasured)]
+    """Return the probability of the lowest mean friction of each candidate; empty if none was measured."""
+    measured = _measured(rows)
     known = [(row.probability_lowest_friction or 0.0, row.name) for row in measured]
     likely = [f"{name} {share:.2f}" for share, name in sorted(known, reverse=True) if share >= 0.005]
     if not measured:
@@ -197,8 +193,8 @@ def lowest(rows: Sequence[Row]) -> list[str]:
 
 
 def footnotes(rows: Sequence[Row]) -> list[str]:
-    """Return what is extrapolated, each sentence once with its candidates unless it is all; or nothing."""
-    measured = [row for row in rows if not isinstance(row, NotMeasured)]
+    """Return the extrapolations, each sentence once, with its candidates unless all share it."""
+    measured = _measured(rows)
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
     each: dict[str, list[str]] = {}
     for sentence, names in who.items():
@@ -224,7 +220,7 @@ def reasons(rows: Sequence[Row]) -> list[str]:
 
 
 def in_short(found: Ranking) -> str:
-    """Return the answer: who is first here, with what margin, why if undecided, and what the others are."""
+    """Return the first candidate here, its margin, the reason if undecided, and the other verdicts."""
     rows, place = headline(found), found.environment
     first = [row for row in rows if isinstance(row, Ranked) and row.rank == 1]
     if not first:
@@ -255,10 +251,8 @@ def _by_verdict(each: Mapping[str, Sequence[str]]) -> str:
 
 
 def _over_inputs(rows: Sequence[Row], study: Study) -> list[str]:
-    """Return the verdicts over the uncertain inputs; nothing if the study states none."""
-    known = [
-        (row.name, row.over_inputs) for row in rows if not isinstance(row, NotMeasured) and row.over_inputs
-    ]
+    """Return the verdicts over the uncertain inputs; empty if the study states none."""
+    known = [(row.name, row.over_inputs) for row in _measured(rows) if row.over_inputs]
     if not known:
         return []
     each = grouped((found.verdict.name, f"{name} {_probability(found)}") for name, found in known)
@@ -299,8 +293,7 @@ def _short_evidence(rows: Sequence[Row]) -> str:
 
 def evidence(rows: Sequence[Row]) -> str:
     """Return the evidence of verdicts; the bearing's eta only where candidates differ in it."""
-    known = [row for row in rows if not isinstance(row, NotMeasured) and row.judgement is not None]
-    etas = {number(row.restitution_factor, 2) for row in known}
+    etas = {number(row.restitution_factor, 2) for row in _measured(rows) if row.judgement is not None}
     headers = [header for header in EVIDENCE if header != ETA or len(etas) > 1]
     cells = []
     for row in rows:
@@ -325,18 +318,16 @@ def evidence(rows: Sequence[Row]) -> str:
 def gaps(found: Ranking) -> list[str]:
     """Return in how many environments a candidate was measured, if not in all."""
     total = len(found.environments)
-    counts = Counter(
-        row.name for one in found.environments for row in one.materials if not isinstance(row, NotMeasured)
-    )
+    counts = Counter(row.name for one in found.environments for row in _measured(one.materials))
     few = [f"{row.name} in {counts[row.name]}" for row in found.overall if counts[row.name] < total]
     return ["", paragraph(f"Measured in fewer than {total} environments: {', '.join(few)}.")] if few else []
 
 
 def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
     found, pocket = answer.ranking, answer.ranking.pocket
-    rows = [row for one in found.environments for row in one.materials]
+    rows = [row for one in found.environments for row in _measured(one.materials)]
     scatter = "none: every friction has its measured scatter"
-    if any(row.friction_scatter_assumed for row in rows if not isinstance(row, NotMeasured)):
+    if any(row.friction_scatter_assumed for row in rows):
         share = f"{100.0 * found.friction_scatter:.3g} %"
         scatter = f"assumed to scatter by {share} of their mean: a guess, [ranking] friction_scatter"
     slip = f"slides at {pocket.slip_speed:.3g} m/s"
@@ -345,10 +336,8 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
     pressure, force = quantity(pocket.pressure, "Pa", 3), quantity(pocket.impact_force, "N", 3)
     eta, limit, film = found.restitution_factor, found.solid_lubrication_limit, []
     if eta < limit:
-        words = (
-            f"The contact model gives {number(eta, 2)} for this film, below that {limit:g}. Both are shown."
-        )
-        film = [("This film", words)]
+        words = f"The contact model predicts {number(eta, 2)} for this film, below this bound of {limit:g}."
+        film = [("This film", f"{words} Both are shown.")]
     return [
         *basis(study, answer),
         *ensemble_facts(found.kicks, found.runs, found.duration),
@@ -361,10 +350,9 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
 
 
 def _running_clearances(answer: RankingAnswer) -> list[tuple[str, str]]:
-    """Return the clearances of each candidate, where they follow from those at rest."""
     if answer.solution.clearances is None:
         return []
-    rows = [row for row in answer.ranking.overall if not isinstance(row, NotMeasured)]
+    rows = _measured(answer.ranking.overall)
     each = [
         f"{row.name} {quantity(row.pocket_clearance, 'm', 3)}"
         + (f" and {quantity(row.land_clearance, 'm', 3)}" if row.land_clearance else "")

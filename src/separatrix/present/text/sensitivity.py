@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
-from separatrix.explore.records import NotDrawn
+from separatrix.answers import SensitivityAnswer
+from separatrix.explore.records import (
+    AllowedFilm,
+    Drivers,
+    NotDrawn,
+    Share,
+    UncertainMaterial,
+    UncertainRow,
+    UncertainStudy,
+)
 from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import (
     ABSENT,
@@ -21,18 +29,7 @@ from separatrix.present.text.tables import (
     significant,
     table,
 )
-
-if TYPE_CHECKING:
-    from separatrix.answers import SensitivityAnswer
-    from separatrix.explore.records import (
-        AllowedFilm,
-        Drivers,
-        Share,
-        UncertainMaterial,
-        UncertainRow,
-        UncertainStudy,
-    )
-    from separatrix.study import Study
+from separatrix.study import Study
 
 HEADERS = (
     *("material", "friction of\na new cage", "P(stable)\n(95 %)", "verdict", "motion"),
@@ -42,7 +39,7 @@ MARK, GUESS = "*", "?"
 
 LEGEND = paragraph(
     "friction of a new cage: mean, and standard deviation in per cent of it. P(stable): share of the "
-    "bearings whose cage settles, from the worst kick. motion: what most of them end in. offset, forces: "
+    "bearings whose cage settles, from the worst kick. motion: class of most of them. offset, forces: "
     "largest in any run. runs: bearings from the worst kick; fewer where the verdict was plain before."
 )
 SOURCES = {
@@ -90,7 +87,7 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
         section("Which test to run next", *map(paragraph, _next_test(found))),
         section("Which friction a new material may have", *map(paragraph, _friction(found))),
         films,
-        section("What this holds for", facts(holds_for)),
+        section("Basis of this answer", facts(holds_for)),
     ]
 
 
@@ -171,7 +168,7 @@ def _sources(found: UncertainStudy) -> Iterator[str]:
         columns = _columns(known)
         cells = [[f"{one.name}, {one.environment}", *_shares(one, columns)] for one in known]
         yield table(["case", *(name.replace(".", ".\n") for name in columns), "skill"], cells, left=1)
-    few, weak = "too few bearings end otherwise", "the inputs explain next to nothing"
+    few, weak = "too few bearings end otherwise", "the inputs explain almost no variance"
     reasons = grouped(
         (few if one.skill is None else weak, f"{one.name} in {one.environment}")
         for one in found.drivers
@@ -260,7 +257,6 @@ def _films(films: Sequence[AllowedFilm]) -> Iterator[str]:
 
 
 def _thicknesses(film: AllowedFilm, i: int) -> str:
-    """Return which film thicknesses are allowed at one race friction."""
     limit = 1.0 if film.reason.startswith("more") else film.restitution_factor
     allowed = [limit is not None and eta <= limit for eta in film.film_restitution_factor[i]]
     if all(allowed) or not any(allowed):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from separatrix.answers import MapAnswer, StabilityAnswer
 from separatrix.cage_choice import cage_candidate
 from separatrix.explore.sweep import Sweep, SweptCase
-from separatrix.limits.map_records import NOT_RUN
+from separatrix.limits.curve import StabilityCurve
+from separatrix.limits.map_records import NOT_RUN, Inference, MapAxis, MapChange, StabilityMap, Stopping
+from separatrix.present.nodes import field_units
 from separatrix.present.text.cage import friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.tables import (
@@ -24,13 +26,7 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.present.walk import field_units
-
-if TYPE_CHECKING:
-    from separatrix.answers import MapAnswer, StabilityAnswer
-    from separatrix.limits import StabilityCurve
-    from separatrix.limits.map_records import Inference, MapAxis, MapChange, StabilityMap, Stopping
-    from separatrix.study import Study
+from separatrix.study import Study
 
 HEADERS = (
     *("restitution\nfactor", "critical friction\n(95 %)", "band\nlow", "band\nhigh"),
@@ -58,11 +54,11 @@ KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "inferred", "not_run")
 
 
 def stability(answer: StabilityAnswer, study: Study) -> list[str]:
-    """Critical friction with its band and limits, and the ensemble they hold for."""
+    """Critical friction with its band and limits, and the ensemble behind them."""
     found = answer.curve
     reasons = dict.fromkeys(point.reason for point in found.curve if point.reason)
     ensemble = ensemble_facts(found.kicks, found.runs, found.duration, middle=found.middle_kick)
-    holds_for = section("What it holds for", facts([*basis(study, answer), *ensemble]))
+    holds_for = section("Basis of this answer", facts([*basis(study, answer), *ensemble]))
     remarks = [paragraph(reason, first="  - : ", indent="      ") for reason in reasons]
     return [*curve(found), holds_for, *remarks]
 
@@ -119,7 +115,7 @@ def drift_note(found: StabilityCurve) -> str:
 
 
 def stability_map(answer: MapAnswer, study: Study) -> list[str]:
-    """Shares of the plane, bands at a few columns, the rule, and what it holds for."""
+    """Shares of the plane, bands at a few columns, the rule, and the basis."""
     found = answer.map
     candidate = None
     if study.cage is None or study.cage.ball_cage_friction is None:
@@ -158,7 +154,7 @@ def stability_map(answer: MapAnswer, study: Study) -> list[str]:
     return [
         section("Stability map", facts(axes), "", table(("", "points", "share"), shares)),
         section("Where the cage begins to whirl", bands, *legend),
-        section("What it holds for", facts([*basis(study, answer), *friction, *ensemble])),
+        section("Basis of this answer", facts([*basis(study, answer), *friction, *ensemble])),
         *([paragraph(first, first="  - : ", indent="      ")] if first else []),
     ]
 

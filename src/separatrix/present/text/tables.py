@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from separatrix.present.walk import field_units
+from separatrix.present.nodes import field_units
 from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def heading(text: str) -> str:
 
 
 def section(text: str, *blocks: str) -> str:
-    """Return a section: its title, underlined, and what stands in it."""
+    """Return a section: its title, underlined, and its blocks."""
     return "\n".join([text, "-" * len(text), *blocks])
 
 
@@ -60,7 +60,7 @@ def paragraph(text: str, *, indent: str = "  ", first: str | None = None) -> str
 
 
 def grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
-    """Return each first text with all second texts that go with it, both in order."""
+    """Return each first text with all its second texts, both in order."""
     found: dict[str, list[str]] = {}
     for key, one in pairs:
         found.setdefault(key, []).append(one)

@@ -1,4 +1,4 @@
-"""The verb `reproduce`: computes saved answers again, from what they keep, and compares."""
+"""The commands on saved answers: `compare` shows two side by side, `reproduce` computes one again."""
 
 from __future__ import annotations
 
@@ -6,27 +6,63 @@ import base64
 import binascii
 import contextlib
 import hashlib
-import json
-from collections.abc import Iterator, Mapping
+import json as plain_json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Annotated
 
-from separatrix.cli.console import answer, interrupted, progress_bar
-from separatrix.cli.verbs import OPTIONS
-from separatrix.comparing.agreement import Agreement, agreement
-from separatrix.comparing.saved import Saved, read_answers
+import typer
+
+from separatrix.cli.console import answer, answer_json, interruptible, progress_bar
+from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
+from separatrix.comparing.records import Agreement
+from separatrix.comparing.saved import Document, Saved, read_answers
 from separatrix.errors import InputError
-from separatrix.notes import grouped, noted_warnings
-from separatrix.questions import Verb, computed, verb_named
+from separatrix.messages import grouped, noted_warnings
+from separatrix.questions import Verb, asked_study, computed, verb_named
+from separatrix.staged import staged, writable_folder
 from separatrix.units import printable, shown
 
-HELP = "Compute a saved answer again, and report whether it is the same."
-EPILOG = (
+if TYPE_CHECKING:
+    from separatrix.study import Study
+
+COMPARE = "Two answers of one verb side by side: what differs, and by more than counting noise?"
+COMPARE_EPILOG = "A and B are folders of answers, their .json, .nc or .html files, of any verb with a study."
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder or file of an answer.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same verb.")],
+    full: Annotated[bool, typer.Option("--full", help=FULL_HELP)] = False,
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help="Folder [default: compare].")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No effect: there is no progress bar.")] = False,  # noqa: ARG001
+) -> int:
+    """Compare two saved answers, draw them together, and return the exit status."""
+    to = folder(out) or (None if json else Path("compare"))
+    from separatrix.comparing.pair import compared, pair_of
+    from separatrix.comparing.shown import comparison_document, in_words, save_comparison
+
+    one, other, also = pair_of(read_answers(first), read_answers(second))
+    found = compared(one, other, also)
+    if to is not None:
+        with writable_folder(to), staged(to) as stage:
+            save_comparison(stage, found, one, other)
+    if json:
+        answer_json(comparison_document(found))
+    else:
+        where = "" if to is None else f"\nText, data and figures are in {to}/\n"
+        answer(in_words(found, full=full) + where)
+    return 0
+
+
+REPRODUCE = "Compute a saved answer again, and report whether it is the same."
+REPRODUCE_EPILOG = (
     "The study is read from the files that the answer keeps, in a temporary folder; the same verb runs with "
     "the same options. RESULT is a folder, the .json of an answer, or a report (.html)."
 )
-PATH_HELP = "Folder of answers, the .json of one, or a report."
+RESULT_HELP = "Folder of answers, the .json of one, or a report."
 
 MOST_TEXTS = 100
 """Ranges of a sweep, and models."""
@@ -54,54 +90,51 @@ class Reproduced:
     changed_files: tuple[str, ...]
 
 
-def reproduce(path: Path, *, as_json: bool, quiet: bool, jobs: int) -> int:
-    """Compute the answers of a folder or file again, and return the exit status.
-
-    Raises
-    ------
-    InputError
-        It is not an answer, or does not keep what it was made from.
-    """
+@interruptible("no answer is compared.")
+def reproduce(
+    path: Annotated[Path, typer.Argument(metavar="RESULT", help=RESULT_HELP)],
+    json: Json = False,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    """Compute the answers of a folder or file again, and return the exit status."""
     from separatrix import __version__
     from separatrix.present import plain
-    from separatrix.runner import Interrupted
 
-    try:
-        found = [_again(saved, quiet, jobs) for saved in read_answers(path).values()]
-    except Interrupted:
-        return interrupted("no answer is compared.")
-    same = all(one.same for one in found)
-    head = {"separatrix_version": __version__, "verb": "reproduce", "same": same}
-    if as_json:
-        answer(json.dumps({**head, "answers": plain(found)}, indent=1, allow_nan=False) + "\n")
+    count = threads(jobs)
+    found = [_again(saved, quiet, count) for saved in read_answers(path).values()]
+    if json:
+        head = {
+            "separatrix_version": __version__,
+            "verb": "reproduce",
+            "same": all(one.same for one in found),
+        }
+        answer_json({**head, "answers": plain(found)})
     else:
         answer("\n".join(line for one in found for line in _lines(one)) + "\n")
     return 0
 
 
 def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
-    """Compute one answer from what it keeps."""
+    from separatrix.comparing.pair import agreement
     from separatrix.present import document
     from separatrix.runner import Interrupted
-    from separatrix.study_file import read_study, require
 
     if saved.document is None:
         cure = "Name the .json that was written beside it."
         raise InputError(saved.path, "has no document to compare with", cure=cure)
-    stored, kept = saved.document, kept_of(saved)
+    stored, kept = saved.document, _kept_by(saved)
     if stored.get("complete") is False:
         raise InputError(saved.path, "was interrupted", cure="Resume it: run its command again.")
     verb = verb_named(saved.verb)
-    with noted_warnings() as notes, restored_study(kept, saved.path) as (entry, root, changed):
+    with noted_warnings() as notes, restored_study(saved) as (study, root, changed):
         question = _question(verb, kept["command"].get("question"), root)
-        study = read_study(entry, models_of(verb, kept["command"].get("models")))
-        require(study, verb.name, *verb.needs)
         with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
             found = computed(verb, study, question, jobs=jobs, progress=progress)
         if not found.is_complete:
             raise Interrupted
         made = document(verb.name, found.record, found.study, grouped(notes))
-    result = agreement(stored, json.loads(json.dumps(made)))
+    result = agreement(stored, plain_json.loads(plain_json.dumps(made)))
     return Reproduced(
         verb=verb.name,
         name=study.name,
@@ -113,7 +146,7 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     )
 
 
-def kept_of(saved: Saved) -> dict[str, Any]:
+def _kept_by(saved: Saved) -> Document:
     """Provenance of an answer, with what must be there."""
     stored = saved.document or {}
     kept = stored.get("provenance")
@@ -133,12 +166,19 @@ def kept_of(saved: Saved) -> dict[str, Any]:
 
 
 @contextlib.contextmanager
-def restored_study(kept: Mapping[str, Any], where: str) -> Iterator[tuple[Path, Path, list[str]]]:
-    """Yield the study file and its folder, restored, and the names of files that were changed."""
-    from separatrix.kept_files import restored
-    from separatrix.study_file.document import shipped_studies
-    from separatrix.study_file.kept import SHIPPED, shipped_checksums
+def restored_study(saved: Saved) -> Iterator[tuple[Study, Path, list[str]]]:
+    """Yield the study of an answer from the files that it keeps, their folder, and names of changed files.
 
+    Raises
+    ------
+    InputError
+        It keeps no files, or other ones than separatrix writes.
+    """
+    from separatrix.input_files import restored
+    from separatrix.study_file.document import shipped_studies
+    from separatrix.study_file.provenance import SHIPPED, shipped_checksums
+
+    kept, where, verb = _kept_by(saved), saved.path, verb_named(saved.verb)
     files: dict[str, bytes] = {}
     changed: list[str] = []
     shipped = shipped_checksums()
@@ -152,10 +192,9 @@ def restored_study(kept: Mapping[str, Any], where: str) -> Iterator[tuple[Path, 
             found = hashlib.sha256(files[name]).hexdigest()
         if found != one["sha256"]:
             changed.append(printable(name, 80))
-    links = kept["links"]
+    links, entry = kept["links"], str(kept["entry"])
     if not all(isinstance(name, str) for name in links.values()):
         raise InputError(where, "must have names as links")
-    entry = str(kept["entry"])
     with restored(files, links) as root:
         path = root / entry
         if entry.startswith(SHIPPED):
@@ -165,10 +204,16 @@ def restored_study(kept: Mapping[str, Any], where: str) -> Iterator[tuple[Path, 
             path = known
         elif entry not in files:
             raise InputError(where, "does not keep its study", shown(entry))
-        yield path, root, changed
+        models = kept["command"].get("models")
+        takes = ("motion", "ball") if verb.moves_a_cage else ()
+        if not isinstance(models, dict) or not all(
+            key in takes and isinstance(one, str) for key, one in models.items()
+        ):
+            raise InputError("models", f"must be models that {verb.name} takes", shown(models))
+        yield asked_study(verb, path, models), root, changed
 
 
-def _content(one: Mapping[str, Any], name: str, where: str) -> bytes:
+def _content(one: Document, name: str, where: str) -> bytes:
     if isinstance(one.get("text"), str):
         return str(one["text"]).encode("utf-8", "surrogatepass")
     try:
@@ -177,19 +222,11 @@ def _content(one: Mapping[str, Any], name: str, where: str) -> bytes:
         raise InputError(where, "has a file without content", f'"{printable(name, 80)}"') from None
 
 
-def models_of(verb: Verb, given: object) -> dict[str, str]:
-    """Models of the command line; `read_study` judges their values."""
-    known = ("motion", "ball") if verb.moves_a_cage else ()
-    if not isinstance(given, dict) or not all(k in known and isinstance(v, str) for k, v in given.items()):
-        raise InputError("models", f"must be models that {verb.name} takes", shown(given))
-    return given
-
-
-def _question(verb: Verb, given: object, root: Path) -> dict[str, Any]:
+def _question(verb: Verb, given: object, root: Path) -> dict[str, object]:
     """Options of the verb, each of the type that its command takes; the verb judges their values."""
     if not isinstance(given, dict):
         raise InputError("question", "must be the options of the verb", shown(given))
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     for name, value in given.items():
         if name not in verb.question:
             raise InputError(f"--{printable(name, 40)}", f"is not an option of {verb.name}")
@@ -212,9 +249,8 @@ def _is_right(name: str, value: object) -> bool:
     if name == "vary":
         return isinstance(value, list) and len(value) < MOST_TEXTS and all(isinstance(v, str) for v in value)
     if name == "cases":
-        return (
-            value is None or isinstance(value, str) or (isinstance(value, list) and all(map(_is_case, value)))
-        )
+        is_cases = isinstance(value, list) and all(map(_is_case, value))
+        return value is None or isinstance(value, str) or is_cases
     return type(value) is type(default)
 
 
@@ -222,10 +258,9 @@ def _is_case(value: object) -> bool:
     return isinstance(value, dict) and all(type(number) in (int, float) for number in value.values())
 
 
-def _versions(stored: Mapping[str, Any], kept: Mapping[str, Any]) -> Iterator[Version]:
-    """Versions that differ here."""
+def _versions(stored: Document, kept: Document) -> Iterator[Version]:
     from separatrix import __version__
-    from separatrix.study_file.kept import versions
+    from separatrix.study_file.provenance import versions
 
     given = kept.get("versions")
     before = {"separatrix": stored.get("separatrix_version"), **(given if isinstance(given, dict) else {})}
@@ -236,11 +271,10 @@ def _versions(stored: Mapping[str, Any], kept: Mapping[str, Any]) -> Iterator[Ve
 
 
 def _lines(one: Reproduced) -> Iterator[str]:
-    """Yield the answer in words, a line each."""
     found = one.result
-    said = "the same" if one.same else "different"
+    verdict = "the same" if one.same else "different"
     how = f", {found.agreement}" if found.same else f": {found.count} values differ"
-    yield f"{one.verb} {one.name}: {said}{how}."
+    yield f"{one.verb} {one.name}: {verdict}{how}."
     if found.largest_at is not None:
         yield f"  Largest relative difference {found.largest_difference:.2g}, of {found.largest_at}."
     for at in found.differences[:5]:

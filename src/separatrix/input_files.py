@@ -1,13 +1,15 @@
-"""Files that a study is read from: noted while they are read, and restored to be read again.
+"""Files that a user names: checked before they are opened, noted while read, restored to be read again.
 
-A study is read again from what its answer keeps. Then every file that a file names is one of those kept:
-`place` refuses any other, so that the files of a stranger's answer reach nothing of this machine.
+A pipe or a device may never end, so `size_of` comes before every opening. A study is read again from what its
+answer keeps. Then every file that a file names is one of those kept: `place` refuses any other, so that the
+files of a stranger's answer reach nothing of this machine.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import stat
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -16,13 +18,15 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from separatrix.errors import InputError
-from separatrix.regular_file import reading_only_in
 from separatrix.units import printable, shown
 
 MOST_BYTES = 64 * 1024**2
 """Of all files that an answer keeps together."""
 
 MOST_FILES, LONGEST_NAME = 500, 400
+
+_PACKAGE = Path(__file__).resolve().parent
+"""What the package ships may be read from everywhere."""
 
 
 @dataclass(slots=True)
@@ -34,14 +38,48 @@ class Reading:
     """Absolute paths that the files name, as they are written."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Restored:
-    root: Path
-    links: Mapping[str, str]
-
-
+_only_in: ContextVar[Path | None] = ContextVar("only_in", default=None)
 _reading: ContextVar[Reading | None] = ContextVar("reading", default=None)
-_restored: ContextVar[_Restored | None] = ContextVar("restored", default=None)
+_restored: ContextVar[tuple[Path, Mapping[str, str]] | None] = ContextVar("restored", default=None)
+"""Folder of the files of an answer, and the name there of each absolute path."""
+
+
+@contextmanager
+def reading_only_in(folder: Path) -> Iterator[None]:
+    """Refuse, within it, every file outside a folder, also by a link, that is not of the package."""
+    token = _only_in.set(folder.resolve())
+    try:
+        yield
+    finally:
+        _only_in.reset(token)
+
+
+def size_of(path: Path, where: str) -> int:
+    """Size in bytes of a regular file, links followed; no other may be opened. `where` names it in a refusal.
+
+    Raises
+    ------
+    InputError
+        It does not exist, is a folder, a pipe or a device, or is outside of `reading_only_in`.
+    """
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:
+        raise unreadable(where, error) from None
+    if stat.S_ISDIR(found.st_mode):
+        raise InputError(where, "is a folder, not a file", cure="Name a file in it.")
+    if not stat.S_ISREG(found.st_mode):
+        raise InputError(where, "is not a regular file", cure="Save its output to a file, and name that.")
+    folder, real = _only_in.get(), path.resolve()
+    if folder is not None and not (real.is_relative_to(folder) or real.is_relative_to(_PACKAGE)):
+        raise InputError(where, "is outside the folder that may be read", cure="Copy it into the folder.")
+    return found.st_size
+
+
+def unreadable(where: str, error: OSError | ValueError) -> InputError:
+    """Refusal of a file that the system refused; a ValueError is that of a NUL in its name."""
+    reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else "no such file"
+    return InputError(where, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
 
 
 @contextmanager
@@ -76,12 +114,13 @@ def place(folder: Path, name: str) -> Path:
         if reading is not None and is_absolute:
             reading.absolute.add(name)
         return folder / name
+    root, links = restored
     found = folder / name
-    if not folder.is_relative_to(restored.root):  # of a shipped study
+    if not folder.is_relative_to(root):  # of a shipped study
         return found
     if is_absolute:
-        found = restored.root / restored.links.get(checksum_of_name(name), "..")
-    if not Path(os.path.abspath(found)).is_relative_to(restored.root):
+        found = root / links.get(checksum_of_name(name), "..")
+    if not Path(os.path.abspath(found)).is_relative_to(root):
         raise InputError(shown(name), "names a file that the answer does not keep")
     return found
 
@@ -93,19 +132,10 @@ def checksum_of_name(name: str) -> str:
 
 @contextmanager
 def restored(files: Mapping[str, bytes], links: Mapping[str, str]) -> Iterator[Path]:
-    """Yield a temporary folder with these files, which may name one another and nothing else.
+    """Yield a temporary folder with files by relative name, with slashes, which may name only one another.
 
-    Parameters
-    ----------
-    files : mapping of str to bytes
-        Content by relative name, with slashes.
-    links : mapping of str to str
-        Name here of each absolute path, by `checksum_of_name`.
-
-    Raises
-    ------
-    InputError
-        A name leaves the folder, or there is too much.
+    `links` has the name here of each absolute path, by `checksum_of_name`. Names that leave the folder are
+    refused, and too many or too large files.
     """
     if len(files) > MOST_FILES or sum(map(len, files.values())) > MOST_BYTES:
         raise InputError("The files of the answer", f"must be at most {MOST_FILES}, {MOST_BYTES >> 20} MB")
@@ -121,7 +151,7 @@ def restored(files: Mapping[str, bytes], links: Mapping[str, str]) -> Iterator[P
                     file.write(content)
             except OSError as error:
                 raise InputError(shown(name), f"cannot be restored ({error.strerror})") from None
-        token = _restored.set(_Restored(root, dict(links)))
+        token = _restored.set((root, dict(links)))
         try:
             with reading_only_in(root):
                 yield root

@@ -1,12 +1,20 @@
-"""A comparison as text."""
+"""A comparison as text, as pictures of both answers together, and as files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from separatrix.comparing.agreement import is_number
-from separatrix.comparing.records import Comparison, Noise, Plain, Row, Value
+from separatrix import figures
+from separatrix.comparing.records import Comparison, Noise, Row, Value, is_number
 from separatrix.comparing.results import UNCOUNTED_VERBS
+from separatrix.comparing.saved import Saved
+from separatrix.errors import InputError
+from separatrix.figures.space import in_plane
+from separatrix.messages import harmless
+from separatrix.present import plain
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -20,8 +28,12 @@ from separatrix.present.text.tables import (
 )
 from separatrix.units import printable
 
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
 ON_A_SCREEN = {"inputs": 8, "verdicts": 8, "rows": 15}
-"""Most rows of each table, unless all are asked for."""
+"""Most rows of each table, without --full."""
 
 HEADLINES = {"rank": ("margin", "probability_stable"), "sensitivity": ("probability_stable",)}
 """Results that are shown on a screen, of the bearing's own environment; of other verbs all are."""
@@ -49,6 +61,28 @@ EXACT = "No counting: these results are exact up to the model."
 ONE_RUN = "One run of each: other runs of the same cages can end differently."
 SAME_SEED = "Both draw the same disturbances (seed {}); the intervals take their runs as independent."
 
+RUN: dict[str, int] = {
+    **dict.fromkeys(("outcome", "kick", "largest_offset"), 0),
+    **dict.fromkeys(("time", "land_force", "kinetic_energy", "spring_energy", "land_energy"), 1),
+    **dict.fromkeys(("pocket_angle", "half_play"), 1),
+    **dict.fromkeys(("position", "velocity", "contact_force"), 2),
+}
+CURVE = dict.fromkeys(("restitution_factor", "critical_friction", "scatter_low", "scatter_high"), 1)
+NEEDED: Mapping[str, Mapping[str, int]] = {
+    "simulate": RUN,
+    "stability": CURVE,
+    "rank": CURVE
+    | dict.fromkeys(("material", "environment"), 1)
+    | {f"material_restitution_{name}": 2 for name in ("factor", "threshold")}
+    | {f"material_restitution_threshold_{end}": 2 for end in ("low", "high")},
+}
+"""What a picture takes from each: variable and number of its dimensions."""
+
+TEXTS = ("outcome", "material", "environment")
+
+MOST = 1e30
+"""Magnitude from which a number cannot be drawn; no run comes near it."""
+
 
 def in_words(found: Comparison, *, full: bool = False) -> str:
     """Return what differs: inputs, verdicts, and results with the largest changes first."""
@@ -57,13 +91,9 @@ def in_words(found: Comparison, *, full: bool = False) -> str:
         for which, one in zip(("first", "second"), found.answers, strict=True)
     ]
     blocks = [heading(f"Two answers of {found.of}"), facts(named)]
-    if found.verdicts:
-        rows = [[row.place, row.name, *pair_words(row)] for row in found.verdicts]
-        blocks.append(
-            _part("Verdicts that changed", ("", "", "first", "second"), rows, "verdicts", full, left=2)
-        )
-    else:
-        blocks.append(section("Verdicts that changed", paragraph("None.")))
+    rows = [[row.place, row.name, *pair_words(row)] for row in found.verdicts]
+    heads: tuple[str, ...] = ("", "", "first", "second")
+    blocks.append(_part("Verdicts that changed", heads, rows, "verdicts", full, left=2))
     changed, own = list(shown_rows(found, full=full)), "" if full else found.environment or ""
     rows = [result_words(row, own) for row in changed]
     heads = ("", "", "first\n(95 %)", "second\n(95 %)", "change", "noise")
@@ -135,18 +165,14 @@ def pair_words(row: Row) -> list[str]:
 
 
 def _value(one: Value, unit: str | None) -> str:
-    text = _plain(one.value, unit)
+    text = ABSENT if one.value is None else str(one.value)
+    if is_number(one.value):
+        text = _number(one.value, unit)
     if one.low is None or one.high is None:
         return text
     if unit == "-" and one.high - one.low > COARSE and is_number(one.value):
-        return interval(float(one.value), one.low, one.high)  # type: ignore[arg-type]
+        return interval(float(one.value), one.low, one.high)
     return f"{text} ({_number(one.low, unit)} to {_number(one.high, unit)})"
-
-
-def _plain(value: Plain, unit: str | None) -> str:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return ABSENT if value is None else str(value)
-    return _number(value, unit)
 
 
 def _number(value: float, unit: str | None, *, sign: bool = False) -> str:
@@ -163,3 +189,48 @@ def input_words(value: object, unit: str | None) -> str:
     if isinstance(value, float):
         return quantity(value, unit) if unit else significant(value)
     return ABSENT if value is None else printable(str(value), 120)
+
+
+def pictures(first: Saved, second: Saved) -> Iterator[tuple[str, Figure]]:
+    """Yield name and figure of each picture of two answers; none for a verb or an answer without arrays."""
+    pair = [one.data for one in (first, second) if one.data is not None]
+    if len(pair) < 2 or first.verb not in NEEDED:
+        return
+    if first.verb == "simulate":
+        pair = [in_plane(one) for one in pair]
+    elif any("restitution_factor" not in one.sizes for one in pair):  # an interrupted one has no curve
+        return
+    for data, saved in zip(pair, (first, second), strict=True):
+        _check(data, saved)
+    titles = [str(one.attrs.get("title", "")) for one in pair]
+    names = (first.path, second.path) if titles[0] == titles[1] else ("", "")  # else by their titles
+    yield from figures.draw("compare", *pair, names=names)
+
+
+def _check(data: xr.Dataset, saved: Saved) -> None:
+    """Refuse an answer whose arrays cannot be drawn."""
+    for name, dimensions in NEEDED[saved.verb].items():
+        if name not in data or data[name].ndim != dimensions or data[name].size == 0:
+            raise InputError(saved.path, f"lacks {name}, which an answer of {saved.verb} has")
+        if name in TEXTS:
+            continue
+        if data[name].dtype.kind not in "iuf":
+            raise InputError(saved.path, f"must have numbers in {name}", got=str(data[name].dtype))
+        largest = float(abs(data[name]).max(skipna=saved.verb != "simulate"))
+        if largest >= MOST or (saved.verb == "simulate" and not largest < MOST):
+            raise InputError(saved.path, f"must have finite numbers below {MOST:g} in {name}")
+
+
+def comparison_document(found: Comparison) -> dict[str, object]:
+    """Return a comparison as plain data, as ``--json`` prints it."""
+    from separatrix import __version__
+
+    return {"separatrix_version": __version__, "verb": "compare", **plain(found, left_out=[])}
+
+
+def save_comparison(folder: Path, found: Comparison, first: Saved, second: Saved) -> None:
+    """Write compare.json, compare.txt with every row, and the figures, where both have their arrays."""
+    text = json.dumps(comparison_document(found), indent=1, allow_nan=False) + "\n"
+    (folder / "compare.json").write_text(text, encoding="utf-8")
+    (folder / "compare.txt").write_text(harmless(in_words(found, full=True)), encoding="utf-8")
+    figures.save_all(pictures(first, second), folder)

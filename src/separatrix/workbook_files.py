@@ -1,24 +1,116 @@
-"""How workbooks are written: numbers as numbers, text never as a formula, the same bytes each time."""
+"""Workbook files: judged before anything in them is expanded, written with the same bytes each time.
+
+A workbook is a zip container, and a small one may declare, or hide, a huge content. One that passes
+`refuse_unsafe` expands to no more than its directory declares, by ratios that no honest workbook exceeds.
+Numbers are written as numbers, text never as a formula.
+"""
 
 from __future__ import annotations
 
 import io
 import math
 import re
+import struct
 import textwrap
 import zipfile
+import zlib
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
+from separatrix.errors import InputError
+from separatrix.input_files import size_of, unreadable
 from separatrix.units import printable
 
 if TYPE_CHECKING:
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
 
+MOST_BYTES = 512 * 1024**2
+"""Expanded size of the whole workbook."""
+
+MOST_RATIO = 100
+"""Expanded size over size on disk, of the whole and of each part longer than `REAL_SIZE`."""
+
+MOST_PARTS = 10_000
+REAL_SIZE = 1024**2
+PIECE = 1024**2
+_ENCRYPTED = 0x1 | 0x40
+SAVE_AGAIN = "Open it in a spreadsheet program and save it again as .xlsx."
+
+
+def refuse_unsafe(path: Path, label: str | None = None) -> None:
+    """Refuse a file that is not a workbook's zip file, is damaged or encrypted, or expands too far.
+
+    That is beyond `MOST_BYTES`, `MOST_RATIO`, or the declared size. `label` names it in messages, by default
+    its own name.
+    """
+    name = printable(path.name) if label is None else label
+    size = size_of(path, name)
+    try:
+        with zipfile.ZipFile(path) as container, path.open("rb") as file:
+            parts = container.infolist()
+            _check_directory(parts, size, name)
+            for part in parts:
+                _check_content(file, part, name)
+    except InputError:  # which is a ValueError, too
+        raise
+    except OSError as error:
+        raise unreadable(name, error) from None
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, ValueError, struct.error) as error:
+        rule = f"is not a readable workbook: {printable(str(error))}"
+        raise InputError(name, rule, cure=SAVE_AGAIN) from None
+
+
+def _check_directory(parts: Sequence[zipfile.ZipInfo], size: int, label: str) -> None:
+    """Refuse a container whose directory alone is wrong."""
+    if len(parts) > MOST_PARTS:
+        raise InputError(label, f"must have at most {MOST_PARTS} parts", str(len(parts)))
+    twice = [name for name, n in Counter(part.filename.casefold() for part in parts).items() if n > 1]
+    if twice:
+        raise InputError(label, "has two parts of the same name", f'"{printable(twice[0])}"', SAVE_AGAIN)
+    total = sum(part.file_size for part in parts)
+    if total > MOST_BYTES:
+        got = f"{total / 1024**2:.0f} MB"
+        raise InputError(label, f"must expand to at most {MOST_BYTES // 1024**2} MB", got)
+    for expanded, packed in [(total, size), *((p.file_size, p.compress_size) for p in parts)]:
+        if expanded > MOST_RATIO * max(packed, 1) and (expanded > REAL_SIZE or expanded is total):
+            got = f"{expanded / max(packed, 1):.0f}:1"
+            raise InputError(label, f"must expand by at most {MOST_RATIO}:1", got)
+    for part in parts:
+        if part.flag_bits & _ENCRYPTED:
+            raise InputError(label, "is encrypted", cure="Save it without a password.")
+        if part.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            rule = f"has a part of a compression that workbooks do not use: {printable(part.filename)}"
+            raise InputError(label, rule, cure=SAVE_AGAIN)
+
+
+def _check_content(file: BinaryIO, part: zipfile.ZipInfo, label: str) -> None:
+    """Refuse a part whose content is not of the length and checksum that the directory declares."""
+    file.seek(part.header_offset + 26)
+    names = struct.unpack("<2H", file.read(4))  # lengths of the name and the extra field
+    file.seek(sum(names), 1)
+    inflate = zlib.decompressobj(-15)
+    deflated = part.compress_type == zipfile.ZIP_DEFLATED
+    packed, length, checksum, left = b"", 0, 0, part.compress_size
+    while length <= part.file_size and (packed or left > 0):
+        if not packed:
+            packed = file.read(min(PIECE, left))
+            left -= PIECE
+        if deflated:
+            piece, packed = inflate.decompress(packed, PIECE), inflate.unconsumed_tail
+        else:
+            piece, packed = packed, b""
+        length, checksum = length + len(piece), zlib.crc32(piece, checksum)
+    if length != part.file_size or checksum != part.CRC:
+        rule = f"is damaged: {printable(part.filename)} is not of the length or checksum it declares"
+        raise InputError(label, rule, cure=SAVE_AGAIN)
+
+
 LONGEST_TEXT = 32_000
-"""Characters that a cell may hold, with room to spare."""
+"""Characters of the longest text of a cell, with room to spare."""
 
 LONGEST_TITLE = 31
 EVALUATED = "=+-@＝＋－＠"
@@ -38,7 +130,7 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Look:
-    """How a cell looks."""
+    """Look of a cell."""
 
     number_format: str = "General"
     bold: bool = False
@@ -74,7 +166,7 @@ def new_workbook() -> Workbook:
 
 
 def sheet_title(name: str, taken: Sequence[str]) -> str:
-    """Return a name that a sheet may have and no other has, as near to the wanted one as can be."""
+    """Return a valid name of a sheet that no other has, as near to the wanted one as can be."""
     plain = re.sub(r"[\[\]:*?/\\]", "-", printable(name, 200)).strip(" '") or "sheet"
     known = {title.casefold() for title in taken}
     title, number = plain[:LONGEST_TITLE], 1
@@ -85,7 +177,7 @@ def sheet_title(name: str, taken: Sequence[str]) -> str:
 
 
 def add_sheet(book: Workbook, name: str, taken: Sequence[str] = ()) -> Worksheet:
-    """Add a sheet at the end, its name none of those taken; it prints across, as wide as the page."""
+    """Add a sheet at the end under a name that is not taken; it prints across, as wide as the page."""
     from openpyxl.worksheet.properties import PageSetupProperties
 
     sheet: Worksheet = book.create_sheet(sheet_title(name, [*book.sheetnames, *taken]))
@@ -101,8 +193,8 @@ def put(
 ) -> None:
     """Write a value into a cell; nothing if it is None.
 
-    A text is never a formula: its cell is of the type of texts and says so (quotePrefix). What a program
-    would evaluate in a text file made from the workbook gets an apostrophe, unless `exact` is asked for.
+    A text is never a formula: its cell has the type of texts (quotePrefix). A text that a program would
+    evaluate in a text file made from the workbook begins with an apostrophe, unless `exact` is set.
     """
     from openpyxl.styles import Alignment, Font, PatternFill
 
@@ -125,12 +217,12 @@ def put(
 
 
 def is_evaluated(text: str) -> bool:
-    """Whether a program that reads the text from a file of text may take it for a formula."""
+    """Whether a program may take a text, read from a text file, for a formula."""
     return text.lstrip(" \t\r\n")[:1] in tuple(EVALUATED) and re.search(r"\w", text) is not None
 
 
 def text_for_cell(text: str, *, exact: bool = False) -> str:
-    """Return a text as a cell may hold it: control characters as codes, no beginning of a formula."""
+    """Return a text as a cell may have it: control characters as codes, no beginning of a formula."""
     plain = _CODE.sub("_x005F_", printable(text, LONGEST_TEXT))  # else read as the code of a character
     return f"'{plain}" if is_evaluated(text) and not exact else plain
 
@@ -143,7 +235,7 @@ def headings(sheet: Worksheet, names: Sequence[str], *, keep_columns: int = 0) -
 
 
 def widths(sheet: Worksheet, *sizes: float) -> None:
-    """Give the columns their widths, in characters, and the rows the height that their wrapped texts need."""
+    """Set the widths of columns, in characters, and the heights of rows for their wrapped texts."""
     from openpyxl.utils import get_column_letter
 
     for column, size in enumerate(sizes, 1):
@@ -169,7 +261,7 @@ def add_table(
     keep_columns: int = 0,
     taken: Sequence[str] = (),
 ) -> Worksheet:
-    """Add a sheet of headings and rows; a value that is no `Cell` has the look of its column."""
+    """Add a sheet of headings and rows; a value that is not a `Cell` has the look of its column."""
     sheet = add_sheet(book, name, taken)
     headings(sheet, heads, keep_columns=keep_columns)
     for number, row in enumerate(rows, 2):
@@ -182,7 +274,7 @@ def add_table(
 
 
 def workbook_bytes(book: Workbook) -> bytes:
-    """Return the file of a workbook; the same content gives the same bytes, whatever the time and date."""
+    """Return the file of a workbook; the same content has the same bytes at any time and date."""
     made = io.BytesIO()
     book.save(made)
     fixed = io.BytesIO()

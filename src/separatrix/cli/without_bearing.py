@@ -1,0 +1,308 @@
+"""The commands without a bearing: `contact`, `tribometer`, and those below `materials`."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from separatrix.cli.console import answer, answer_json, interruptible, progress_bar
+from separatrix.cli.verbs import Jobs, Json, Quiet, folder, named, threads
+from separatrix.errors import InputError
+from separatrix.messages import grouped, harmless, noted_warnings
+from separatrix.staged import staged, writable_folder
+from separatrix.units import format_quantity, parse, printable, shown
+
+if TYPE_CHECKING:
+    from separatrix.friction.tribometer import ReducedLogs
+    from separatrix.library.reading import Content
+    from separatrix.present.text.materials import Shown
+
+CONTACT = "Tractions and slip of one rolling contact, without a bearing."
+CONTACT_EPILOG = (
+    "FILE is a contact file (TOML), or an input file of CONTACT, module 3, whose name ends in .inp. A case "
+    "that does not converge is a row with its reason."
+)
+CONTACT_FILE_HELP = "A contact file, or an input file of CONTACT (.inp)."
+CONTACT_OUT_HELP = "Folder for figures and data [default: named after FILE; none with --json]."
+
+
+@interruptible("no file was written.")
+def contact(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help=CONTACT_FILE_HELP)],
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help=CONTACT_OUT_HELP)] = None,
+    quiet: Quiet = False,
+) -> int:
+    """Read, solve, print and write one contact; return the exit status."""
+    place = folder(out)
+    from separatrix.contact_file import read_contact
+    from separatrix.contact_file.solving import solve_cases
+    from separatrix.present.contact import document, in_words
+
+    with noted_warnings() as notes, contextlib.ExitStack() as stack:
+        asked = read_contact(path)
+        if place is None and not json:
+            place = Path(path.stem)
+        if place is not None:
+            stack.enter_context(writable_folder(place))
+        with progress_bar(f"contact {path.name}", quiet=quiet) as progress:
+            found = solve_cases(asked, progress)
+        kept = grouped(notes)
+        made, words = document(found, kept), in_words(found, kept)
+        if json:
+            answer_json(made)
+        else:
+            answer(in_words(found, []) if quiet else words)
+        if place is None:
+            return 0
+        from separatrix import figures
+        from separatrix.present import save
+        from separatrix.present.contact import contact_dataset
+        from separatrix.saving import written
+
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)
+        with staged(place) as stage:
+            for name, content in (("contact.json", written(made)), ("contact.txt", words)):
+                (stage / name).write_text(harmless(content), encoding="utf-8")
+            data = contact_dataset(found, kept)
+            save(data, stage / "contact.nc")
+            figures.save_all(figures.draw("contact", data), stage)
+        if not json and not quiet:
+            answer(f"\nFigures and data are in {place}/\n")
+    return 0
+
+
+TRIBOMETER = "Friction with its scatter from raw logs of tests."
+TRIBOMETER_EPILOG = (
+    "What is read is shown before it is trusted: without --out nothing is written. A file that exists is "
+    "never overwritten."
+)
+FILES_HELP = "Raw tribometer logs, or folders of them; the format is recognised."
+FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
+MAP_HELP = "Column map (TOML) for what the logs do not state."
+PLOTS_HELP = "Folder of a page for each test [default: beside the friction file]."
+RUN_IN_HELP = 'Where running-in ends, for instance "200 m" [default: found].'
+JOIN_HELP = "The logs of one folder are strokes or parts of one test."
+
+
+@interruptible("no friction file was written.")
+def tribometer(
+    files: Annotated[list[Path], typer.Argument(metavar="FILES...", help=FILES_HELP)],
+    out: Annotated[str | None, typer.Option(metavar="FILE", help=FRICTION_HELP)] = None,
+    column_map: Annotated[Path | None, typer.Option("--map", metavar="FILE", help=MAP_HELP)] = None,
+    plots: Annotated[str | None, typer.Option(metavar="DIR", help=PLOTS_HELP)] = None,
+    run_in: Annotated[str | None, typer.Option(metavar="END", help=RUN_IN_HELP)] = None,
+    join: Annotated[bool, typer.Option("--join", help=JOIN_HELP)] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    """Read and reduce logs, show what was read, write the files; return the exit status."""
+    to, pages = named(out, "--out", "a file"), named(plots, "--plots", "a folder")
+    count = threads(jobs)
+    if to is not None:
+        _refuse_out(to)
+        pages = pages or to.with_name(f"{to.stem}-plots")
+    from separatrix.friction.file import place
+
+    if run_in is not None:
+        place(run_in, "--run-in")
+    with contextlib.ExitStack() as folders:
+        for one in (to and to.parent, pages):
+            if one is not None:
+                folders.enter_context(writable_folder(one))
+        from separatrix.friction.tribometer import tribometer as reduced  # before the work is timed
+
+        with progress_bar("tribometer", quiet=quiet) as progress:
+            found = reduced(
+                files,
+                column_map=column_map,
+                run_in=run_in,
+                join=join,
+                complete=to is not None,
+                jobs=count,
+                progress=progress,
+            )
+        if pages is not None:
+            _draw_pages(found, pages, quiet=quiet)
+        if to is not None and found.friction_tests is not None:
+            from separatrix.friction.file import exists_already, friction_text
+
+            with staged(to.parent) as stage:
+                (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
+                if to.exists():  # since the first check
+                    raise exists_already(to)
+        from separatrix.present.tribometer import document, in_words
+
+        written = None if to is None else str(to)
+        if json:
+            answer_json(document(found, written=written))
+        else:
+            answer(in_words(found, written=written, plots=None if pages is None else str(pages)))
+    return 0
+
+
+def _refuse_out(out: Path) -> None:
+    from separatrix.friction.file import exists_already
+
+    try:
+        is_folder, exists = out.is_dir(), out.exists() or out.is_symlink()
+    except OSError as error:
+        where = f"--out {printable(str(out), 200)}"
+        raise InputError(where, "cannot be written", error.strerror or type(error).__name__) from None
+    if out.suffix != ".toml" or is_folder:
+        cure = 'Name a file like "friction.toml".'
+        raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
+    if exists:
+        raise exists_already(out)
+
+
+def _draw_pages(found: ReducedLogs, pages: Path, *, quiet: bool) -> None:
+    """Write a page of plots for each test, and the data that it is drawn from."""
+    from separatrix import figures
+    from separatrix.figures.tribometer import page
+    from separatrix.present import save
+    from separatrix.present.tribometer import page_data
+
+    names: dict[str, int] = {}
+    with staged(pages) as stage, progress_bar("pages of plots", quiet=quiet) as progress:
+        for done, one in enumerate(found.reductions, 1):
+            name = file_name(one.log.source)
+            names[name] = number = names.get(name, 0) + 1
+            path = stage / (name if number == 1 else f"{name}-{number}")
+            data = page_data(one)
+            save(data, path.with_name(f"{path.name}.nc"))
+            figures.save(page(data), path.with_name(f"{path.name}.png"))
+            progress(done, len(found.reductions))
+
+
+def file_name(source: str) -> str:
+    """Name of a test as the name of a file: letters, digits, dots and dashes."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "._-") else "-" for c in source)
+    return "-".join(part for part in plain.split("-") if part).strip(".-")[:100] or "test"
+
+
+KIND_HELP = "bearing material, cage material, film, fluid, friction table."
+Kind = Annotated[str | None, typer.Option("--kind", metavar="KIND", help=KIND_HELP)]
+LIBRARY_HELP = "A library file or folder to read too; may be repeated."
+Libraries = Annotated[list[str] | None, typer.Option("--library", metavar="PATH", help=LIBRARY_HELP)]
+AT_HELP = 'For instance "77 K": the data that serve there.'
+UNDER_HELP = 'State of a fluid there [default: "101325 Pa"].'
+MATERIALS = "The library of materials; check one of your own, add to it."
+MATERIALS_EPILOG = (
+    "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
+    "are read, as they are for a study there."
+)
+
+
+def materials_application() -> typer.Typer:
+    """Return the verbs below `materials`."""
+    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    verbs: dict[str, tuple[Callable[..., None], str]] = {
+        "list": (_list, "Every record: its numbers, how sure they are, and its library."),
+        "show": (_show, "One record whole: every number with source, conditions and confidence."),
+        "check": (_check, "Read a library file; report what it contains."),
+        "add": (_add, "Add the records of a file to a library of your own."),
+    }
+    for name, (function, text) in verbs.items():
+        app.command(name, help=text, epilog=MATERIALS_EPILOG if name in ("list", "show") else None)(function)
+    return app
+
+
+def _list(kind: Kind = None, library: Libraries = None, json: Json = False) -> None:
+    from separatrix.data_answers import materials
+
+    found = materials(kind, libraries=library or ())
+    _deliver("list", found.document(), None if json else found.summary())
+
+
+def _show(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="A material, film, fluid or friction table.")],
+    kind: Kind = None,
+    temperature: Annotated[str | None, typer.Option(metavar="T", help=AT_HELP)] = None,
+    pressure: Annotated[str | None, typer.Option(metavar="P", help=UNDER_HELP)] = None,
+    library: Libraries = None,
+    json: Json = False,
+) -> None:
+    from separatrix.data_answers import materials
+    from separatrix.present.text.materials import shown as in_words
+
+    views = materials(kind, libraries=library or ()).show(
+        name,
+        temperature=_quantity(temperature, "K", "--temperature", 1e-3, 5000.0),
+        pressure=_quantity(pressure, "Pa", "--pressure", 1e-3, 1e11),
+    )
+    _deliver("show", {"records": [_plain(one) for one in views]}, None if json else in_words(views))
+
+
+def _check(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file.")], json: Json = False
+) -> None:
+    from separatrix.library import joined
+    from separatrix.library.reading import read_library
+
+    content = read_library(file)
+    joined([content])
+    _summary("check", content, None, as_json=json)
+
+
+def _add(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file with the new records.")],
+    to: Annotated[
+        str | None, typer.Option("--to", metavar="LIBRARY", help="The library file to add to.")
+    ] = None,
+    json: Json = False,
+) -> None:
+    from separatrix.library import add_records
+
+    if not to:
+        cure = "For instance: --to materials.toml."
+        raise InputError("--to", "is missing: the library file to add to", cure=cure)
+    _summary("add", add_records(file, Path(to)), to, as_json=json)
+
+
+def _deliver(verb: str, document: Mapping[str, object], text: str | None) -> None:
+    from separatrix import __version__
+
+    if text is None:
+        answer_json({"separatrix_version": __version__, "verb": f"materials {verb}", **document})
+    else:
+        answer(text)
+
+
+def _summary(verb: str, content: Content, library: str | None, *, as_json: bool) -> None:
+    """Answer with the content of a library file: its records, and how many of their numbers are guesses."""
+    from dataclasses import asdict
+
+    from separatrix.present.text.materials import added, checked, counts
+
+    records = [counts(record) for record in content.records]
+    document = {**content.file.plain(), "records": [asdict(one) for one in records]}
+    if library is not None:
+        document["library"] = library
+    text = checked(content.file, records) if library is None else added(library, records)
+    _deliver(verb, document, None if as_json else text)
+
+
+def _quantity(text: str | None, unit: str, option: str, low: float, high: float) -> float | None:
+    if text is None:
+        return None
+    value = parse(text, unit, option)
+    if not low <= value <= high:
+        rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
+        raise InputError(option, rule, shown(text))
+    return value
+
+
+def _plain(one: Shown) -> dict[str, object]:
+    whole = one.record.plain()
+    if one.state is not None:
+        return whole | {"state": one.state.plain(), "cautions": list(one.cautions)}
+    if one.taken_at is not None:
+        return whole | {"taken": dict(one.taken), "taken_at": one.taken_at, "cautions": list(one.cautions)}
+    return whole

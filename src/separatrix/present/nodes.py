@@ -1,0 +1,214 @@
+"""Records as nodes, every value with the unit and the axes that its field states, and as plain data."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from math import isfinite
+from typing import Any, NamedTuple, get_args, get_type_hints
+
+import numpy as np
+
+from separatrix import study
+from separatrix.cage import CageMotion
+from separatrix.chain.mobility import SlipLaw
+from separatrix.errors import SeparatrixError
+from separatrix.units import Rows
+
+
+class Leaf(NamedTuple):
+    """A number, text, array or None; `axes` are the names of its dimensions, None for its own name."""
+
+    value: object
+    unit: str | None = None
+    axes: tuple[str, ...] | None = None
+    long_name: str = ""
+
+    @property
+    def number(self) -> float | None:
+        """The value, if it is a number."""
+        return self.value if isinstance(self.value, float) else None
+
+
+class Group(NamedTuple):
+    """A record inside a record; `prefix` goes before its names in a dataset, None for its own name."""
+
+    fields: Node
+    prefix: str | None = None
+
+
+class Table(NamedTuple):
+    """Records in a list, and how they become arrays; None where there is none."""
+
+    records: list[Node] | None
+    rows: Rows
+
+
+Item = Leaf | Group | Table
+Node = dict[str, Item]
+
+
+@functools.singledispatch
+def shape(record: object) -> Node:
+    """Return a record as a node, field by field; `shapes` has the few records that are arranged otherwise."""
+    return fields_of(record)
+
+
+def fields_of(record: object, *names: str) -> Node:
+    """Return the fields of a record, or those named."""
+    of: type = type(record)
+    kinds = _kinds(of)
+    return {name: _item(getattr(record, name), kinds[name]) for name in names or kinds}
+
+
+def absent(record: type) -> Node:
+    """Return the fields of a class of records without a record: only their units."""
+    return {name: _item(None, kind) for name, kind in _kinds(record).items()}
+
+
+def field_units(record: type) -> dict[str, str]:
+    """Return the unit of each field of a record class that has one."""
+    return {name: kind.unit for name, kind in _kinds(record).items() if kind.unit is not None}
+
+
+def field_axes(record: type) -> dict[str, tuple[str, ...]]:
+    """Return the names of the dimensions of each field of a record class that states them."""
+    return {name: kind.axes for name, kind in _kinds(record).items() if kind.axes}
+
+
+class _Kind(NamedTuple):
+    """What the type of a field states."""
+
+    unit: str | None = None
+    axes: tuple[str, ...] | None = None
+    rows: Rows | None = None
+
+
+def _item(value: object, kind: _Kind) -> Item:
+    if is_dataclass(value) and not isinstance(value, type):
+        return Group(shape(value), None if kind.rows is None else kind.rows.prefix)
+    if isinstance(value, Mapping):
+        prefix = None if kind.rows is None else kind.rows.prefix
+        return Group({str(key): _item(one, kind) for key, one in value.items()}, prefix)
+    if isinstance(value, tuple) and value and all(is_dataclass(one) for one in value):
+        return Table([shape(one) for one in value], kind.rows or Rows())
+    if kind.rows is not None and kind.rows.dimension:
+        return Table(None if value is None else [], kind.rows)
+    return Leaf(value, kind.unit, kind.axes)
+
+
+@functools.cache
+def _kinds(record: type) -> dict[str, _Kind]:
+    hints = get_type_hints(record, include_extras=True)
+    return {field.name: _kind(hints[field.name]) for field in fields(record)}
+
+
+def _kind(hint: object) -> _Kind:
+    """Return what an annotation such as ``Annotated[Array, "N", ("ball",)]`` states, or one inside it."""
+    metadata = getattr(hint, "__metadata__", ())
+    unit = next((one for one in metadata if isinstance(one, str)), None)
+    rows = next((one for one in metadata if isinstance(one, Rows)), None)
+    axes = next((one for one in metadata if type(one) is tuple), None)
+    if unit is None and rows is None:
+        inside = (_kind(argument).unit for argument in get_args(hint))
+        unit = next((one for one in inside if one is not None), None)
+    return _Kind(unit, axes, rows)
+
+
+Document = dict[str, Any]
+"""Plain data of an answer, of a study, or of a part of one: text, numbers, None, lists and dictionaries."""
+
+SPELLED = (
+    *(CageMotion, study.ClearanceState, study.ContactPressure, study.Guidance, study.KinematicModel),
+    *(study.PocketContact, study.PocketShape, study.PressureSlip, study.Race, SlipLaw),
+    *(study.TractionModel, study.Worn),
+)
+"""Enumerations whose values are shown; of the others the names."""
+
+
+class NotFiniteError(SeparatrixError, ArithmeticError):
+    """A record has a NaN or an infinity where a number is due."""
+
+
+def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]) -> Document:
+    """Return an answer as plain data: SI units, no NaN, None where something is absent.
+
+    The resolved inputs of the study go into it with their sources; the notes and those of the answer are its
+    warnings.
+    """
+    from separatrix import __version__
+    from separatrix.present.shapes import all_notes
+    from separatrix.study_file import provenance_of, resolved
+
+    left_out: list[str] = []
+    body = plain(Group(shape(answer)), verb, left_out)
+    warnings = all_notes(answer, notes)
+    if left_out:
+        more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
+        warnings.append(
+            f"A number is not finite and is left out: {left_out[0]}{more}. The inputs are far from those of "
+            "a bearing, or this is a fault of separatrix."
+        )
+    return {
+        "separatrix_version": __version__,
+        "verb": verb,
+        "name": asked.name,
+        "title": asked.title,
+        "study": plain(resolved(asked), "study"),
+        "seed": asked.stability.seed,
+        **body,
+        "warnings": warnings,
+        "provenance": plain(provenance_of(asked, verb), "provenance"),
+    }
+
+
+def plain(value: object, path: str = "result", left_out: list[str] | None = None) -> Any:
+    """Return a record, a node or a container of them as what JSON can hold.
+
+    Parameters
+    ----------
+    value : object
+    path : str
+        Its place, for messages.
+    left_out : list of str, optional
+        A number that is not finite becomes None, and is added to this list.
+
+    Raises
+    ------
+    NotFiniteError
+        A number is NaN or infinite, and there is no such list.
+    """
+    if isinstance(value, Leaf):
+        return plain(value.value, path, left_out)
+    if isinstance(value, Table):
+        records = value.records
+        return None if records is None else [plain(Group(one), path, left_out) for one in records]
+    if is_dataclass(value) and not isinstance(value, type):
+        value = Group(shape(value))
+    if isinstance(value, Group):
+        value = value.fields
+    if isinstance(value, Enum):
+        return str(value.value) if type(value) in SPELLED else value.name
+    if isinstance(value, np.ndarray | np.generic):
+        is_plain = value.dtype.kind in "biu" or (value.dtype.kind == "f" and np.isfinite(value).all())
+        return value.tolist() if is_plain else plain(value.tolist(), path, left_out)
+    if isinstance(value, Mapping):
+        return {_key(key): plain(one, f"{path}.{_key(key)}", left_out) for key, one in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        return [plain(one, f"{path}[{i}]", left_out) for i, one in enumerate(value)]
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if not isinstance(value, float):
+        raise TypeError(f"{path}: a {type(value).__name__} has no plain form")
+    if isfinite(value):
+        return value
+    if left_out is None:
+        raise NotFiniteError(f"{path} is {value}")
+    left_out.append(f"{path} is {value}")
+    return None
+
+
+def _key(key: object) -> str:
+    return str(key.value) if isinstance(key, Enum) else str(key)
