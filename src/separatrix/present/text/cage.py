@@ -341,5 +341,6 @@ def _differences(both: Sequence[tuple[str, Judgement, Judgement]]) -> str:
         ]
         if names:
             than = "more" if more else "less"
-            said.append(f"With traction {', '.join(names)} come out {than} stable: {WHY[more]}.")
+            come = "comes" if len(names) == 1 else "come"
+            said.append(f"With traction {', '.join(names)} {come} out {than} stable: {WHY[more]}.")
     return " ".join(said) or "Both models reach the same verdicts."
