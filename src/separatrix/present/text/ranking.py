@@ -44,8 +44,8 @@ DIRECTIONS = {1: " forward", -1: " backward", 0: ""}
 
 LEGEND = (
     "rank: by margin, = a tie within the scatter. threshold: largest stable restitution factor eta "
-    "from the reference kick. margin: threshold less the bearing's eta. P(stable): share of runs that settle, "
-    "worst kick."
+    "from the reference kick. margin: threshold less the bearing's eta. "
+    "P(stable): share of runs that settle from the worst kick."
 )
 EVIDENCE_LEGEND = (
     "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over those runs. "
