@@ -265,7 +265,7 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     assert max(map(len, said.splitlines())) <= 96
     assert said.count("not stated at 90 K") <= 3
     assert said.count("Note: ") == 1
-    words = ("Speed parameter", "million mm rpm", "Pressure at rest", "maximum", "Assumed, as the study")
+    words = ("Speed parameter", "million mm rpm", "Pressure at rest", "maximum", "Assumed, because the study")
     assert all(one in said for one in words)
     assert main(["check", "cold.toml", "--full"]) == 0
     whole = capsys.readouterr().out

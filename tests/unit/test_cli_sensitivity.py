@@ -131,7 +131,7 @@ def test_text_and_files(capsys):
     assert main(["sensitivity", "small.toml", "--samples", "64", "--out", "here", "--quiet"]) == 0
     text = capsys.readouterr().out
     heads = ("With the uncertain", "Air", "Vacuum", "Over all", "Uncertain inputs", "Main sources",
-             "Which test", "Which friction", "Which film", "What this holds")  # fmt: skip
+             "Which test", "Which friction", "Which film", "Basis of this")  # fmt: skip
     text = text[text.index(heads[0]) :]
     heads = (heads[0], *(f"\n{head}" for head in heads[1:]))
     places = [text.index(head) for head in heads]
