@@ -274,9 +274,7 @@ def test_an_edited_answer_is_refused(folder, capsys):
     rank = json.loads((folder / "rank.json").read_text())
     del rank["pocket"]["slip_speed"], rank["provenance"]
     Path("d", "rank.json").write_text(json.dumps(rank))
-    assert "contains an incomplete answer; got KeyError('slip_speed')" in refused(
-        capsys, "report", "d"
-    )
+    assert "contains an incomplete answer; got KeyError('slip_speed')" in refused(capsys, "report", "d")
 
 
 def test_the_chain_that_a_folder_lacks_is_computed(folder, monkeypatch, capsys):

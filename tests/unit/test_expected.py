@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import separatrix.cage
 from separatrix.cage import settings_for
 from separatrix.cage_choice import required_environment
 from separatrix.chain.solution import solve
@@ -27,7 +26,7 @@ def timed(monkeypatch):
         runs_made.append(took)
         return np.zeros((len(settings.kicks), runs))
 
-    monkeypatch.setattr(separatrix.cage, "run_ensemble", run_ensemble)
+    monkeypatch.setattr(expected, "run_ensemble", run_ensemble)
     clocks = SimpleNamespace(perf_counter=lambda: clock[0], monotonic=lambda: clock[0])
     monkeypatch.setattr(expected, "time", clocks)
     return SimpleNamespace(rates=rates, clock=clock, runs=runs_made)
