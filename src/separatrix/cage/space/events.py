@@ -8,7 +8,9 @@ from separatrix.cage.records import ORDER
 from separatrix.cage.series import ROUNDING, first_zero
 from separatrix.cage.space.land import place_strip
 from separatrix.cage.space.records import (
+    ALONG,
     AXIAL,
+    BALLS,
     CLEAR,
     DEPTH,
     DEPTH_L,
@@ -31,6 +33,7 @@ from separatrix.cage.space.records import (
     PRESSED,
     PUSH_L,
     ROUND_END,
+    SPEED,
     WAY,
     Numbers,
     Parts,
@@ -44,6 +47,12 @@ GRAINS = 8.0
 """A pocket leaves its ball this many roundings of its place after their force is gone, as in the plane."""
 
 NOTHING, LEAVE, MEET, REGION, STRIP = range(5)
+SLIDE_OFF, SLOWED = 7, 8
+"""Beside those of `rim_events`: a ball that creeps slides off, or one that slides is as slow as the knee of
+its traction. The series of a ball that is many times as fast does not know the knee, and would pass it."""
+
+AT_KNEE = 1.001
+"""Speed over that of the knee from which a ball is not there yet."""
 
 
 @inner_kernel
@@ -217,6 +226,36 @@ def pocket_event(p: Numbers, parts: Parts, h: float) -> tuple[float, int, int, i
                 if t < end:
                     end, event, which = t, MEET, 2 * j + 1
                     becomes = FLAT_FRONT if side > 0.0 else FLAT_BACK
+    return end, event, which, becomes
+
+
+@inlined_kernel
+def slide_event(
+    p: Numbers, parts: Parts, share: float, h: float, end: float, event: int, which: int, becomes: int
+) -> tuple[float, int, int, int]:
+    """Earliest change up to a time, if before it a ball that creeps slides off or one that slides is slow."""
+    c, last = parts.c, parts.listed[LAST]
+    for b in range(parts.listed[BALLS]):
+        j = parts.active[b]
+        if p.knee == 0.0:
+            continue
+        if parts.creeping[j] == 0:
+            speed = parts.ball[j, 0, SPEED]
+            room = abs(speed) - share * p.knee
+            if abs(speed) > AT_KNEE * share * p.knee and own_way(parts.ball[j], last, SPEED, h) > room:
+                scaled(parts.ball[j], last, SPEED, h, c)
+                t = first_zero(c, room, math.copysign(1.0, speed), end, share * p.knee)
+                if t < end:
+                    end, event, which, becomes = t, SLOWED, j, NONE
+            continue
+        way = scaled(parts.ball[j], last, ALONG, h, c)
+        for side in (1.0, -1.0):
+            room = p.slides_from - side * c[0]
+            if way < room:
+                continue
+            t = first_zero(c, room, -side, end, p.slides_from)
+            if t < end:
+                end, event, which, becomes = t, SLIDE_OFF, j, NONE
     return end, event, which, becomes
 
 

@@ -25,7 +25,7 @@ from separatrix.study import Guidance
 
 if TYPE_CHECKING:
     from separatrix.cage.planar import PlanarCage
-    from separatrix.units import Array, MetrePerSecond
+    from separatrix.units import Array, MetrePerSecond, Newton
 
 STRIPS = 3
 """Gauss strips of a land of some width: they hold its force and moment while all of it touches."""
@@ -86,6 +86,8 @@ def numbers(cage: PlanarCage, kick: MetrePerSecond) -> Numbers:
         elements=0 if law is None else len(law.slopes),
         sharp=law is not None and law.sharpness == 4,
         power=1.0 / (2 if law is None else law.sharpness),
+        slides_from=slides_from(cage) * T * T / M,
+        knee=knee_speed(cage) * T,
         still=STILL_PLAY * max(cage.pocket_clearance, 1e-9) * (law.slope / law.mass if law else 0.0) * T,
         resting=STILL_PLAY * max(cage.pocket_clearance, 1e-9),
         slowest=1e-2 * kick * T,
@@ -113,6 +115,32 @@ sliding passes through zero or a contact sticks: the friction's own rate is that
 
 STILL_PLAY = 1e-9
 """Share of the clearance that a ball that is called at rest would still have gone."""
+
+
+KNEE = 0.9
+"""Share of the races' capacity up to which a ball creeps: there it has 1.2 times the law's speed."""
+
+STIFF = 2e-3
+"""sqrt(k m_e) / C, the time in which the races stop a ball over that of its swing on its pocket, below
+which its speed follows the force at once."""
+
+
+def slides_from(cage: PlanarCage) -> Newton:
+    """Force on a ball from which its inertia counts; 0 where it always does."""
+    law = cage.traction
+    if law is None or len(law.slopes) > 1:
+        return 0.0
+    is_stiff = math.sqrt(cage.ball_cage_stiffness * law.mass) < STIFF * law.slope
+    return KNEE * law.capacity if is_stiff else 0.0
+
+
+def knee_speed(cage: PlanarCage) -> MetrePerSecond:
+    """Speed at which the races hold the share `KNEE` of their capacity; 0 without a law of traction."""
+    law = cage.traction
+    if law is None:
+        return 0.0
+    rise: float = (1.0 - KNEE**law.sharpness) ** (1.0 / law.sharpness)
+    return KNEE * max(law.speeds) / rise
 
 
 def fastest_in_space(cage: PlanarCage) -> float:
@@ -161,6 +189,7 @@ def parts_of(cage: PlanarCage) -> Parts:
         kind=np.zeros(2 * Z, np.int64),
         region=np.zeros(Z, np.int64),
         moving=np.zeros(Z, np.int64),
+        creeping=np.zeros(Z, np.int64),
         mode=np.zeros(heights.size, np.int64),
         cage=np.zeros((POWERS, CAGE_COLUMNS)),
         ball=np.zeros((Z, POWERS, BALL_COLUMNS)),

@@ -12,14 +12,17 @@ from separatrix.cage.space.events import (
     MEET,
     NOTHING,
     REGION,
+    SLIDE_OFF,
     STRIP,
     at_time,
     pocket_event,
+    slide_event,
     strip_event,
 )
 from separatrix.cage.space.expand import expand, load, step_length
 from separatrix.cage.space.land import dent_strip
 from separatrix.cage.space.records import (
+    ALONG,
     AXIAL,
     BALL_COLUMNS,
     BALLS,
@@ -110,9 +113,11 @@ def finish(p: Numbers, parts: Parts, state: Motion, t: float) -> None:
     state.clock += t
     for b in range(parts.listed[BALLS]):
         j = parts.active[b]
-        at_time(parts.ball[j], last, t, STATE, here)
+        at_time(parts.ball[j], last, t, ALONG + 1 if p.slides_from > 0.0 else STATE, here)
         ball = parts.ball[j, 0]
         ball[LEAD], ball[SPEED], ball[AXIAL] = here[LEAD], here[SPEED], here[AXIAL]
+        if p.slides_from > 0.0:
+            ball[ALONG] = here[ALONG]
     if p.harmonics > 0:
         for j in range(parts.moving.size):
             for k in range(2 * p.harmonics):
@@ -143,6 +148,29 @@ def settle_balls(p: Numbers, parts: Parts, works: Works) -> None:
                 ball[n, k] = 0.0
         ball[0, LEAD] = lead
         parts.moving[j] = one != NONE or two != NONE
+
+
+@inlined_kernel
+def change_creep(p: Numbers, parts: Parts, share: float, slides: int, works: Works) -> None:
+    """Let a ball slide off, or creep again where it is slow; the races take or give its kinetic energy."""
+    for b in range(parts.listed[BALLS]):
+        j = parts.active[b]
+        ball = parts.ball[j, 0]
+        energy = 0.5 * p.ball_mass * ball[SPEED] ** 2
+        if j == slides:
+            parts.creeping[j] = 0
+            works.races += energy
+            works.gross += energy
+            continue
+        is_slow = abs(ball[SPEED]) <= share * p.knee
+        if is_slow and parts.creeping[j] == 0 and abs(ball[ALONG]) < BACK * p.slides_from:
+            parts.creeping[j] = 1
+            works.races -= energy
+            works.gross += energy
+
+
+BACK = 0.98
+"""Share of the force from which a ball slides below which it may creep again."""
 
 
 @inlined_kernel
@@ -233,6 +261,7 @@ def take_steps(
         if edged:
             end, event, which, becomes = rim_event(p, parts, h, end, event, which, becomes)
         end, event, which, becomes = strip_event(p, parts, h, end, event, which, becomes)
+        end, event, which, becomes = slide_event(p, parts, now.share, h, end, event, which, becomes)
         enter_step(p, parts, now, h, end, end * h / longest, works, step, look, heat)
         finish(p, parts, state, end * h)
         done = length if event == NOTHING and h == length - done else done + end * h
@@ -240,7 +269,9 @@ def take_steps(
         state.reach = 2.0 * h if event == NOTHING else 0.5 * state.reach + end * h
         if event == STRIP or (edged and event != NOTHING):
             load(p, parts, state)
-        if event != NOTHING:
+        if p.slides_from > 0.0:
+            change_creep(p, parts, now.share, which if event == SLIDE_OFF else -1, works)
+        if event != NOTHING and event < SLIDE_OFF:
             change(p, parts, event, which, becomes, look, hits, edged)
         settle_balls(p, parts, works)
     look.steps += taken

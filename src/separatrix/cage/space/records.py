@@ -127,6 +127,8 @@ class Numbers(NamedTuple):
     elements: int
     sharp: bool  # the law has the power 4, else 2
     power: float  # its inverse
+    slides_from: float  # force on a ball from which it has inertia, below it creeps with the force; 0: always
+    knee: float  # speed at which traction bends from creep to sliding
     still: float  # speed below which a ball is at rest
     resting: float  # place along the groove that is none
     slowest: float  # speed whose rounding is of no interest
@@ -161,6 +163,7 @@ class Parts(NamedTuple):
     kind: Whole  # what each contact is, shape (2 ball,): along the orbit, and along the axis
     region: Whole  # of a slot: which part of it the ball is in: -1, 0, 1
     moving: Whole  # whether a ball moves against its free orbit or its groove
+    creeping: Whole  # whether its speed along the orbit follows the force on it at once
     mode: Whole  # of each strip
     cage: Array  # series, shape (power, column)
     ball: Array  # shape (ball, power, column)

@@ -61,6 +61,7 @@ def begin(p: Numbers, parts: Parts, start: Array, kicks: Array, state: Motion, a
     if p.tilt_swiftness > 0.0:
         state.va, state.vb = kicks[2] * np.cos(start[TILT_WAY]), kicks[2] * np.sin(start[TILT_WAY])
     parts.kind[:], parts.moving[:], parts.mode[:], parts.region[:] = NONE, 0, CLEAR, 0
+    parts.creeping[:] = 1 if p.slides_from > 0.0 else 0
     parts.ball[:, :, :], parts.contact[:, :, :] = 0.0, 0.0
     angle = start[FIRST_LEAD + 2 * count :]
     parts.cosine[:], parts.sine[:] = np.cos(angle), np.sin(angle)

@@ -95,7 +95,9 @@ def held_energy(p: Numbers, parts: Parts) -> float:
     total = 0.0
     for j in range(parts.moving.size):
         ball = parts.ball[j, 0]
-        total += 0.5 * (p.groove_stiffness * ball[AXIAL] ** 2 + p.ball_mass * ball[SPEED] ** 2)
+        total += 0.5 * p.groove_stiffness * ball[AXIAL] ** 2
+        if parts.creeping[j] == 0:
+            total += 0.5 * p.ball_mass * ball[SPEED] ** 2
     for i in range(parts.kind.size):
         if parts.kind[i] != NONE and parts.kind[i] < OUTER_CLEAR:
             total += 0.5 * p.stiffness * parts.contact[i, 0, DEPTH] ** 2
