@@ -258,10 +258,10 @@ def test_a_job_is_cancelled_and_resumed(page, root):
 
 def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
     """The page says so, and computes the next question in a new process."""
-    state = page.app.state.page.jobs._state
+    queue = page.app.state.page.jobs
     page.post("/run/long.toml", data={"verb": "rank"})
     until(page, lambda jobs: jobs[0].startswith("running"))
-    os.kill(state.process.pid, signal.SIGKILL)
+    os.kill(queue._process.pid, signal.SIGKILL)
     end = time.monotonic() + 20
     while not jobs(page)[0].startswith("failed"):
         assert time.monotonic() < end
