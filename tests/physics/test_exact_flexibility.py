@@ -170,12 +170,15 @@ def test_influence_against_the_inverse_transform(j, i):
 
 
 def test_pairs_of_bodies():
-    """Two coated bodies with films of two thicknesses: the sum of both, of c_rz the difference."""
+    """Two coated bodies with films of two thicknesses: the sum of both, of c_rz the difference.
+
+    To 1e-8: the weights of the images, of both signs, are up to 1e8 times what they add up to.
+    """
     other = body(0.25, (0.05, 0.4, 0.03), G=2.0)
     x, y = np.array([0.05, 0.7]), np.array([0.1])
     sums = [corner_sums(x, y, m.depths, m.weights) for m in (body_images(SOFT), body_images(other))]
     pair = pair_images(SOFT, other)
     both = corner_sums(x, y, pair.depths, pair.weights)
-    assert both[:4] == pytest.approx(sums[0][:4] + sums[1][:4], rel=1e-9)
+    assert both[:4] == pytest.approx(sums[0][:4] + sums[1][:4], rel=1e-8)
     assert both[4:] == pytest.approx(sums[0][4:] - sums[1][4:], rel=1e-6, abs=1e-9)
     assert pair_images(SOFT, SOFT).depths.size == images.IMAGES + 1
