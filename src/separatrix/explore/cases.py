@@ -77,7 +77,7 @@ def find_parameter(name: str, option: str) -> Parameter:
     if name in known:
         return known[name]
     if name in other_keys():
-        raise InputError(f"{option} {name}", "is no number that a map can vary")
+        raise InputError(f"{option} {name}", "is not a number that a map can vary")
     ends = [full for full in known if full.endswith(f".{name}")]
     cure = f"Did you mean {ends[0]}?" if ends else nearest(name, known)
     raise InputError(option, "names no parameter of a study", got=shown(name), cure=cure)

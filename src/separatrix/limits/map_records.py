@@ -148,7 +148,7 @@ class Stopping:
 
     most_runs: int  # of a point
     agreeing_runs: int
-    """If so many first runs agree, the point is ended; else once the others cannot change its answer."""
+    """A point ends once this number of first runs agree, or once the others cannot change its answer."""
     wrong_side_probability: Ratio  # largest, over all points, that all the runs would have the other majority
     other_decision_probability: Ratio
     """Largest that all the runs would decide otherwise: of a point all but decided."""
