@@ -195,11 +195,11 @@ def test_every_point_is_in_one_round():
 
 
 def test_points_near_a_change_are_found():
-    """A step between two coarse columns wants the points between and one cell beyond, no others."""
+    """A step between two coarse columns wants the points between and both columns, no others."""
     coarser = ([0, 4, 8, 12, 16], [0, 4, 8])
     answers = {(i, j): i >= 8 for i in coarser[0] for j in coarser[1]}
     wanted = [i for i in range(17) if near_a_change((i, 2), coarser, answers)]
-    assert wanted == [*range(1, 12)]
+    assert wanted == [*range(4, 9)]
 
 
 PLANE = {

@@ -5,7 +5,7 @@ The points are found from a coarse grid to the full one: all of them, or those n
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -157,12 +157,11 @@ def near_a_change(place: Place, coarser: Lattice, answers: Mapping[Place, object
 
 
 def _around(place: Place, coarser: Lattice) -> list[Place]:
-    """Corners of the coarse cell that a place lies in, and of the cells next to it."""
+    """Places of the coarser grid that are not further away than one of its steps, along each axis."""
     near = []
     for at, marks in zip(place, coarser, strict=True):
-        after = bisect_left(marks, at)
-        before = after if after < len(marks) and marks[after] == at else after - 1
-        near.append(marks[max(0, before - 1) : after + 2])
+        step = marks[1] - marks[0] if marks[1:] else 1
+        near.append(marks[bisect_left(marks, at - step) : bisect_right(marks, at + step)])
     return [(i, j) for i in near[0] for j in near[1]]
 
 
