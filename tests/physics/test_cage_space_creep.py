@@ -60,7 +60,9 @@ def test_the_creep_is_that_of_the_law(sharpness, monkeypatch):
     assert pressed.any()
     mass = PLANE.mass
     force = ball[pressed, 4] * mass / here.unit**2
-    assert law.force(ball[pressed, 1] / here.unit) == pytest.approx(force, rel=1e-6)
+    found = law.force(ball[pressed, 1] / here.unit)
+    # the state after a step, whose series end at 2^-34 of its speeds; the force rises with a power of speed
+    assert found == pytest.approx(force, rel=1e-8)
 
 
 def test_only_stiff_races_let_a_ball_creep():
