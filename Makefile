@@ -2,8 +2,8 @@ PYTHON ?= python3
 BIN := .venv/bin
 # A file of tests is one worker's, so that what its tests share is made once.
 TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile --no-loadscope-reorder
-# Compiles all kernels once, before the tests: else each worker would compile the same. One process begins with
-# those of the chain and of the cage in space, the other with those of the cage in the plane, which need no chain.
+# Compiles all kernels once, before the tests: else each worker would compile the same. One process compiles those
+# of the chain and of runs in space, the other first those of the cage in the plane, which need no chain.
 COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
 CASE := cryogenic-turbopump --json --quiet
 SPACE := map $(CASE) --points 2 --runs 1 --jobs 1 --motion space
@@ -26,8 +26,9 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@$(COMPILE) "$(SPACE)" "simulate $(CASE) --motion space" "mobility $(CASE)" > /dev/null & \
-	PYTHONPATH=tests/physics $(BIN)/python -c '$(PLANE)' && $(COMPILE) "traction $(CASE)" > /dev/null && wait $$!
+	@$(COMPILE) "$(SPACE)" > /dev/null & \
+	PYTHONPATH=tests/physics $(BIN)/python -c '$(PLANE)' && \
+	$(COMPILE) "traction $(CASE)" "mobility $(CASE)" "simulate $(CASE) --motion space" > /dev/null && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .
