@@ -292,6 +292,9 @@ def _space(cage: CageDesign) -> _check.Problems:
             "is missing: two lands have a distance" if cage.land_count == 2 else "has no meaning for one land"
         )
         yield _check.problem(cage, "land_spacing", rule, "Give it with land_count = 2.")
+    if cage.land_count == 2 and cage.land_spacing is not None and cage.land_spacing < cage.land_width:
+        rule = f"must be at least a land's width, {format_quantity(cage.land_width, 'm')}"
+        yield _check.problem(cage, "land_spacing", rule, "It is the distance of the lands' middles.")
     reach = (cage.land_spacing or 0.0) + cage.land_width
     if cage.width is not None and reach > cage.width:
         rule = f"and the lands' distance, {format_quantity(reach, 'm')} together, must stay on the cage"

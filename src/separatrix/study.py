@@ -272,6 +272,7 @@ def _cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
         yield _check.problem(cage, "land_clearance", rule, cure)
     yield from _ring_between_rings(cage, bearing)
+    yield from _body_in_bearing(cage, bearing)
     most = math.inf if cage.mass is None else cage.mass * bearing.pitch_diameter / 2.0
     if cage.unbalance >= most:
         rule = f"must be smaller than mass times pitch radius, {format_quantity(most, 'kg m')}"
@@ -302,6 +303,42 @@ def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Proble
     if cage.mass is None and (cage.material is None or cage.material.density is None):
         cure = "Give it, or a cage material with its density."
         yield _check.problem(cage, "mass", "is missing, and the density of the cage is not known", cure)
+
+
+WIDEST = 4.0
+"""Width that no bearing of one row has, in balls: beyond it a land or a mass is not on the cage."""
+
+MOST_ADDED = 100.0
+"""Mass of the fluid over that of the cage: a liquid in a gap of a thousandth of the radius adds less."""
+
+
+def _body_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+    """In space: lands at the rings and on the cage, and inertias that a body of this mass can have."""
+    if cage.motion is not MotionModel.SPACE:
+        return
+    pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
+    if cage.land_diameter is not None and not pitch - ball < cage.land_diameter < pitch + ball:
+        low, high = (format_quantity(d, "m") for d in (pitch - ball, pitch + ball))
+        rule = f"must lie between the bottoms of the grooves, {low} and {high}"
+        yield _check.problem(cage, "land_diameter", rule)
+    most, width = WIDEST * ball, (cage.land_spacing or 0.0) + cage.land_width
+    if cage.width is None and width > most:
+        key = "land_spacing" if (cage.land_spacing or 0.0) > cage.land_width else "land_width"
+        rule = f"must leave all lands within {WIDEST:g} balls, {format_quantity(most, 'm')}"
+        yield _check.problem(cage, key, rule, "No bearing of one row is so wide.")
+    if cage.mass is None:
+        return
+    if cage.added_mass > MOST_ADDED * cage.mass:
+        rule = f"must be at most {MOST_ADDED:g} times that of the cage, {format_quantity(cage.mass, 'kg')}"
+        yield _check.problem(cage, "added_mass", rule)
+    if cage.transverse_inertia is not None and not cage.has_shape:
+        flat = (cage.moment_of_inertia or cage.mass * (pitch / 2.0) ** 2) / 2.0
+        bounds = flat * (1.0 - 1e-9), flat + cage.mass * (most / 2.0) ** 2
+        if not bounds[0] <= cage.transverse_inertia <= bounds[1]:
+            low, high = (format_quantity(value, "kg m2", 4) for value in (flat, bounds[1]))
+            rule = f"must lie between {low}, half that about the axis, and {high}"
+            cure = f"A flat ring has half of it, one with its mass {WIDEST:g} balls apart the most."
+            yield _check.problem(cage, "transverse_inertia", rule, cure)
 
 
 def _pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:

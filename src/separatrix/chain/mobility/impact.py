@@ -16,6 +16,10 @@ from separatrix.units import Array, Kilogram, NewtonPerMetre, Ratio
 TOLERANCE = 1e-4
 """Error of a step over the speed of the impact and the depth that belongs to it."""
 
+STAYS = 1e-4
+"""An impact whose cage moves against the ball, and bounces on the pocket's spring, with less than this share
+of its first speed has no end: the races stop the ball before the pocket opens, and it returns nothing."""
+
 MOST_STEPS = 5000
 
 SIZE = 8
@@ -108,7 +112,7 @@ def follow_impact(
 ) -> tuple[float, float, float, int]:
     """Speed of the cage after an impact, largest force, duration, and steps; steps -1 without an end.
 
-    The cage comes from behind the ball with `sense` 1, from the front with -1. RODAS3 of Sandu et al. (1997):
+    A cage that stays on the ball (`STAYS`) has the speed 0. The cage comes from behind the ball with `sense` 1, from the front with -1. RODAS3 of Sandu et al. (1997):
     Rosenbrock, order 3, L-stable and stiffly accurate, with the exact slopes; the balance in the plane of the
     contacts is algebraic.
     """
@@ -138,8 +142,10 @@ def follow_impact(
             if y[7] <= 0.0:  # the contact opened within the step
                 share = approach / (approach - y[7])
                 return before + share * (y[6] - before), peak, time - (1.0 - share) * step, count
+            if y[6] ** 2 + stiffness / mass * y[7] ** 2 < (STAYS * speed) ** 2:
+                return 0.0, peak, time, count
         step *= min(2.0, max(0.2, 0.8 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0)))
-        step = min(step, 0.05 * period)
+        step = min(step, 0.05 * max(period, 0.25 * time))  # longer where a cage comes to rest on the ball
     return 0.0, peak, time, -1
 
 
@@ -160,8 +166,8 @@ def linear_return(found: Modes, mass: Kilogram, stiffness: NewtonPerMetre) -> Ra
     time = step
     while at(time, n + 1) > 0.0:
         time += step
-        if time > 1e5 * step:
-            return -at(time, n)
+        if at(time, n) ** 2 + stiffness / mass * at(time, n + 1) ** 2 < STAYS**2:
+            return 0.0
     low, high = time - step, time
     for _ in range(50):
         middle = 0.5 * (low + high)
@@ -187,6 +193,8 @@ def law_returns(law: BallTraction, mass: Kilogram, stiffness: NewtonPerMetre, sp
         y = y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         parted = np.isnan(returned) & (y[2] <= 0.0)
         returned[parted] = -(y[1] / speeds)[parted]
+        stays = y[1] ** 2 + stiffness / mass * y[2] ** 2 < (STAYS * speeds) ** 2
+        returned[np.isnan(returned) & stays] = 0.0
         if not np.isnan(returned).any():
             break
     return returned
