@@ -280,6 +280,23 @@ def test_one_state_of_a_linear_law_is_the_modes_of_one():
     assert found == pytest.approx(linear_return(one, 12.5e-3, 3e6), abs=2e-4)
 
 
+def test_a_heavy_cage_comes_to_rest_on_a_ball_that_yields_slowly():
+    """Without a vibration (4 C^2 < k m) the pocket does not open again: by fields, modes and law.
+
+    A hard impact slides the ball along and opens; a gentle one of a light cage returns.
+    """
+    ball, (mass, k) = held("cryo"), RING["cryo"]
+    law = BallTraction(mass=6.5e-3, slopes=(356.0,), speeds=(0.5,))
+    speeds, given = np.array((0.005, 2.0)), {"ball_cage_stiffness": k, "race_damping": 356.6}
+    found = impacts(ball, law, felt_mass=1.0, cage_mass=2.0, **given, speeds=speeds)
+    assert found.restitution_linear == 0.0
+    for returns in (found.restitution_forward, found.restitution_backward, found.restitution_law):
+        assert returns[0] == 0.0
+        assert returns[1] < 0.0
+    light = impacts(ball, law, felt_mass=mass, cage_mass=2.0 * mass, **given, speeds=speeds[:1])
+    assert light.restitution_forward[0] > 0.1
+
+
 def test_impacts_are_a_record_of_the_same():
     """The table has the returns of single impacts, and the paper's formula with both masses."""
     ball, (mass, k) = held("cryo"), RING["cryo"]

@@ -113,6 +113,11 @@ DESIGNS = [
         "land_width and the lands' distance, 20 mm together, must stay on the cage; got width 14 mm",
     ),
     (SPACE, {"inner_diameter": 5.8e-2}, "outer_diameter is missing"),
+    (
+        SPACE,
+        {"land_count": 2, "land_spacing": 1e-3, "land_width": 3e-3},
+        "land_spacing must be at least a land's width, 3 mm; got 1 mm",
+    ),
 ]
 
 
@@ -122,6 +127,29 @@ def test_a_study_of_a_cage_in_space_that_cannot_be_is_refused(cage, changes, wor
     with pytest.raises(InputError) as caught:
         replace(cage, **changes)
     assert f"CageDesign.{words}" in str(caught.value)
+
+
+IN_THE_BEARING = [
+    ({"land_diameter": 3e-3}, "land_diameter must lie between the bottoms of the grooves, 53.89 mm and"),
+    ({"land_diameter": 33.0}, "land_diameter must lie between the bottoms of the grooves, 53.89 mm and"),
+    ({"land_width": 0.2}, "land_width must leave all lands within 4 balls, 44.45 mm"),
+    ({"land_count": 2, "land_spacing": 0.5}, "land_spacing must leave all lands within 4 balls, 44.45 mm"),
+    ({"added_mass": 5.0}, "added_mass must be at most 100 times that of the cage, 25 g"),
+    ({"transverse_inertia": 1e-4}, "transverse_inertia must lie between 13.2 kg mm2, half"),
+    ({"transverse_inertia": 1e-6}, "transverse_inertia must lie between 13.2 kg mm2, half"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), IN_THE_BEARING)
+def test_a_body_in_space_that_the_bearing_cannot_hold_is_refused(changes, words):
+    """In the shipped bearing, of 25 g on 65 mm; a body that fits is taken."""
+    study = read_study("cryogenic-turbopump")
+    with pytest.raises(InputError) as caught:
+        replace(study, cage=replace(study.cage, motion=MotionModel.SPACE, **changes))
+    assert f"CageDesign.{words}" in str(caught.value)
+    lands = {"land_count": 2, "land_spacing": 12e-3, "land_width": 3e-3, "land_diameter": 66e-3}
+    held = {"added_mass": 0.2, "transverse_inertia": 1.4e-5}
+    replace(study, cage=replace(study.cage, motion=MotionModel.SPACE, **lands, **held))
 
 
 def test_the_lever_of_friction_is_the_radius_of_the_ball_unless_it_is_given():

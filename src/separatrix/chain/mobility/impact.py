@@ -11,6 +11,7 @@ from separatrix.chain.equilibrium.problem import Problem, solve_linear
 from separatrix.chain.mobility.field import ball_balance
 from separatrix.chain.mobility.modes import Modes
 from separatrix.compiled import kernel, part
+from separatrix.errors import ConvergenceError
 from separatrix.units import Array, Kilogram, NewtonPerMetre, Ratio
 
 TOLERANCE = 1e-4
@@ -20,7 +21,7 @@ STAYS = 1e-4
 """An impact whose cage moves against the ball, and bounces on the pocket's spring, with less than this share
 of its first speed has no end: the races stop the ball before the pocket opens, and it returns nothing."""
 
-MOST_STEPS = 5000
+MOST_STEPS, LAW_STEPS = 5000, 200_000
 
 SIZE = 8
 """Unknowns of an impact: V (2), orbit, spin (3), speed of the cage, approach."""
@@ -112,9 +113,9 @@ def follow_impact(
 ) -> tuple[float, float, float, int]:
     """Speed of the cage after an impact, largest force, duration, and steps; steps -1 without an end.
 
-    A cage that stays on the ball (`STAYS`) has the speed 0. The cage comes from behind the ball with `sense` 1, from the front with -1. RODAS3 of Sandu et al. (1997):
-    Rosenbrock, order 3, L-stable and stiffly accurate, with the exact slopes; the balance in the plane of the
-    contacts is algebraic.
+    A cage that stays on the ball (`STAYS`) has the speed 0. It comes from behind the ball with `sense` 1,
+    from the front with -1. RODAS3 of Sandu et al. (1997): Rosenbrock, order 3, L-stable and stiffly accurate, with
+    the exact slopes; the balance in the plane of the contacts is algebraic.
     """
     period = math.pi * math.sqrt(mass / stiffness)
     y, f, J, M = np.zeros(SIZE), np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty((SIZE, SIZE))
@@ -185,7 +186,7 @@ def law_returns(law: BallTraction, mass: Kilogram, stiffness: NewtonPerMetre, sp
         return np.stack(((force - law.force(y[0])) / law.mass, -force / mass, y[1] - y[0]))
 
     y, returned = np.stack((0.0 * speeds, speeds, 0.0 * speeds)), np.full(speeds.shape, np.nan)
-    for _ in range(200_000):
+    for _ in range(LAW_STEPS):
         k1 = rates(y)
         k2 = rates(y + 0.5 * step * k1)
         k3 = rates(y + 0.5 * step * k2)
@@ -196,5 +197,6 @@ def law_returns(law: BallTraction, mass: Kilogram, stiffness: NewtonPerMetre, sp
         stays = y[1] ** 2 + stiffness / mass * y[2] ** 2 < (STAYS * speeds) ** 2
         returned[np.isnan(returned) & stays] = 0.0
         if not np.isnan(returned).any():
-            break
-    return returned
+            return returned
+    slowest = float(speeds[np.isnan(returned)].min())
+    raise ConvergenceError(f"Mobility: an impact at {slowest:.3g} m/s does not end.", LAW_STEPS, step)
