@@ -114,8 +114,8 @@ def follow_impact(
     """Speed of the cage after an impact, largest force, duration, and steps; steps -1 without an end.
 
     A cage that stays on the ball (`STAYS`) has the speed 0. It comes from behind the ball with `sense` 1,
-    from the front with -1. RODAS3 of Sandu et al. (1997): Rosenbrock, order 3, L-stable and stiffly accurate, with
-    the exact slopes; the balance in the plane of the contacts is algebraic.
+    from the front with -1. RODAS3 of Sandu et al. (1997): Rosenbrock, order 3, L-stable and stiffly
+    accurate, with the exact slopes; the balance in the plane of the contacts is algebraic.
     """
     period = math.pi * math.sqrt(mass / stiffness)
     y, f, J, M = np.zeros(SIZE), np.empty(SIZE), np.empty((SIZE, SIZE)), np.empty((SIZE, SIZE))
