@@ -6,13 +6,12 @@ as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
-from separatrix import _check, cage_design
+from separatrix import _check
 from separatrix._check import between, increasing, must, not_negative, positive, whole
 from separatrix.bearing_design import MOST_BALLS as MOST_BALLS
 from separatrix.bearing_design import BallBearing as BallBearing
@@ -23,6 +22,7 @@ from separatrix.cage_design import ClearanceState as ClearanceState
 from separatrix.cage_design import Guidance as Guidance
 from separatrix.cage_design import MotionModel as MotionModel
 from separatrix.cage_design import PocketContact as PocketContact
+from separatrix.cage_in_bearing import cage_in_bearing, pockets_for_balls
 from separatrix.distribution import Distribution
 from separatrix.errors import InputError
 from separatrix.film_design import ContactPressure as ContactPressure
@@ -44,7 +44,6 @@ from separatrix.units import (
     RadianPerSecond,
     Ratio,
     Second,
-    format_quantity,
     shown,
 )
 
@@ -238,7 +237,7 @@ class Study:
         checks = [_check.each_field(self), _turning_balls(self), _stiffness_of_unknown_origin(self)]
         checks.append(_coated_pressure(self))
         if self.cage is not None:
-            checks += [_cage_in_bearing(self.cage, self.bearing), _pockets_for_balls(self.cage, self.bearing)]
+            checks += [cage_in_bearing(self.cage, self.bearing), pockets_for_balls(self.cage, self.bearing)]
         _check.settle(*checks)
 
 
@@ -258,110 +257,6 @@ def _coated_pressure(study: Study) -> _check.Problems:
     if study.traction.pressure is ContactPressure.COATED and study.film.wear is not None:
         rule = 'must be "hertz" where the film is worn: a film whose thickness varies is in series'
         yield InputError("TractionSettings.pressure", rule, '"coated"')
-
-
-def _cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """Clearances are smaller than what they are clearances of, and the centre of mass is inside the cage."""
-    gap, ball = bearing.ball_gap, bearing.ball_diameter
-    if cage.pocket_clearance >= gap:  # no bar would be left between pockets
-        rule = f"must be smaller than the gap between balls, {format_quantity(gap, 'm')}"
-        cure = "It is the clearance of one ball, stop to stop."
-        yield _check.problem(cage, "pocket_clearance", rule, cure)
-    if cage.land_clearance is not None and cage.land_clearance >= ball:  # it would lose its balls first
-        rule = f"must be smaller than a ball, {format_quantity(ball, 'm')}"
-        cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
-        yield _check.problem(cage, "land_clearance", rule, cure)
-    yield from _ring_between_rings(cage, bearing)
-    yield from _body_in_bearing(cage, bearing)
-    most = math.inf if cage.mass is None else cage.mass * bearing.pitch_diameter / 2.0
-    if cage.unbalance >= most:
-        rule = f"must be smaller than mass times pitch radius, {format_quantity(most, 'kg m')}"
-        yield _check.problem(cage, "unbalance", rule, "It is mass times eccentricity.")
-
-
-def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """The cage's ring holds the balls, in the plane at their equator; it lies between the grooves."""
-    if not cage.has_shape:
-        return
-    inner, outer, width = cage.inner_diameter or 0.0, cage.outer_diameter or 0.0, cage.width or 0.0
-    pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
-    bottom, top = ("bottom of the inner groove", pitch - ball), ("bottom of the outer groove", pitch + ball)
-    nearest = farthest = ("pitch diameter", pitch)
-    cure = "The pocket's wall reaches the ball's equator; with motion = \"space\" it need not."
-    if cage.motion is MotionModel.SPACE:
-        nearest = ("least that holds a ball", math.hypot(pitch - ball, ball + cage.pocket_clearance))
-        farthest = top
-        cure = "Beyond it a ball passes between the edges of its pocket."
-    limits = {"inner_diameter": (inner, bottom, farthest), "outer_diameter": (outer, nearest, top)}
-    for key, (size, low, high) in limits.items():
-        if not low[1] < size < high[1]:
-            ends = (f"the {what}, {format_quantity(bound, 'm')}" for what, bound in (low, high))
-            yield _check.problem(cage, key, f"must lie between {' and '.join(ends)}", cure)
-    if width <= ball + cage.pocket_clearance:
-        least = format_quantity(ball + cage.pocket_clearance, "m")
-        yield _check.problem(cage, "width", f"must be larger than a pocket, {least}", "Pockets are holes.")
-    if cage.mass is None and (cage.material is None or cage.material.density is None):
-        cure = "Give it, or a cage material with its density."
-        yield _check.problem(cage, "mass", "is missing, and the density of the cage is not known", cure)
-
-
-WIDEST = 4.0
-"""Width that no bearing of one row has, in balls: beyond it a land or a mass is not on the cage."""
-
-MOST_ADDED = 100.0
-"""Mass of the fluid over that of the cage: a liquid in a gap of a thousandth of the radius adds less."""
-
-
-def _body_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """In space: lands at the rings and on the cage, and inertias that a body of this mass can have."""
-    if cage.motion is not MotionModel.SPACE:
-        return
-    pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
-    if cage.land_diameter is not None and not pitch - ball < cage.land_diameter < pitch + ball:
-        low, high = (format_quantity(d, "m") for d in (pitch - ball, pitch + ball))
-        rule = f"must lie between the bottoms of the grooves, {low} and {high}"
-        yield _check.problem(cage, "land_diameter", rule)
-    most, width = WIDEST * ball, (cage.land_spacing or 0.0) + cage.land_width
-    if cage.width is None and width > most:
-        key = "land_spacing" if (cage.land_spacing or 0.0) > cage.land_width else "land_width"
-        rule = f"must leave all lands within {WIDEST:g} balls, {format_quantity(most, 'm')}"
-        yield _check.problem(cage, key, rule, "No bearing of one row is so wide.")
-    if cage.mass is None:
-        return
-    if cage.added_mass > MOST_ADDED * cage.mass:
-        rule = f"must be at most {MOST_ADDED:g} times that of the cage, {format_quantity(cage.mass, 'kg')}"
-        yield _check.problem(cage, "added_mass", rule)
-    if cage.transverse_inertia is not None and not cage.has_shape:
-        flat = (cage.moment_of_inertia or cage.mass * (pitch / 2.0) ** 2) / 2.0
-        bounds = flat * (1.0 - 1e-9), flat + cage.mass * (most / 2.0) ** 2
-        if not bounds[0] <= cage.transverse_inertia <= bounds[1]:
-            low, high = (format_quantity(value, "kg m2", 4) for value in (flat, bounds[1]))
-            rule = f"must lie between {low}, half that about the axis, and {high}"
-            cure = f"A flat ring has half of it, one with its mass {WIDEST:g} balls apart the most."
-            yield _check.problem(cage, "transverse_inertia", rule, cure)
-
-
-def _pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """Uneven pockets: one for each ball, and a bar between any two."""
-    room = (bearing.ball_diameter + cage.pocket_clearance) / bearing.pitch_diameter
-    if not 0.0 < room < math.sin(math.pi / bearing.ball_count):
-        return  # overlapping already when even
-    needed = 2.0 * math.asin(room)
-    most = (1.0 - needed * bearing.ball_count / (2.0 * math.pi)) / 2.0
-    if cage.pocket_spacing_scatter >= most:
-        rule = (
-            f"must be < {most:.4g}, where two neighbours that come close leave no bar between their pockets"
-        )
-        yield _check.problem(cage, "pocket_spacing_scatter", rule, "Fewer balls leave more room.")
-    yield from cage_design.angles_for(cage, bearing.ball_count)
-    if len(cage.pocket_angles) == bearing.ball_count:
-        step, i = cage_design.least_step(cage.pocket_angles)
-        if step <= needed:
-            rule = (
-                f"leave no bar between pockets {i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}: "
-                f"must be more than {format_quantity(needed, 'rad')} apart"
-            )
-            yield InputError("CageDesign.pocket_angles", rule, format_quantity(step, "rad"))
 
 
 def _stiffness_of_unknown_origin(study: Study) -> _check.Problems:

@@ -168,6 +168,7 @@ def impacts(
         restitution_summed=restitution_factor(damping_ratio(k, m, race_damping)),
         restitution_linear=linear_return(found, m, k),
         speed=speeds,
+        # subtracted, not negated: a cage that stays has 0.0, not -0.0
         restitution_forward=0.0 - rows[0, :, 0] / speeds,
         restitution_backward=0.0 - rows[1, :, 0] / speeds,
         restitution_law=law_returns(law, m, k, speeds),
