@@ -147,8 +147,9 @@ def _warn_if_overdamped(found: Restitution) -> None:
         damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
         warnings.warn(
             f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
-            f"= {least}; every material has its full threshold as margin. C_mu falls as race friction falls "
-            "and as speed rises. Test experience may differ: docs/theory/restitution.md.",
+            f"= {least}; every material whose cage has this k_BC and M_C has its full threshold as margin. "
+            "C_mu falls as race friction falls and as speed rises. Test experience may differ: "
+            "docs/theory/restitution.md.",
             ValidityWarning,
             stacklevel=2,
         )

@@ -106,6 +106,19 @@ def test_two_answers_of_any_verb_are_compared(folder, capsys, verb):
     assert same["unchanged"] > 10
 
 
+def test_rankings_without_a_common_candidate_have_no_verdict_in_common(folder, capsys, tmp_path):
+    """None changed, because none can be compared: said instead of "None."."""
+    other = json.loads((folder / "second" / "rank.json").read_text())
+    for row in [*other["overall"], *(row for one in other["environments"] for row in one["materials"])]:
+        row["name"] = f"another {row['name']}"
+    (tmp_path / "rank.json").write_text(json.dumps(other))
+    both = [str(folder / "first" / "rank.json"), str(tmp_path / "rank.json")]
+    found = document(capsys, "compare", *both)
+    assert (found["shared_verdicts"], found["verdicts"]) == (0, [])
+    assert main(["compare", *both]) == 0
+    assert "The two answers have no verdict in common." in capsys.readouterr().out
+
+
 def test_a_folder_is_compared_by_its_ranking_and_names_the_rest(folder, capsys, tmp_path, monkeypatch):
     """The text fits a screen, with what changed most first; all rows are in the file."""
     monkeypatch.chdir(tmp_path)

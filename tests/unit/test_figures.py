@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import drawn
 import numpy as np
@@ -12,7 +13,7 @@ from matplotlib.figure import Figure
 import separatrix
 from separatrix import figures
 from separatrix.errors import InputError
-from separatrix.figures.chain import lubrication, signed
+from separatrix.figures.chain import signed
 from separatrix.figures.map import sweep
 from separatrix.figures.ranking import file_name, overview, rank_texts, text_order
 from separatrix.figures.sensitivity import bearings
@@ -205,11 +206,21 @@ def test_a_sweep_marks_verdicts_and_names_units():
 
 
 @pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
-@pytest.mark.parametrize("study", ["momentum-wheel", "lox-turbopump"])
-def test_what_names_the_point_of_a_film_covers_no_curve(study):
-    """Curves end at 1, the top of the panel; what names the study's point begins above it."""
-    figure = lubrication(separatrix.restitution(study).to_xarray())
+@pytest.mark.parametrize(
+    ("name", "heavier"), [("momentum-wheel", 1.0), ("lox-turbopump", 1.0), ("cryogenic-turbopump", 100.0)]
+)
+def test_what_names_the_point_of_a_film_covers_no_curve(name, heavier):
+    """Curves end at 1, the top of the panel; what names the study's point begins above it.
+
+    The heavy cage has a restitution factor of 0 at every race friction: its words fit beside each other, too.
+    """
+    study = separatrix.read_study(name)
+    cage = replace(study.cage, mass=heavier * study.cage.mass)
+    data = separatrix.restitution(replace(study, cage=cage)).to_xarray()
+    figure = dict(figures.draw("restitution", data))["restitution-film"]
     figure.draw_without_rendering()
+    left, right = (axes.get_legend().get_window_extent() for axes in figure.axes)
+    assert left.x1 <= right.x0
     for axes in figure.axes:
         text = axes.get_legend().get_texts()[0]
         assert text.get_window_extent().y0 >= axes.get_window_extent().y1

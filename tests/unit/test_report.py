@@ -229,8 +229,13 @@ def test_candidates_with_one_reason_share_it():
         ),
         (
             [row("A", 1), row("B", 1, Verdict.UNDECIDED, margin=0.2, restitution_factor=0.4)],
-            "2 materials tie for first in air (A, B): STABLE, UNDECIDED. They tolerate a restitution factor "
+            "2 materials tie for first in air: STABLE A; UNDECIDED B. They tolerate a restitution factor "
             "up to 0.60; this bearing and their pockets have 0.30 to 0.40 (margin +0.20 to +0.30).",
+        ),
+        (
+            [row("A", 1), row("B", 1, Verdict.UNSTABLE)],
+            "2 materials tie for first in air: STABLE A; UNSTABLE B. From the reference kick the largest "
+            "stable restitution factor is 0.60; this bearing and their pockets have 0.30 (margin +0.30).",
         ),
         (
             [row("A", 1, Verdict.UNDECIDED), row("B", 2)],

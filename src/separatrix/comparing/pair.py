@@ -15,8 +15,9 @@ from separatrix.comparing.records import (
     Differing,
     Named,
     is_number,
+    names_verdict,
 )
-from separatrix.comparing.results import differing, of_dataset, of_document, order
+from separatrix.comparing.results import Nodes, differing, of_dataset, of_document, order
 from separatrix.comparing.saved import VERBS, Saved
 from separatrix.errors import InputError
 from separatrix.units import printable
@@ -82,12 +83,18 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
         same_seed=named[0].seed is not None and named[0].seed == named[1].seed,
         differences=tuple(differences(*inputs)),
         verdicts=verdicts[:MOST_ROWS],
+        shared_verdicts=_shared_verdicts(*nodes),
         rows=tuple(others[:MOST_ROWS]),
         unchanged=len(found) - len(rows),
         left_out=max(0, len(others) - MOST_ROWS) + max(0, len(verdicts) - MOST_ROWS),
         also=also,
         environment=own if isinstance(own, str) and nodes[1].get((), {}).get("environment") == own else None,
     )
+
+
+def _shared_verdicts(first: Nodes, second: Nodes) -> int:
+    both = ({(place, name) for place in nodes for name in nodes[place]} for nodes in (first, second))
+    return sum(names_verdict(name) for _, name in set.intersection(*both))
 
 
 def differences(first: Mapping[str, Input], second: Mapping[str, Input]) -> Iterator[Difference]:

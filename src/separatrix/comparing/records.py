@@ -90,15 +90,21 @@ class Row:
     @property
     def is_verdict(self) -> bool:
         """Whether it is a verdict, a decision of a map, or the outcome of a run."""
-        return self.name.endswith("verdict") or self.name in ("decision", "outcome")
+        return names_verdict(self.name)
+
+
+def names_verdict(name: str) -> bool:
+    """Whether a result of this name is a verdict, a decision of a map, or the outcome of a run."""
+    return name.endswith("verdict") or name in ("decision", "outcome")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
     """Two answers of the verb `of`.
 
-    `differences` are the inputs that differ, `verdicts` the verdicts that changed, `rows` the other results
-    that differ: more than noise first, the largest change first. `same_seed`: both draw the same runs.
+    `differences` are the inputs that differ, `verdicts` those of the `shared_verdicts` that changed, `rows` the
+    other results that differ: more than noise first, the largest change first. `same_seed`: both draw the same
+    runs.
     `unchanged` results are equal, `left_out` rows were too many. `also` are verbs that both have, too.
     `environment` is the bearing's own, where both rank in the same.
     """
@@ -108,6 +114,7 @@ class Comparison:
     same_seed: bool  # whether both draw the same runs
     differences: tuple[Difference, ...]  # inputs that differ
     verdicts: tuple[Row, ...]  # verdicts that changed
+    shared_verdicts: int  # number of verdicts that both have
     rows: tuple[Row, ...]  # other results that differ, more than noise first
     unchanged: int  # number of results that are equal
     left_out: int  # number of rows that were too many to list

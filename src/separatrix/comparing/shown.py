@@ -93,7 +93,8 @@ def in_words(found: Comparison, *, full: bool = False) -> str:
     blocks = [heading(f"Two answers of {found.of}"), facts(named)]
     rows = [[row.place, row.name, *pair_words(row)] for row in found.verdicts]
     heads: tuple[str, ...] = ("", "", "first", "second")
-    blocks.append(_part("Verdicts that changed", heads, rows, "verdicts", full, left=2))
+    none = "None." if found.shared_verdicts else "The two answers have no verdict in common."
+    blocks.append(_part("Verdicts that changed", heads, rows, "verdicts", full, left=2, none=none))
     changed, own = list(shown_rows(found, full=full)), "" if full else found.environment or ""
     rows = [result_words(row, own) for row in changed]
     heads = ("", "", "first\n(95 %)", "second\n(95 %)", "change", "noise")
@@ -114,10 +115,11 @@ def _part(
     kind: str,
     full: bool,
     left: int = 1,
+    none: str = "None.",
 ) -> str:
     most = len(rows) if full else ON_A_SCREEN[kind]
     if not rows:
-        return section(title, paragraph("None."))
+        return section(title, paragraph(none))
     more = [paragraph(f"and {len(rows) - most} more: --full.")] if len(rows) > most else []
     return section(title, table(heads, rows[:most], left=left), *more)
 

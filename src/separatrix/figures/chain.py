@@ -273,9 +273,9 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> int:
     friction = stated(study_of(data), "film", "race_friction")
     at = "" if friction is None else f", $f_{{BT}}$ = {friction:g}"
     (star,) = axes.plot(here if here > 0 else bare, own, "*", color=BLACK, ms=9, mfc="white", zorder=5)
-    words = [rf"this bearing{at}: $\eta$ = {own:.2f}"]
-    if zero := [f"{f:g}" for f, eta in zip(frictions, data[name].values, strict=True) if not eta.any()]:
-        words.append(rf"$\eta$ = 0 throughout for $f_{{BT}}$ = {', '.join(zero)}")
+    words = [rf"this bearing{at}: $\eta$ = {format_number(own, 2)}"]
+    if zero := [f for f, eta in zip(frictions, data[name].values, strict=True) if not eta.any()]:
+        words.append(rf"$\eta$ = 0 throughout up to $f_{{BT}}$ = {max(zero):g}")  # eta rises with friction
     place: Look = {"loc": "lower left", "bbox_to_anchor": (-0.03, 1.0), "handletextpad": 0.3}
     axes.legend([star], ["\n".join(words)], **place)
     return len(words)

@@ -172,7 +172,8 @@ def _changes(found: Comparison, one: Saved, other: Saved) -> Iterator[Block]:
     beyond = sum(row.noise is Noise.BEYOND for row in counted)
     inputs = len(found.differences)
     yield Paragraph(f"{_count(inputs, 'input')} differ{'s' if inputs == 1 else ''}.", "lead")
-    yield Paragraph(f"{_count(len(verdicts), 'verdict')} changed.", "lead")
+    shared = f"{_count(len(verdicts), 'verdict')} changed, of {found.shared_verdicts} that both have."
+    yield Paragraph(shared if found.shared_verdicts else "They have no verdict in common.", "lead")
     words = f"{_count(beyond, 'result')} changed by more than counting noise"
     yield Paragraph(f"{words}, of {len(counted)} that are counted in runs." if counted else EXACT, "lead")
     names = zip(("First", "Second"), found.answers, strict=True)

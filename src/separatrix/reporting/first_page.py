@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from separatrix.present.text.tables import ABSENT, grouped, interval, number, significant
+from separatrix.present.text.tables import ABSENT, grouped, number, significant
 from separatrix.reporting.pictures import own_candidates, picture
 from separatrix.reporting.record import (
     Block,
@@ -58,7 +58,7 @@ def _ranking(kept: Kept) -> Iterator[Block]:
     yield from picture(
         kept,
         own_candidates(kept.data),
-        "The candidates on the stability curve of this bearing: below the curve the cage is stable.",
+        f"The candidates on the stability curve of this bearing: {_below(rank.get('stability') or {})}.",
         "Critical friction against restitution factor, with the friction of each candidate at the "
         "bearing's own restitution factor; the table above has the numbers.",
     )
@@ -82,29 +82,36 @@ def verdict_sentences(rank: Row) -> list[str]:
     first = [row for row in rows if row.get("rank") == 1]
     if not first:
         return [f"No candidate was ranked in {place}."]
-    names, verdicts = (
-        ", ".join(dict.fromkeys(one)) for one in ([r["name"] for r in first], [verdict(r) for r in first])
-    )
-    lead = f"{names} ranks first in {place}: {verdicts}."
+    each = grouped((verdict(row), row["name"]) for row in first)
+    word, names = next(iter(each)), ", ".join(row["name"] for row in first)
+    lead = f"{names} ranks first in {place}: {word}."
     if len(first) > 1:
-        lead = f"{len(first)} materials tie for first in {place} ({names}): {verdicts}."
+        said = f" ({names}): {word}" if len(each) == 1 else f": {_by_verdict(each)}"
+        lead = f"{len(first)} materials tie for first in {place}{said}."
     limits, etas = (
         _span([row[key] for row in first]) for key in ("restitution_threshold", "restitution_factor")
     )
     if len(first) == 1:
         limits = threshold(first[0])
-    up_to = f"remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
+    whose = "The cage" if len(first) == 1 else "Their cages"
+    up_to = f"{whose} remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
     if not any(row["restitution_threshold"] for row in first):
-        up_to = f"{'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
+        up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
+    elif [*each] != ["STABLE"]:
+        up_to = f"From the reference disturbance the largest stable restitution factor is {limits}"
     by_it = (
-        f"{'The cage' if len(first) == 1 else 'Their cages'} {up_to}; this bearing and film have {etas}, "
+        f"{up_to}; this bearing and film have {etas}, "
         f"a margin of {_span([row['margin'] for row in first], '{:+.2f}')}."
     )
     if first[0]["verdict"] == "UNDECIDED":
         by_it += f" {first[0]['name']}: {first[0]['reason']}"
     others = grouped((verdict(row), row["name"]) for row in rows if row not in first)
-    rest = "; ".join(f"{word} {', '.join(who)}" for word, who in others.items())
-    return [lead, by_it, f"The others: {rest}." if rest else "There is no other candidate."]
+    rest = f"The others: {_by_verdict(others)}." if others else "There is no other candidate."
+    return [lead, by_it, rest]
+
+
+def _by_verdict(each: Mapping[str, Sequence[str]]) -> str:
+    return "; ".join(f"{word} {', '.join(who)}" for word, who in each.items())
 
 
 def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
@@ -123,25 +130,50 @@ def _stability(kept: Kept) -> Iterator[Block]:
             f"{curve}no critical friction was found: {here.get('reason') or 'see below'}.", "lead"
         )
     else:
-        ends = here["scatter_low"], here["scatter_high"]
-        words = f"half of the runs whirl at a pocket friction of {interval(middle, *ends)}."
+        ends = f"({_friction(here['scatter_low'])} to {_friction(here['scatter_high'])})"
+        words = f"half of the runs whirl at a pocket friction of {_friction(middle)} {ends}."
         yield Paragraph(curve + words, "lead")
     if friction is not None and middle is not None:
         side, then = "within", "it is undecided"
         if low is not None and friction < low:
             side, then = "below", "the cage is stable"
+            if found.get("drifts"):
+                then = "disturbances decay, but the cage drifts and is not stable"
         elif high is not None and friction > high:
             side, then = "above", "the cage is unstable"
-        band = f"the band in which the disturbance decides ({number(low, 2)} to {number(high, 2)})"
-        yield Paragraph(f"The cage's friction of {number(friction)} is {side} {band}: {then}.", "lead")
+        band = f"the band in which the disturbance decides ({_friction(low)} to {_friction(high)})"
+        yield Paragraph(
+            f"The cage's friction of {significant(friction, 3)} is {side} {band}: {then}.", "lead"
+        )
+    if found.get("drifts"):
+        yield Paragraph(_drift(found), "lead")
     why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
     yield Paragraph(f"{why}: no cage materials were compared.", "lead")
     yield from picture(
         kept,
         "stability-curve",
-        "Critical friction against restitution factor: below the curve the cage is stable.",
+        f"Critical friction against restitution factor: {_below(found)}.",
         "Stability curve with its band and limits, and the bearing's own restitution factor.",
     )
+
+
+def _drift(curve: Row) -> str:
+    """Return that a cage without a land is stable at no friction, and how fast it drifts."""
+    rate = curve["drift_rate_law"]
+    pace = f", by the linear law e-fold every {quantity(1.0 / rate, 's', 3)}" if rate else ""
+    return f"The cage has no land and drifts at any friction{pace}: no verdict on it is STABLE."
+
+
+def _below(curve: Row) -> str:
+    """Return what a place below the curve means."""
+    if curve.get("drifts"):
+        return "below the curve disturbances decay, but the cage drifts"
+    return "below the curve the cage is stable"
+
+
+def _friction(value: float | None) -> str:
+    """Return a friction to two significant digits, so that a small one differs from 0."""
+    return f"{value:#.2g}" if value else number(value, 0)
 
 
 def _without_cage(kept: Mapping[str, Kept]) -> Iterator[Block]:

@@ -61,7 +61,38 @@ def bearing_and_cage(kept: Mapping[str, Kept]) -> Section:
         ]
     contacts = _with_contacts(kept)
     shown = drawing(study, None if contacts is None else contacts.document)
-    return Section("Bearing, cage and operating point", (facts(*pairs), shown))
+    return Section("Bearing, cage and operating point", (facts(*pairs), *_clearances(kept), shown))
+
+
+def _clearances(kept: Mapping[str, Kept]) -> Iterator[Block]:
+    """Yield the clearances at rest and as the cage runs, and what changes them; nothing if not computed."""
+    parts = (part for one in kept.values() for part in (one.document, one.document.get("chain") or {}))
+    found = next((part["clearances"] for part in parts if part.get("clearances")), None)
+    if found is None:
+        return
+    names = (("pocket", "pocket"), ("pocket_axial", "pocket, along the axis"), ("land", "land"))
+    rows = tuple(
+        (words, quantity(found[f"{name}_at_rest"], "m"), quantity(found[name], "m"))
+        for name, words in names
+        if found[name] is not None
+    )
+    at = f"{quantity(found['temperature'], 'K')} and a cage speed of {quantity(found['cage_speed'], 'rad/s')}"
+    yield Table(
+        ("clearance", "at 293 K at rest", "as it runs"),
+        rows,
+        f"Clearances of the cage, which runs at {at}. In a ranking: of the reference cage.",
+    )
+    strains = [
+        f"{part} {100.0 * found[f'{key}_strain']:.3g} %"
+        for part, key in (("cage", "cage"), ("balls", "ball"), ("rings", "ring"))
+        if found[f"{key}_strain"] is not None
+    ]
+    grown = [f"cage +{100.0 * found['hoop_strain']:.3g} % at its pitch radius"] + [
+        f"{part} +{quantity(found[f'{key}_land_growth'], 'm', 3)} in radius"
+        for part, key in (("its land", "cage"), ("the ring's land", "ring"))
+        if found[f"{key}_land_growth"]
+    ]
+    yield facts(("Thermal strain", ", ".join(strains)), ("Growth by rotation", ", ".join(grown)))
 
 
 def _guidance(cage: Row) -> str:

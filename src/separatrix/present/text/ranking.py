@@ -226,21 +226,26 @@ def in_short(found: Ranking) -> str:
     first = [row for row in rows if isinstance(row, Ranked) and row.rank == 1]
     if not first:
         return f"No candidate was ranked in {place}."
-    words = ", ".join(dict.fromkeys(verdict_word(row) for row in first))
-    lead = f"{first[0].name} ranks first in {place}: {words}."
+    each = grouped((verdict_word(row), row.name) for row in first)
+    word = next(iter(each))
+    lead = f"{first[0].name} ranks first in {place}: {word}."
     it, pocket = "It tolerates", "this bearing with its pocket has"
     if len(first) > 1:
         names = ", ".join(row.name for row in first)
-        lead = f"{len(first)} materials tie for first in {place} ({names}): {words}."
+        said = f" ({names}): {word}" if len(each) == 1 else f": {_by_verdict(each)}"
+        lead = f"{len(first)} materials tie for first in {place}{said}."
         it, pocket = "They tolerate", "this bearing and their pockets have"
     limits = _span([row.restitution_threshold for row in first])
+    up_to = f"{it} a restitution factor up to {limits}"
+    if "UNSTABLE" in each:
+        up_to = f"From the reference kick the largest stable restitution factor is {limits}"
     etas = _span([row.restitution_factor for row in first])
     margins = _span([row.margin for row in first], "{:+.2f}")
     others = grouped((verdict_word(row), row.name) for row in rows if row not in first)
     rest = f" The others: {_by_verdict(others)}." if others else ""
     is_open = first[0].judgement.verdict is Verdict.UNDECIDED
     why = f" {first[0].name}: {first[0].judgement.reason}" if is_open else ""
-    return f"{lead} {it} a restitution factor up to {limits}; {pocket} {etas} (margin {margins}).{why}{rest}"
+    return f"{lead} {up_to}; {pocket} {etas} (margin {margins}).{why}{rest}"
 
 
 def _span(values: Sequence[float], form: str = "{:.2f}") -> str:

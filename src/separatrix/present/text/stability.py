@@ -107,7 +107,7 @@ def drift_note(found: StabilityCurve) -> str:
     rate = found.drift_rate_law
     pace = ""
     if rate:
-        pace = f", by the linear law at {number(rate)} 1/s (e-fold every {quantity(1.0 / rate, 's')})"
+        pace = f", by the linear law at {significant(rate, 3)} 1/s (e-fold every {quantity(1.0 / rate, 's')})"
     return "\n\n" + paragraph(
         f"This cage has no land and drifts at any friction{pace}. Below the curve disturbances decay, but no "
         "verdict there is STABLE."
