@@ -374,3 +374,14 @@ def test_own_grid_is_the_hertz_grid():
         made = rolling_contact(problem, columns=20, rows=20)
         forces.append(kalker(made, xi=1e-3).force)
     assert forces[1] == pytest.approx(forces[0], rel=0.01)
+
+
+def test_without_friction_everything_slips_and_nothing_is_lost():
+    """No traction holds a cell: it slips as the rigid bodies do, and the heat is 0, not -0."""
+    found = kalker(contact(0.5, columns=16, rows=16, friction=0.0), xi=0.01, phi=0.1)
+    inside = found.fraction > 0.0
+    rigid = rigid_slip(contact(0.5, columns=16, rows=16).grid, longitudinal=0.01, spin=-0.1)
+    assert found.stick_share == 0.0
+    assert not found.stick.any()
+    assert np.array_equal(found.slip[:, inside], rigid[:, inside])
+    assert str(found.dissipation) == "0.0"

@@ -206,6 +206,10 @@ def test_results_and_report_say_how_far_balls_lead_and_lag():
     assert dict(basis(STUDY, loaded))["Free balls lead and lag"] == (
         "up to 63.57 um (pockets 300 um each way); the harmonics used contain 100 % of the speed variance"
     )
+    turning = replace(STUDY, operation=replace(STUDY.operation, outer_speed=-100.0, moment=0.0))
+    assert dict(basis(turning, loaded))["Operation"] == (
+        "inner ring 15000 rpm, outer ring -954.9 rpm, 3000 N axial"
+    )
     alike = of_cage(STUDY)
     assert (alike.cage.lead_amplitude, alike.solution.orbital_share) == (0.0, None)
     assert "Free balls lead and lag" not in dict(basis(STUDY, alike))

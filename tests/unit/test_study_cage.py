@@ -260,9 +260,9 @@ def test_a_land_tighter_than_the_pockets_is_a_land_guided_cage(read):
     """No fault: its pockets touch by turning, and as balls lead and lag; the report says what is met."""
     tight = read(cage='guidance = "outer"\nland_clearance = "0.3 mm"\nland_out_of_round = "10 um"')
     rows = dict(clearances(tight.cage))
-    assert rows["Land clearance"] == "140 um radial, reached before the pockets"
+    assert rows["Land clearance"] == "300 um: 140 um radial at the least, reached before the pockets"
     wide = read(cage='guidance = "outer"\nland_clearance = "1 mm"')
-    assert dict(clearances(wide.cage))["Land clearance"] == "500 um radial, reached after the pockets"
+    assert dict(clearances(wide.cage))["Land clearance"] == "1 mm: 500 um radial, reached after the pockets"
     landless = dict(clearances(read(cage='guidance = "ball"').cage))
     assert landless["Land clearance"] == "no land: the balls guide the cage"
 
@@ -271,7 +271,7 @@ def test_the_report_shows_what_shape_and_offset_leave(read):
     """Half play and lean of an elongated pocket: 0.3 - 0.2 + sqrt(0.2^2 - 0.1^2) mm, asin(0.1/0.2)."""
     cage = 'pocket_shape = "elongated"\npocket_axial_clearance = "0.4 mm"\npocket_axial_offset = "0.1 mm"'
     rows = dict(clearances(read(cage=cage).cage))
-    assert rows["Pocket clearance"] == "273.2 um each way, along the circumference"
+    assert rows["Pocket clearance"] == "600 um: 273.2 um each way along the circumference"
     assert rows["Lean of its contact"] == "30 deg, towards the bearing axis"
 
 

@@ -134,6 +134,12 @@ WRONG = {
     "a cell too few": ("cage.mass,cage.land_count\n1 g\n", "row 2 must have 2 cells; got 1"),
     "no case": ("cage.mass\n", "needs a row of parameters and below it a row for each case"),
     "a name": ("cage.mas\n1 g\n", "row 1 names no parameter of a study"),
+    "twice": ("cage.mass,cage.mass\n1 g,2 g\n", "row 1 must name each parameter once; got cage.mass"),
+    "twice, short": (
+        "cage.ball_cage_friction,ball_cage_friction\n.1,.2\n",
+        "row 1 must name each parameter once",
+    ),
+    "time twice": ("cage.mass,time_share,time_share\n1 g,1,2\n", "must name each parameter once"),
 }
 
 
@@ -142,6 +148,14 @@ def test_a_wrong_table_is_refused_with_its_row(text, said, capsys):
     """Status 2, one line with the place, nothing written."""
     Path("c.csv").write_text(text)
     assert said in refused(capsys, "sweep", "momentum-wheel", "--cases", "c.csv")
+
+
+def test_every_wrong_cell_of_a_row_has_its_line(capsys):
+    """Also every wrong name of the first row."""
+    for text, count in (("cage.mass,cage.land_count\n1,1.5\n", 2), ("cage.mas,cage.land_coun\n1 g,1\n", 2)):
+        Path("c.csv").write_text(text)
+        assert main(["sweep", "momentum-wheel", "--cases", "c.csv"]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == count
 
 
 def test_every_wrong_row_has_its_line(capsys):

@@ -264,6 +264,7 @@ def test_steps_of_friction_and_wear_are_told():
     test = reduce_log(one, ReductionOptions(run_in_end="10 s"))
     assert "at 3.99" in told(test, "Friction rises in one step by 0.03")  # at 240 s, in spans of 1.5 s
     assert told(test, "Wear depth jumps by 10 um at 120.")  # to a span of 2.03 s
+    assert not told(reduce_log(log(friction=np.zeros_like(one.time))), "Friction falls")  # nothing but 0
 
 
 def test_a_test_too_short_for_its_correlation_is_told():

@@ -102,9 +102,9 @@ def names_verdict(name: str) -> bool:
 class Comparison:
     """Two answers of the verb `of`.
 
-    `differences` are the inputs that differ, `verdicts` those of the `shared_verdicts` that changed, `rows` the
-    other results that differ: more than noise first, the largest change first. `same_seed`: both draw the same
-    runs.
+    `differences` are the inputs that differ, `verdicts` those of the `shared_verdicts` that changed, `rows`
+    the other results that differ: more than noise first, the largest change first. `same_seed`: both draw the
+    same runs.
     `unchanged` results are equal, `left_out` rows were too many. `also` are verbs that both have, too.
     `environment` is the bearing's own, where both rank in the same.
     """

@@ -6,11 +6,12 @@ import csv
 import itertools
 import math
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.errors import InputError, together
+from separatrix.errors import InputError, noted, together
 from separatrix.toml_files import Kind, nearest, path_text, read_text
 from separatrix.units import NUMBER, parse, shown
 
@@ -180,15 +181,9 @@ def _read_cases(path: Path) -> list[Case]:
     if len(rows) < 2:
         raise InputError(where, "needs a row of parameters and below it a row for each case")
     names = [cell.strip() for cell in rows[0]]
-    heads = [None if name == TIME_SHARE else find_parameter(name, f"{where} row 1") for name in names]
-    if heads == [None]:
-        raise InputError(f"{where} row 1", "needs a parameter beside time_share")
-    cases, wrong = [], []
-    for number, row in enumerate(rows[1:], start=2):
-        try:
-            cases.append(_case(heads, row, f"{where} row {number}"))
-        except InputError as error:
-            wrong.append(error)
+    heads = _heads(names, f"{where} row 1")
+    wrong: list[InputError] = []
+    cases = [_case(heads, row, f"{where} row {i}", wrong) for i, row in enumerate(rows[1:], start=2)]
     if wrong:
         raise together(wrong)
     if None in heads and len({_is_plain(row[heads.index(None)]) for row in rows[1:]}) > 1:
@@ -196,22 +191,47 @@ def _read_cases(path: Path) -> list[Case]:
     return cases
 
 
+def _heads(names: Sequence[str], where: str) -> list[Parameter | None]:
+    """Parameter of each column, None for the share of time; `InputError` has a line for each mistake."""
+    heads: list[Parameter | None] = []
+    wrong: list[InputError] = []
+    for name in names:
+        with noted(wrong):
+            heads.append(None if name == TIME_SHARE else find_parameter(name, where))
+    for head in (one for one, count in Counter(heads).items() if count > 1):
+        name = TIME_SHARE if head is None else head.name
+        wrong.append(InputError(where, "must name each parameter once", got=name))
+    if wrong:
+        raise together(wrong)
+    if heads == [None]:
+        raise InputError(where, "needs a parameter beside time_share")
+    return heads
+
+
 def _is_plain(text: str) -> bool:
     return _NUMBER.fullmatch(text.strip()) is not None
 
 
-def _case(heads: Sequence[Parameter | None], row: Sequence[str], where: str) -> Case:
-    """Values of one row; the head of a share of time is None."""
+def _case(heads: Sequence[Parameter | None], row: Sequence[str], where: str, wrong: list[InputError]) -> Case:
+    """Values of one row; each mistake goes into `wrong`."""
     if len(row) != len(heads):
-        raise InputError(where, f"must have {len(heads)} cells", got=str(len(row)))
+        wrong.append(InputError(where, f"must have {len(heads)} cells", got=str(len(row))))
+        return {}
     found = {}
     for head, cell in zip(heads, map(str.strip, row), strict=True):
-        name, unit = (TIME_SHARE, "s") if head is None else (head.name, head.unit)
-        place = f"{where}, {name}"
-        is_plain = _is_plain(cell) if head is None else unit in ("-", "")
-        found[name] = value = _plain_number(cell, place) if is_plain else parse(cell, unit, place)
-        if head is None and value < 0.0:
-            raise InputError(place, "must be >= 0", got=shown(cell))
-        if head is not None and head.is_whole and value != int(value):
-            raise InputError(place, "takes whole numbers", got=shown(cell))
+        name = TIME_SHARE if head is None else head.name
+        with noted(wrong):
+            found[name] = _value(head, cell, f"{where}, {name}")
     return found
+
+
+def _value(head: Parameter | None, cell: str, place: str) -> float:
+    """Value of a cell; the head of a share of time is None."""
+    unit = "s" if head is None else head.unit
+    is_plain = _is_plain(cell) if head is None else unit in ("-", "")
+    value = _plain_number(cell, place) if is_plain else parse(cell, unit, place)
+    if head is None and value < 0.0:
+        raise InputError(place, "must be >= 0", got=shown(cell))
+    if head is not None and head.is_whole and value != int(value):
+        raise InputError(place, "takes whole numbers", got=shown(cell))
+    return value

@@ -340,6 +340,11 @@ def _stability(kept: Kept) -> Iterator[Block]:
                 + f" at a restitution factor of {number(here['restitution_factor'])}",
             ),
         )
+        if here["restitution_factor"] == 0.0:
+            yield Paragraph(
+                "Impacts of this bearing are overdamped: its critical friction is found with its own race "
+                "damping, the table's row at 0 with the largest damping that leaves no rebound."
+            )
     if found["verb"] == "rank":
         yield from picture(
             kept,

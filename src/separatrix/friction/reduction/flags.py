@@ -120,7 +120,7 @@ def friction_step(spans: Spans) -> tuple[float, float] | None:
     best = int(np.argmax(gain))
     k = int(split[best])
     size = float(y[k:].mean() - y[:k].mean())
-    small = abs(size) < STEP_SIZE * abs(float(y.mean()))
+    small = abs(size) <= STEP_SIZE * abs(float(y.mean()))  # nor where all are 0
     if small or level @ level - gain[best] > STEP_GAIN * straight:
         return None
     return spans.start + spans.width * k, size

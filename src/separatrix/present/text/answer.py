@@ -107,15 +107,19 @@ def clearances(cage: CageDesign) -> list[tuple[str, str]]:
     """Return the clearance of the cage in its pockets and on its land, and which of them it reaches first."""
     clearance, (_, sine) = half_play(cage), tilt(cage)
     stated = "" if cage.clearances is ClearanceState.RUNNING else f", {cage.clearances.value}"
-    words = f"{quantity(clearance, 'm')} each way, along the circumference{stated}"
-    rows = [("Pocket clearance", words)]
+    words = (
+        f"{quantity(cage.pocket_clearance, 'm')}: {quantity(clearance, 'm')} each way along the circumference"
+    )
+    rows = [("Pocket clearance", words + stated)]
     if sine != 0.0:
         rows.append(("Lean of its contact", quantity(asin(sine), "rad") + ", towards the bearing axis"))
     if cage.land_clearance is None:
         return [*rows, ("Land clearance", "no land: the balls guide the cage")]
     gap = cage.land_clearance / 2.0 - cage.land_out_of_round
     order = "together with" if isclose(gap, clearance) else "before" if gap < clearance else "after"
-    return [*rows, ("Land clearance", f"{quantity(gap, 'm')} radial, reached {order} the pockets{stated}")]
+    least = " at the least" if cage.land_out_of_round else ""
+    words = f"{quantity(cage.land_clearance, 'm')}: {quantity(gap, 'm')} radial{least}, reached {order} the pockets"
+    return [*rows, ("Land clearance", words + stated)]
 
 
 def _assumed(inputs: Document) -> list[tuple[str, str]]:

@@ -204,7 +204,9 @@ def contact_words(study: Study) -> str:
 def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
     """Return the basis of a cage's answer: bearing, operation, film, and the numbers of the chain."""
     at, operation, film, solution = study.bearing, study.operation, study.film, answer.solution
-    loads = (("axial", "axial_load"), ("radial", "radial_load"))
+    loads = (("axial", "axial_load"), ("radial", "radial_load"), ("moment", "moment"))
+    rings = [("inner", "inner_speed")] + [("outer", "outer_speed")] * bool(operation.outer_speed)
+    turning = [f"{words} ring {stated(operation, key)}" for words, key in rings]
     loaded = [f"{stated(operation, key)} {words}" for words, key in loads if getattr(operation, key)]
     coat = "none"
     if film.material is not None:
@@ -223,7 +225,7 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
 
     facts = [
         ("Bearing", f"{balls}, pitch diameter {quantity(at.pitch_diameter, 'm')}"),
-        ("Operation", ", ".join([f"inner ring {quantity(operation.inner_speed, 'rad/s')}", *loaded])),
+        ("Operation", ", ".join([*turning, *loaded])),
         ("Film on the races", f"{coat}; friction {quantity(film.race_friction, '-')}"),
         ("Traction", contact_words(study)),
         ("Contact angles", both(inner, outer, "contact_angle")),

@@ -351,9 +351,9 @@ def secant(known: list[tuple[Array, Array]], slip: Array) -> Array | None:
 def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | None = None) -> ContactSolution:
     """Forces, moment, shares and dissipation of tractions settled over a distance, dx in steady rolling."""
     grid, p, dA = contact.grid, found.traction, contact.grid.cell_area
-    slips = found.sets.state == SLIP
-    slip = np.where(slips, found.slip_step / (distance or grid.dx), 0.0)
     fraction = grid.fraction
+    slips = (found.sets.state == SLIP) | ((contact.bound == 0.0) & (fraction > 0.0))
+    slip = np.where(slips, found.slip_step / (distance or grid.dx), 0.0)
     return ContactSolution(
         along=grid.x,
         across=grid.y,
@@ -367,7 +367,7 @@ def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | No
         lateral_force=float(p[1].sum() * dA),
         spin_moment=float((grid.x * p[1] - grid.y[:, None] * p[0]).sum() * dA),
         stick_share=float(fraction[~slips].sum() / fraction.sum()),
-        dissipation=float(-(p * slip).sum() * dA),
+        dissipation=float(-(p * slip).sum() * dA) + 0.0,  # not -0
         max_pressure=_largest_pressure(contact.problem, contact.pressure),
         film_strain=contact.film_strain,
         iterations=found.passes,
