@@ -118,8 +118,8 @@ def clearances(cage: CageDesign) -> list[tuple[str, str]]:
     gap = cage.land_clearance / 2.0 - cage.land_out_of_round
     order = "together with" if isclose(gap, clearance) else "before" if gap < clearance else "after"
     least = " at the least" if cage.land_out_of_round else ""
-    words = f"{quantity(cage.land_clearance, 'm')}: {quantity(gap, 'm')} radial{least}, reached {order} the pockets"
-    return [*rows, ("Land clearance", words + stated)]
+    words = f"{quantity(cage.land_clearance, 'm')}: {quantity(gap, 'm')} radial{least}"
+    return [*rows, ("Land clearance", f"{words}, reached {order} the pockets{stated}")]
 
 
 def _assumed(inputs: Document) -> list[tuple[str, str]]:
