@@ -2,6 +2,8 @@
 
 python benchmarks/plane_or_space.py > docs/theory/plane-or-space.csv: about half an hour on two cores. The
 cage is that of the shipped turbopump with its outer land; its balls spin as they do at full speed.
+
+python benchmarks/plane_or_space.py STUDY ...: other bearings as they run, with bores, a few minutes each.
 """
 
 from __future__ import annotations
@@ -32,12 +34,12 @@ HEAD = "ball,pocket_shape,pitch_deg,kick_m_s,cage_speed_rad_s"
 ENDS = "plane,plane_low,plane_high,space,space_low,space_high"
 
 
-def turbopump(ball: BallModel) -> PlanarCage:
-    """Cage of the shipped turbopump in space."""
-    study = separatrix.read_study("cryogenic-turbopump")
+def in_space(name: str, ball: BallModel, **changes: object) -> PlanarCage:
+    """Cage of a study in space, with its design changed."""
+    study = separatrix.read_study(name)
     if study.cage is None:
-        raise LookupError(study.name)
-    design = replace(study.cage, motion=MotionModel.SPACE, ball=ball)
+        raise LookupError(name)
+    design = replace(study.cage, motion=MotionModel.SPACE, ball=ball, **changes)
     return separatrix.solve(replace(study, cage=design)).cage_with(0.1)
 
 
@@ -69,7 +71,7 @@ def row(cage: PlanarCage, kick: float) -> str:
 
 def rows(ball: BallModel) -> Iterator[str]:
     """All cases, in order."""
-    cage = turbopump(ball)
+    cage = in_space("cryogenic-turbopump", ball)
     cases = [(*kind, speed) for kind, speed in itertools.product(KINDS, SPEEDS)]
     with ThreadPoolExecutor(max_workers=2) as pool:
         done = pool.map(lambda c: row(case(cage, c[3], c[0], c[1]), c[2]), cases)
@@ -77,7 +79,17 @@ def rows(ball: BallModel) -> Iterator[str]:
             yield f"{ball.value},{shape.value},{pitch:g},{kick:g},{speed:g},{cells}"
 
 
+def bearing_rows(name: str) -> Iterator[str]:
+    """Bores in one bearing: both models of a ball, kicks of 0.5, 2.5 and 10 pocket speeds."""
+    for ball, times in itertools.product(BallModel, (0.5, 2.5, 10.0)):
+        cage = in_space(name, ball, pocket_shape=ROUND, pocket_axial_clearance=None, pocket_axial_offset=0.0)
+        kick = times * abs(cage.cage_speed) * cage.pocket_clearance / 2.0
+        yield f"{name},{ball.value},{times:g},{kick:.3g},{row(cage, kick)}"
+
+
 if __name__ == "__main__":
-    print(f"{HEAD},{ENDS}", flush=True)
-    for line in rows(BallModel(sys.argv[1]) if len(sys.argv) > 1 else BallModel.DAMPER):
+    bearings = sys.argv[1:]
+    print(f"bearing,ball,kick_pocket_speeds,kick_m_s,{ENDS}" if bearings else f"{HEAD},{ENDS}", flush=True)
+    found = itertools.chain(*map(bearing_rows, bearings)) if bearings else rows(BallModel.DAMPER)
+    for line in found:
         print(line, flush=True)

@@ -155,7 +155,7 @@ def problem(record: object, field: str, rule: str, cure: str = "") -> InputError
     """Build the refusal of one field: where, rule, value and cure."""
     value = getattr(record, field)
     unit = unit_of(type(record), field)
-    text = shown(value)
+    text = "" if value is None else shown(value)
     if unit and is_number(value) and math.isfinite(value):
         text = format_quantity(float(value), unit, 8) + (f" ({value:.5g} rad)" if unit == "rad" else "")
     return InputError(f"{type(record).__name__}.{field}", rule, text, cure)

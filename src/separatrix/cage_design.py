@@ -284,6 +284,9 @@ def _space(cage: CageDesign) -> _check.Problems:
     if cage.pocket_contact is PocketContact.HERTZ:
         rule = "must be linear for a cage in space"
         yield _check.problem(cage, "pocket_contact", rule, 'Give "linear", or motion = "plane".')
+    if cage.pocket_clearance == 0.0 and cage.pocket_shape is not PocketShape.SQUARE:
+        rule = "must be > 0 for round pockets in space"
+        yield _check.problem(cage, "pocket_clearance", rule, "Pockets that grip their balls are square.")
     if cage.land_out_of_round != 0.0:
         rule = "has no meaning for a cage in space"
         yield _check.problem(cage, "land_out_of_round", rule, 'Leave it out, or give motion = "plane".')

@@ -40,7 +40,7 @@ WRONG = [
     ),
     (
         {"guidance": Guidance.INNER},
-        'land_clearance is missing; got None. Give the diametral clearance, or guidance = "ball"',
+        'land_clearance is missing. Give the diametral clearance, or guidance = "ball"',
     ),
     *[({"mass": value}, "mass") for value in (0.0, math.nan)],
     *[({"race_damping": value}, "race_damping") for value in (0.0, math.nan)],

@@ -16,7 +16,7 @@ from separatrix.ranking.reason import (
     transmitted_force,
     within_a_turn,
 )
-from separatrix.study import BallBearing, Operation, Study
+from separatrix.study import BallBearing, Operation, PocketShape, Study
 from separatrix.study_file import beyond_bearings, plausible_cage_masses, read_study
 
 SHIPPED = read_study("cryogenic-turbopump")
@@ -132,6 +132,22 @@ def test_a_kick_faster_than_the_balls_slide_and_runs_within_a_turn_are_noted():
     assert "Runs of 9.3 ms are 0.99 turns of the cage" in note
     assert 'duration = "9.39 ms"' in note
     assert notes(duration=9.4e-3) == []
+
+
+def test_round_pockets_kicked_faster_than_the_pocket_speed_are_noted():
+    """At 669 rad/s and half of 0.6 mm the pocket speed is 0.201 m/s. Never two notes."""
+
+    def notes(shape, *kicks):
+        cage = replace(SHIPPED.cage, pocket_shape=shape)
+        study = replace(SHIPPED, cage=cage, stability=replace(SHIPPED.stability, kicks=kicks))
+        return [*beyond_motion(replace(STATE, study=study), [ROW])]
+
+    assert notes(PocketShape.CYLINDRICAL, 0.2) == notes(PocketShape.SQUARE, 0.21) == []
+    (note,) = notes(PocketShape.CYLINDRICAL, 0.05, 0.21)
+    assert "the strongest kick, 0.21 m/s, exceeds 0.201 m/s" in note
+    (note,) = notes(PocketShape.CYLINDRICAL, 25.2)
+    assert "is faster than the balls slide" in note
+    assert note.endswith("the cage may tilt in its round pockets, which makes it whirl sooner.")
 
 
 def test_a_force_beyond_the_races_or_an_offset_beyond_the_land_is_noted():

@@ -105,6 +105,11 @@ DESIGNS = [
     (FLAT, {"added_mass": 1e-3}, "added_mass has no meaning for a cage in the plane"),
     (SPACE, {"pocket_contact": PocketContact.HERTZ}, "pocket_contact must be linear for a cage in space"),
     (SPACE, {"land_out_of_round": 1e-5}, "land_out_of_round has no meaning for a cage in space"),
+    (
+        SPACE,
+        {"pocket_clearance": 0.0, "pocket_shape": PocketShape.CYLINDRICAL},
+        "CageDesign.pocket_clearance must be > 0 for round pockets in space",
+    ),
     (SPACE, {"land_count": 2}, "land_spacing is missing: two lands have a distance"),
     (SPACE, {"land_spacing": 1e-2}, "land_spacing has no meaning for one land"),
     (

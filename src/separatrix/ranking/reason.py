@@ -27,7 +27,7 @@ from separatrix.study import (
 )
 from separatrix.units import Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
 
-STRONG: Ratio = 5.0
+STRONG: Ratio = 1.0
 """Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
 
 BEYOND_LAND: Ratio = 1.2
@@ -93,18 +93,20 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
 def _beyond_plane(solution: Solution) -> Iterator[str]:
     """Sentences where a cage is kicked so hard that friction would turn round, or that it tilts."""
     kick, sliding = max(solution.stability.kicks), solution.pocket.slip_speed
+    speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
+    tilts = solution.design.pocket_shape is not PocketShape.SQUARE and kick > STRONG * speed
     if kick > sliding:
         yield (
             f"The strongest kick, {kick:.3g} m/s, is faster than the balls slide in their pockets, "
             f"{sliding:.3g} m/s. Friction then brakes the cage, but in the plane it always acts along the "
-            "ball's spin: it drives the cage too much. With `--motion space` it follows the true sliding."
+            "ball's spin: it drives the cage too much. With `--motion space` it follows the true sliding"
+            + (", and the cage may tilt in its round pockets, which makes it whirl sooner." if tilts else ".")
         )
-    speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
-    if solution.design.pocket_shape is not PocketShape.SQUARE and kick > STRONG * speed:
+    elif tilts:
         yield (
-            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, is more than {STRONG:g} times "
-            f"the speed {speed:.3g} m/s of a cage half a pocket clearance off the axis. So disturbed a cage "
-            "tilts, and in space it may whirl at a fifth to a third less friction: `--motion space`."
+            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, exceeds {speed:.3g} m/s, the "
+            "speed of a cage half a pocket clearance off the axis. So disturbed a cage tilts, and may "
+            "whirl in space at up to half less friction: `--motion space`."
         )
 
 

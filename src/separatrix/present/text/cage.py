@@ -246,7 +246,8 @@ def _motion(found: SpaceAnalysis) -> list[tuple[str, str]]:
     words = f"{', '.join(ratios)} of the cage's speed (1: turns with it; below 0: backward)"
     slip = "the ball set is at rest"
     if found.cage_slip is not None:
-        slip = f"{100.0 * found.cage_slip:.2g} % behind the ball set"
+        share = round(100.0 * found.cage_slip, 2) + 0.0  # never -0
+        slip = f"{abs(share):g} % {'ahead of' if share < 0.0 else 'behind'} the ball set"
     cone = "without a steady phase to the offset"
     if whirl.tilt_phase is not None and (whirl.tilt_coherence or 0.0) >= STEADY:
         cone = f"{math.degrees(whirl.tilt_phase):.0f} deg ahead of the offset (0: a forward cone)"
