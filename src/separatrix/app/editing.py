@@ -152,7 +152,7 @@ def _summary(page: Page, name: str) -> dict[str, object]:
         "best": best,
         "counts": counts,
         "count": len(overall),
-        "has_draft": draft.draft_path(page.folder.study(name)).is_file(),
+        "has_draft": draft.has_draft(page.folder.study(name)),
     }
 
 
@@ -163,7 +163,7 @@ def _editor(name: str, path: Path, checked: draft.Checked | None, problem: str =
         "checked": checked,
         "sections": form(checked) if checked else (),
         "problem": problem if checked else "",
-        "has_draft": checked is not None and draft.draft_path(path).is_file(),
+        "has_draft": checked is not None and draft.has_draft(path),
     }
 
 

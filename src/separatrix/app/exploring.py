@@ -136,7 +136,7 @@ def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) 
     study, eta = solution.study, solution.restitution.restitution_factor
     of_curve = {key: value for key, value in values.items() if key in OF_THE_CURVE}
     own, other = page.folder.answers(name), _place(page, name, of_curve)
-    is_refined = bool(of_curve) and (other / "stability.nc").is_file()
+    is_refined = bool(of_curve) and page.folder.has(other / "stability.nc")
     places = [*([(other, "stability")] if is_refined else []), (own, "stability"), (own, "rank")]
     curves = ((page.dataset(at / f"{verb}.nc"), page.document(at, verb)) for at, verb in places)
     data, document = next(((a, b) for a, b in curves if a is not None and b is not None), (None, None))

@@ -22,6 +22,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from separatrix import __version__
 from separatrix.app.jobs import Jobs
 from separatrix.errors import InputError
+from separatrix.input_files import is_inside
 from separatrix.questions import VERBS
 from separatrix.toml_files import read_text
 from separatrix.units import format_quantity, printable, shown
@@ -78,13 +79,14 @@ class Folder:
         is_plain = bool(name) and not any(c in name for c in "\0\\:") and "" not in parts
         if is_plain and not any(part.startswith(".") for part in parts):
             path = self.root.joinpath(*parts)
-            try:
-                found = path.resolve(strict=True)
-            except (OSError, RuntimeError, ValueError):
-                raise InputError(shown(name), "does not exist in this folder") from None
-            if found.is_relative_to(self.root.resolve()):
-                return path
+            if not (is_inside(path, self.root) and is_inside(path.parent, self.root) and _exists(path)):
+                raise InputError(shown(name), "does not exist in this folder")
+            return path
         raise InputError(shown(name), "is not the name of a file in this folder")
+
+    def has(self, path: Path) -> bool:
+        """Whether a path is a file of the folder; one that a link leads out to is not."""
+        return path.is_file() and is_inside(path, self.root)
 
     def new(self, name: str) -> Path:
         """Return the path of a file to make beside the studies; refused if its name is odd or taken."""
@@ -142,6 +144,13 @@ class Folder:
                 yield from self._studies(path, depth + 1)
             elif path.suffix in STUDY_SUFFIXES and path.is_file() and _is_study(path):
                 yield path
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that the system cannot have
+        return False
 
 
 def _is_study(path: Path) -> bool:
@@ -203,10 +212,9 @@ class Page:
 
     def _known(self, path: Path, load: Callable[[], Content]) -> Content | None:
         """Return the content of a file, read once for each state of the file; None if it is damaged."""
-        try:
-            stamp = path.stat().st_mtime_ns
-        except OSError:
+        if not self.folder.has(path):
             return None
+        stamp = path.stat().st_mtime_ns
         with self._lock:
             known = self._read.setdefault(path, _Read())
             self._read.move_to_end(path)
@@ -225,13 +233,13 @@ class Page:
     def newest(self, verbs: Collection[str]) -> list[Path]:
         """Return the saved datasets of these verbs in the folder, the newest first."""
         names = [(self.folder.answers(name), verb) for name in self.folder.studies() for verb in verbs]
-        found = [path for place, verb in names if (path := place / f"{verb}.nc").is_file()]
+        found = [path for place, verb in names if self.folder.has(path := place / f"{verb}.nc")]
         return sorted(found, key=lambda path: -path.stat().st_mtime_ns)
 
     def answered(self, study: str) -> list[str]:
         """Return the verbs that a study has saved answers of, in the order of the chain."""
         place = self.folder.answers(study)
-        return [verb.name for verb in VERBS if (place / f"{verb.name}.json").is_file()]
+        return [verb.name for verb in VERBS if self.folder.has(place / f"{verb.name}.json")]
 
 
 async def _form_of(request: Request) -> dict[str, str]:

@@ -15,7 +15,7 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
 from separatrix.errors import InputError, SeparatrixError
-from separatrix.units import Second
+from separatrix.units import Second, shown
 
 if TYPE_CHECKING:
     from separatrix.questions import Computed, Verb
@@ -147,6 +147,7 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
         verb = None if task.verb == REPORT else verb_named(task.verb)
         study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
         study = varied(study, task.values) if task.values else study
+        _refuse_links_out(task)
         task.folder.mkdir(parents=True, exist_ok=True)
 
         def compute(one: Verb) -> Computed:
@@ -163,6 +164,16 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
             return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken
+
+
+def _refuse_links_out(task: Task) -> None:
+    """Refuse to write where a link leads out of the folder of the page."""
+    from separatrix.input_files import is_inside
+
+    for path in (task.folder, *(task.folder.iterdir() if task.folder.is_dir() else ())):
+        if not is_inside(path, task.root):
+            rule = "leads out of the folder of the studies"
+            raise InputError(shown(path.name), rule, cure="Remove this link.")
 
 
 def _reported(
