@@ -92,13 +92,15 @@ def unreadable(where: str, error: OSError | ValueError) -> InputError:
 
 @contextmanager
 def noting() -> Iterator[Reading]:
-    """Note the files that are read within it, for `note` and `place` below."""
-    found = Reading()
+    """Note the files that are read within it, for `note` and `place` below; also for one around it."""
+    found, around = Reading(), _reading.get()
     token = _reading.set(found)
     try:
         yield found
     finally:
         _reading.reset(token)
+        if around is not None:
+            around.files |= found.files
 
 
 def note(path: Path, content: bytes) -> None:

@@ -9,7 +9,7 @@ import tomllib
 import zipfile
 import zlib
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -21,6 +21,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
 from separatrix.app.jobs import Jobs
+from separatrix.app.outdated import Studies
 from separatrix.errors import InputError
 from separatrix.input_files import is_inside
 from separatrix.questions import VERBS
@@ -183,6 +184,11 @@ class Page:
     jobs: Jobs
     _read: OrderedDict[Path, _Read] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
+    studies: Studies = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Have the saved studies read once."""
+        self.studies = Studies(self.folder.root)
 
     def html(self, template: str, **values: object) -> HTMLResponse:
         """Return a page or a part of one."""
@@ -193,6 +199,11 @@ class Page:
         path = place / f"{verb}.json"
         found: Document | None = self._known(path, lambda: json.loads(path.read_text(encoding="utf-8")))
         return found
+
+    def outdated(self, study: str, place: Path, verb: str, values: Mapping[str, float] | None = None) -> str:
+        """Return in one sentence why a saved answer is not that of the study as it is now; empty if it is."""
+        path = place / f"{verb}.json"
+        return self.studies.change(self.folder.study(study), path, values) if self.folder.has(path) else ""
 
     def title(self, study: str) -> str:
         """Return the title that the file of a study has; empty if it has none of its own."""

@@ -78,6 +78,7 @@ def routes(page: Page) -> APIRouter:
             name=name,
             verb=verb,
             found=found,
+            outdated=page.outdated(name, place, verb),
             text=text.read_text(encoding="utf-8") if page.folder.has(text) else "",
             plots=_plots(page.dataset(place / f"{verb}.nc") if verb == "sweep" else None, verb),
             pictures=_files(page.folder, place, verb, (".png",)),
