@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,7 +26,7 @@ from separatrix.limits.point import CriticalFriction
 from separatrix.limits.response import Side
 from separatrix.messages import noted_warnings
 from separatrix.study import Study
-from separatrix.units import format_quantity
+from separatrix.units import format_quantity, shown
 
 POCKET_FRICTION = "cage.ball_cage_friction"
 SLIDERS = (
@@ -101,10 +102,18 @@ def routes(page: Page) -> APIRouter:
 
 
 def _values(request: Request) -> dict[str, float]:
-    try:
-        return {key: float(value) for key, value in request.query_params.items() if key in SLIDERS}
-    except ValueError:
-        raise InputError("A slider", "must have a number") from None
+    values = {}
+    for key, text in request.query_params.items():
+        if key not in SLIDERS:
+            continue
+        try:
+            values[key] = float(text)
+        except ValueError:
+            values[key] = math.nan
+        if not 0.0 < values[key] < math.inf:
+            unit = parameters()[key].unit if key in parameters() else "-"
+            raise InputError(key, f"must be finite and > 0 [{unit}]", got=shown(text), cure="Write it in SI.")
+    return values
 
 
 def sliders(study: Study) -> list[Slider]:

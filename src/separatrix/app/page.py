@@ -91,6 +91,8 @@ class Folder:
 
     def new(self, name: str) -> Path:
         """Return the path of a file to make beside the studies; refused if its name is odd or taken."""
+        if name == ".toml":
+            raise InputError("The name", "must not be empty", cure="Type one, for instance my-bearing.")
         if not _NAME.fullmatch(name) or Path(name).name != name:
             cure = "Use letters, digits, spaces, dots and dashes."
             raise InputError(shown(name), "is not a name for a file", cure=cure)
