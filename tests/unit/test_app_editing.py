@@ -175,3 +175,19 @@ def test_a_slider_has_a_finite_value_above_zero(page, method, place, value):
     found = page.request(method, f"/{place}/small.toml?cage.mass={value}")
     assert (found.status_code, "cage.mass must be finite and &gt; 0 [kg]; got" in found.text) == (422, True)
     assert page.app.state.page.jobs.all() == []
+
+
+@pytest.mark.parametrize(
+    ("method", "place", "status", "words"),
+    [
+        ("GET", "/nowhere", 404, "GET /nowhere is not an address of this page."),
+        ("GET", "/static/nothing.js", 404, "GET /static/nothing.js is not an address of this page."),
+        ("GET", "/edit/small.toml", 405, "GET /edit/small.toml is not an address of this page."),
+        ("POST", "/jobs/x/cancel", 422, "got &#34;x&#34;."),
+    ],
+)
+def test_a_wrong_address_is_answered_with_a_page(page, method, place, status, words):
+    """A person reads a sentence and finds the way back."""
+    found = page.request(method, place)
+    assert (found.status_code, words in found.text) == (status, True)
+    assert "Back to the studies" in found.text
