@@ -54,6 +54,14 @@ def reading_only_in(folder: Path) -> Iterator[None]:
         _only_in.reset(token)
 
 
+def is_inside(path: Path, folder: Path) -> bool:
+    """Whether a path is in a folder, links of both followed; it need not exist."""
+    try:
+        return path.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError, ValueError):  # links in a circle
+        return False
+
+
 def size_of(path: Path, where: str) -> int:
     """Size in bytes of a regular file, links followed; no other may be opened. `where` names it in a refusal.
 
@@ -70,8 +78,8 @@ def size_of(path: Path, where: str) -> int:
         raise InputError(where, "is a folder, not a file", cure="Name a file in it.")
     if not stat.S_ISREG(found.st_mode):
         raise InputError(where, "is not a regular file", cure="Save its output to a file, and name that.")
-    folder, real = _only_in.get(), path.resolve()
-    if folder is not None and not (real.is_relative_to(folder) or real.is_relative_to(_PACKAGE)):
+    folder = _only_in.get()
+    if folder is not None and not (is_inside(path, folder) or is_inside(path, _PACKAGE)):
         raise InputError(where, "is outside the folder that may be read", cure="Copy it into the folder.")
     return found.st_size
 
@@ -84,13 +92,15 @@ def unreadable(where: str, error: OSError | ValueError) -> InputError:
 
 @contextmanager
 def noting() -> Iterator[Reading]:
-    """Note the files that are read within it, for `note` and `place` below."""
-    found = Reading()
+    """Note the files that are read within it, for `note` and `place` below; also for one around it."""
+    found, around = Reading(), _reading.get()
     token = _reading.set(found)
     try:
         yield found
     finally:
         _reading.reset(token)
+        if around is not None:
+            around.files |= found.files
 
 
 def note(path: Path, content: bytes) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import cache
 from typing import TYPE_CHECKING, Annotated, NamedTuple, get_type_hints
 
 from separatrix.errors import InputError
@@ -221,9 +222,14 @@ def parse(text: str, unit: str, where: str = "The quantity") -> float:
     return _scaled(number, scale, text, where)
 
 
+@cache
+def _hints(record: type) -> dict[str, object]:
+    return get_type_hints(record, include_extras=True)
+
+
 def unit_of(record: type, field: str) -> str:
     """SI unit in the type of a record's field; ``"-"`` for a ratio, empty for what is not a quantity."""
-    hint = str(get_type_hints(record, include_extras=True)[field])
+    hint = str(_hints(record)[field])
     found = re.search(r"Annotated\[float, '([^']+)'\]", hint)
     return found.group(1) if found else ""
 

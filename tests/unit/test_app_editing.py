@@ -160,3 +160,34 @@ def test_a_new_study_is_a_copy_or_the_template(page):
     assert (found.status_code, found.url.path) == (200, "/study/mine.toml")
     page.post("/new", data={"name": "other"})
     assert (_folder(page) / "other.toml").read_text() == template()
+
+
+def test_a_new_study_without_a_name_is_refused_in_plain_words(page):
+    """Not as a file of a name that nobody typed."""
+    found = page.post("/new", data={"name": " "}).text
+    assert "The name must not be empty. Type one, for instance my-bearing." in found
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-1", "0", "x"])
+@pytest.mark.parametrize(("method", "place"), [("POST", "refine"), ("GET", "explored")])
+def test_a_slider_has_a_finite_value_above_zero(page, method, place, value):
+    """Another one is refused with the rule, and no job begins."""
+    found = page.request(method, f"/{place}/small.toml?cage.mass={value}")
+    assert (found.status_code, "cage.mass must be finite and &gt; 0 [kg]; got" in found.text) == (422, True)
+    assert page.app.state.page.jobs.all() == []
+
+
+@pytest.mark.parametrize(
+    ("method", "place", "status", "words"),
+    [
+        ("GET", "/nowhere", 404, "GET /nowhere is not an address of this page."),
+        ("GET", "/static/nothing.js", 404, "GET /static/nothing.js is not an address of this page."),
+        ("GET", "/edit/small.toml", 405, "GET /edit/small.toml is not an address of this page."),
+        ("POST", "/jobs/x/cancel", 422, "got &#34;x&#34;."),
+    ],
+)
+def test_a_wrong_address_is_answered_with_a_page(page, method, place, status, words):
+    """A person reads a sentence and finds the way back."""
+    found = page.request(method, place)
+    assert (found.status_code, words in found.text) == (status, True)
+    assert "Back to the studies" in found.text

@@ -17,7 +17,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
 from separatrix.errors import InputError
-from separatrix.input_files import reading_only_in
+from separatrix.input_files import is_inside, reading_only_in
 from separatrix.messages import grouped, noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
@@ -88,16 +88,23 @@ def draft_path(study: Path) -> Path:
     return study.with_name(DRAFT.format(study.name))
 
 
+def has_draft(study: Path) -> bool:
+    """Whether a study has a draft; a link that leads out of its folder is none."""
+    draft = draft_path(study)
+    return draft.is_file() and is_inside(draft, study.parent)
+
+
 def current_text(study: Path) -> str:
     """Return the draft of a study, or the study if it has none."""
-    draft = draft_path(study)
-    return read_text(draft if draft.is_file() else study)
+    return read_text(draft_path(study) if has_draft(study) else study)
 
 
 def keep(study: Path, text: str) -> None:
     """Keep a text as the draft of a study; one like the study itself is none."""
     if len(text.encode()) > MOST_BYTES:
         raise InputError(study.name, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
+    if not has_draft(study):
+        draft_path(study).unlink(missing_ok=True)  # a link in its place
     if study.is_file() and text == read_text(study):
         draft_path(study).unlink(missing_ok=True)
     else:
@@ -106,9 +113,8 @@ def keep(study: Path, text: str) -> None:
 
 def save(study: Path) -> None:
     """Put the draft in the place of the study."""
-    draft = draft_path(study)
-    if draft.is_file():
-        draft.replace(study)
+    if has_draft(study):
+        draft_path(study).replace(study)
 
 
 def save_to_run(study: Path, root: Path) -> None:
@@ -120,8 +126,7 @@ def save_to_run(study: Path, root: Path) -> None:
 
 def check(study: Path, root: Path) -> Checked:
     """Read the draft of a study as every verb would, without files outside `root`."""
-    draft = draft_path(study)
-    path = draft if draft.is_file() else study
+    path = draft_path(study) if has_draft(study) else study
     try:
         text = read_text(path)
     except InputError as error:

@@ -139,7 +139,8 @@ def edited_by(text: str, sent: dict[str, str]) -> str:
 
 
 def _summary(page: Page, name: str) -> dict[str, object]:
-    ranked = page.document(page.folder.answers(name), "rank") or {}
+    place, answers = page.folder.answers(name), page.answered(name)
+    ranked = page.document(place, "rank") or {}
     overall = ranked.get("overall") or []
     counts = {
         verdict: sum(row.get("verdict") == verdict for row in overall) for verdict in ("STABLE", "UNSTABLE")
@@ -148,11 +149,12 @@ def _summary(page: Page, name: str) -> dict[str, object]:
     return {
         "name": name,
         "title": page.title(name) or ranked.get("title", ""),
-        "answers": page.answered(name),
+        "answers": answers,
+        "outdated": {verb: page.outdated(name, place, verb) for verb in answers},
         "best": best,
         "counts": counts,
         "count": len(overall),
-        "has_draft": draft.draft_path(page.folder.study(name)).is_file(),
+        "has_draft": draft.has_draft(page.folder.study(name)),
     }
 
 
@@ -163,7 +165,7 @@ def _editor(name: str, path: Path, checked: draft.Checked | None, problem: str =
         "checked": checked,
         "sections": form(checked) if checked else (),
         "problem": problem if checked else "",
-        "has_draft": checked is not None and draft.draft_path(path).is_file(),
+        "has_draft": checked is not None and draft.has_draft(path),
     }
 
 

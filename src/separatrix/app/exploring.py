@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,15 +20,13 @@ from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError
 from separatrix.figures.hover import stability_plot
 from separatrix.figures.style import VERMILION
-from separatrix.input_files import reading_only_in
 from separatrix.limits.curve import restitution_threshold
 from separatrix.limits.map_records import parameters, value_in, varied
 from separatrix.limits.point import CriticalFriction
 from separatrix.limits.response import Side
 from separatrix.messages import noted_warnings
 from separatrix.study import Study
-from separatrix.study_file import read_study
-from separatrix.units import format_quantity
+from separatrix.units import format_quantity, shown
 
 POCKET_FRICTION = "cage.ball_cage_friction"
 SLIDERS = (
@@ -53,13 +52,22 @@ class Slider(NamedTuple):
     text: str
 
 
+class Curve(NamedTuple):
+    """A finished curve: where it is, the values that its study had besides, and why it is outdated, if so."""
+
+    place: Path
+    verb: str
+    values: dict[str, float]
+    outdated: str
+
+
 def routes(page: Page) -> APIRouter:
     """Return the routes of the sliders."""
     router = APIRouter()
 
     @router.get("/explore/{name:path}", response_class=HTMLResponse)
     def explore(name: str) -> Response:
-        study = _study(page, name)
+        study = page.studies.read(page.folder.study(name))
         if study.cage is None:
             raise InputError(f"{name}: the sliders", "need the section [cage]", cure="Add it to the inputs.")
         answers = page.answered(name)
@@ -69,10 +77,11 @@ def routes(page: Page) -> APIRouter:
     @router.get("/explored/{name:path}")
     def explored(request: Request, name: str) -> Response:
         values = _values(request)
+        study = page.studies.read(page.folder.study(name))
+        best = _curve(page, name, {key: value for key, value in values.items() if key in OF_THE_CURVE})
         with draft.ONE_AT_A_TIME, noted_warnings():
-            study = _study(page, name)
             changed = varied(study, values) if values else study
-            found = _found(page, name, solve(changed), values)
+            found = _found(page, solve(changed), values, best)
         return JSONResponse(found)
 
     @router.post("/refine/{name:path}")
@@ -92,16 +101,19 @@ def routes(page: Page) -> APIRouter:
     return router
 
 
-def _study(page: Page, name: str) -> Study:
-    with reading_only_in(page.folder.root):
-        return read_study(page.folder.study(name))
-
-
 def _values(request: Request) -> dict[str, float]:
-    try:
-        return {key: float(value) for key, value in request.query_params.items() if key in SLIDERS}
-    except ValueError:
-        raise InputError("A slider", "must have a number") from None
+    values = {}
+    for key, text in request.query_params.items():
+        if key not in SLIDERS:
+            continue
+        try:
+            values[key] = float(text)
+        except ValueError:
+            values[key] = math.nan
+        if not 0.0 < values[key] < math.inf:
+            unit = parameters()[key].unit if key in parameters() else "-"
+            raise InputError(key, f"must be finite and > 0 [{unit}]", got=shown(text), cure="Write it in SI.")
+    return values
 
 
 def sliders(study: Study) -> list[Slider]:
@@ -131,15 +143,29 @@ def _place(page: Page, name: str, values: dict[str, float]) -> Path:
     return page.folder.answers(name) / EXPLORED / mark
 
 
-def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) -> dict[str, object]:
+def _curve(page: Page, name: str, values: dict[str, float]) -> Curve | None:
+    """Return the finished curve that fits best: of these values, of the study, or an outdated one."""
+    own = page.folder.answers(name)
+    places = [(own, verb, dict[str, float]()) for verb in ("stability", "rank")]
+    if values:
+        places.insert(0, (_place(page, name, values), "stability", values))
+    found = [
+        Curve(place, verb, its, page.outdated(name, place, verb, its))
+        for place, verb, its in places
+        if page.folder.has(place / f"{verb}.nc") and page.document(place, verb) is not None
+    ]
+    current = [one for one in found if not one.outdated]
+    return next(iter([*current, *(one for one in found if not one.values)]), None)
+
+
+def _found(page: Page, solution: Solution, values: dict[str, float], best: Curve | None) -> dict[str, object]:
     """Return eta, the margins on the finished curve that fits best, and the figure."""
     study, eta = solution.study, solution.restitution.restitution_factor
     of_curve = {key: value for key, value in values.items() if key in OF_THE_CURVE}
-    own, other = page.folder.answers(name), _place(page, name, of_curve)
-    is_refined = bool(of_curve) and (other / "stability.nc").is_file()
-    places = [*([(other, "stability")] if is_refined else []), (own, "stability"), (own, "rank")]
-    curves = ((page.dataset(at / f"{verb}.nc"), page.document(at, verb)) for at, verb in places)
-    data, document = next(((a, b) for a, b in curves if a is not None and b is not None), (None, None))
+    outdated = best.outdated if best else ""
+    is_refined = best is not None and best.values == of_curve and not outdated
+    data = page.dataset(best.place / f"{best.verb}.nc") if best else None
+    document = page.document(best.place, best.verb) if best else None
     friction, threshold = _friction(solution), None
     if document is not None and friction is not None:
         rows = document.get("stability", document)["curve"]
@@ -154,7 +180,10 @@ def _found(page: Page, name: str, solution: Solution, values: dict[str, float]) 
         "friction": "not known" if friction is None else f"{friction:.3g}",
         "threshold": "1 (not reached)" if threshold is not None and threshold >= 1.0 else words,
         "margin": "not known" if threshold is None else f"{threshold - eta:+.2f}",
-        "is_refined": not of_curve or is_refined,
+        "is_refined": is_refined,
+        "is_to_refine": best is not None and bool(of_curve) and not is_refined,
+        "is_outdated": bool(outdated),
+        "outdated": outdated,
         "has_curve": data is not None,
         "whose": ", ".join(one for one in (made_of.name if made_of else "", environment) if one),
         "figure": None if data is None else _figure(data, eta, friction),

@@ -12,7 +12,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from separatrix.app.worker import CANCEL, END, Task, work
+from separatrix.app.worker import END, Cancel, Task, work
 from separatrix.errors import InputError
 
 WAITING, RUNNING = "waiting", "running"
@@ -128,7 +128,7 @@ class Jobs:
                 self._change(number, state="cancelled", message="Cancelled before it began.")
             elif self._pipe is not None:
                 self._change(number, message="Cancelling: the runs in hand are finished first.")
-                self._pipe.send(CANCEL)
+                self._pipe.send(Cancel(number))
 
     def forget_ended(self) -> None:
         """Drop the jobs that have ended from the list; their answers stay."""

@@ -19,6 +19,7 @@ from separatrix.friction.file import friction_text
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
+from separatrix.input_files import is_inside
 from separatrix.messages import noted_warnings
 from separatrix.present.tribometer import in_words, page_data
 from separatrix.units import format_number
@@ -36,18 +37,23 @@ def routes(page: Page) -> APIRouter:
     place = page.folder.root / LOGS
 
     def uploads() -> Folder:
+        if not is_inside(place, page.folder.root):
+            raise InputError(LOGS, "leads out of the folder of the studies", cure="Remove this link.")
         place.mkdir(exist_ok=True)
         return Folder(root=place)
 
+    def names() -> list[str]:
+        return _names(Folder(root=place)) if is_inside(place, page.folder.root) else []
+
     @router.get("/logs", response_class=HTMLResponse)
     def logs() -> Response:
-        return page.html("logs.html", names=_names(place))
+        return page.html("logs.html", names=names())
 
     @router.put("/logs/{name}", response_class=HTMLResponse)
     async def drop(name: str, request: Request) -> Response:
         content = await request.body()
         await run_in_threadpool(_keep, uploads(), name, content)
-        return page.html("log_list.html", names=_names(place))
+        return page.html("log_list.html", names=names())
 
     @router.get("/log/{name}", response_class=HTMLResponse)
     def log(name: str, run_in: str = "") -> Response:
@@ -68,7 +74,7 @@ def routes(page: Page) -> APIRouter:
         path = page.folder.new(f"{sent.get('name', '').strip().removesuffix('.toml')}.toml")
         stated = {key: words for key in STATED if (words := sent.get(key, "").strip())}
         given = ColumnMap(test=stated)
-        files = [uploads().inside(name) for name in _names(place)]
+        files = [uploads().inside(name) for name in names()]
         found = _reduced(files, "", complete=True, column_map=given)
         if found.friction_tests is None:
             cure = "State material, counterface and medium beside the name."
@@ -79,17 +85,17 @@ def routes(page: Page) -> APIRouter:
     return router
 
 
-def _names(place: Path) -> list[str]:
-    if not place.is_dir():
+def _names(folder: Folder) -> list[str]:
+    if not folder.root.is_dir():
         return []
-    files = (path for path in place.iterdir() if path.is_file() and not path.name.startswith("."))
+    files = (path for path in folder.root.iterdir() if folder.has(path) and not path.name.startswith("."))
     return sorted(path.name for path in files if path.suffix.casefold() not in OTHERS)
 
 
 def _keep(folder: Folder, name: str, content: bytes) -> None:
     """Keep a log that was dropped; one of the same name and content is there already."""
     known = folder.root / name
-    if "/" not in name and known.is_file() and known.read_bytes() == content:
+    if "/" not in name and folder.has(known) and known.read_bytes() == content:
         return
     folder.new(name).write_bytes(content)
 

@@ -9,7 +9,7 @@ import tomllib
 import zipfile
 import zlib
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -21,7 +21,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
 from separatrix.app.jobs import Jobs
+from separatrix.app.outdated import Studies
 from separatrix.errors import InputError
+from separatrix.input_files import is_inside
 from separatrix.questions import VERBS
 from separatrix.toml_files import read_text
 from separatrix.units import format_quantity, printable, shown
@@ -78,16 +80,19 @@ class Folder:
         is_plain = bool(name) and not any(c in name for c in "\0\\:") and "" not in parts
         if is_plain and not any(part.startswith(".") for part in parts):
             path = self.root.joinpath(*parts)
-            try:
-                found = path.resolve(strict=True)
-            except (OSError, RuntimeError, ValueError):
-                raise InputError(shown(name), "does not exist in this folder") from None
-            if found.is_relative_to(self.root.resolve()):
-                return path
+            if not (is_inside(path, self.root) and is_inside(path.parent, self.root) and _exists(path)):
+                raise InputError(shown(name), "does not exist in this folder")
+            return path
         raise InputError(shown(name), "is not the name of a file in this folder")
+
+    def has(self, path: Path) -> bool:
+        """Whether a path is a file of the folder; one that a link leads out to is not."""
+        return path.is_file() and is_inside(path, self.root)
 
     def new(self, name: str) -> Path:
         """Return the path of a file to make beside the studies; refused if its name is odd or taken."""
+        if name == ".toml":
+            raise InputError("The name", "must not be empty", cure="Type one, for instance my-bearing.")
         if not _NAME.fullmatch(name) or Path(name).name != name:
             cure = "Use letters, digits, spaces, dots and dashes."
             raise InputError(shown(name), "is not a name for a file", cure=cure)
@@ -144,6 +149,13 @@ class Folder:
                 yield path
 
 
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that the system cannot have
+        return False
+
+
 def _is_study(path: Path) -> bool:
     """Whether a file begins as a study does, or has its sheets; a library or a friction file does not."""
     if path.suffix != ".toml":
@@ -174,6 +186,11 @@ class Page:
     jobs: Jobs
     _read: OrderedDict[Path, _Read] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
+    studies: Studies = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Have the saved studies read once."""
+        self.studies = Studies(self.folder.root)
 
     def html(self, template: str, **values: object) -> HTMLResponse:
         """Return a page or a part of one."""
@@ -184,6 +201,11 @@ class Page:
         path = place / f"{verb}.json"
         found: Document | None = self._known(path, lambda: json.loads(path.read_text(encoding="utf-8")))
         return found
+
+    def outdated(self, study: str, place: Path, verb: str, values: Mapping[str, float] | None = None) -> str:
+        """Return in one sentence why a saved answer is not that of the study as it is now; empty if it is."""
+        path = place / f"{verb}.json"
+        return self.studies.change(self.folder.study(study), path, values) if self.folder.has(path) else ""
 
     def title(self, study: str) -> str:
         """Return the title that the file of a study has; empty if it has none of its own."""
@@ -203,10 +225,9 @@ class Page:
 
     def _known(self, path: Path, load: Callable[[], Content]) -> Content | None:
         """Return the content of a file, read once for each state of the file; None if it is damaged."""
-        try:
-            stamp = path.stat().st_mtime_ns
-        except OSError:
+        if not self.folder.has(path):
             return None
+        stamp = path.stat().st_mtime_ns
         with self._lock:
             known = self._read.setdefault(path, _Read())
             self._read.move_to_end(path)
@@ -225,13 +246,13 @@ class Page:
     def newest(self, verbs: Collection[str]) -> list[Path]:
         """Return the saved datasets of these verbs in the folder, the newest first."""
         names = [(self.folder.answers(name), verb) for name in self.folder.studies() for verb in verbs]
-        found = [path for place, verb in names if (path := place / f"{verb}.nc").is_file()]
+        found = [path for place, verb in names if self.folder.has(path := place / f"{verb}.nc")]
         return sorted(found, key=lambda path: -path.stat().st_mtime_ns)
 
     def answered(self, study: str) -> list[str]:
         """Return the verbs that a study has saved answers of, in the order of the chain."""
         place = self.folder.answers(study)
-        return [verb.name for verb in VERBS if (place / f"{verb.name}.json").is_file()]
+        return [verb.name for verb in VERBS if self.folder.has(place / f"{verb.name}.json")]
 
 
 async def _form_of(request: Request) -> dict[str, str]:

@@ -12,7 +12,7 @@ from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from markupsafe import Markup
 
 from separatrix.app import draft
-from separatrix.app.page import ANSWER_SUFFIXES, Form, Page
+from separatrix.app.page import ANSWER_SUFFIXES, Folder, Form, Page
 from separatrix.app.plotly import spec
 from separatrix.app.worker import REPORT
 from separatrix.comparing.pair import compared
@@ -25,6 +25,7 @@ from separatrix.figures.scene import scene
 from separatrix.figures.space import is_in_space
 from separatrix.figures.space_film import view as space_view
 from separatrix.figures.style import OUTCOMES, study_of
+from separatrix.input_files import reading_only_in
 from separatrix.limits.map_records import KICK, RESTITUTION
 from separatrix.questions import verb_named
 from separatrix.units import Array, format_number, printable, shown
@@ -77,10 +78,11 @@ def routes(page: Page) -> APIRouter:
             name=name,
             verb=verb,
             found=found,
-            text=text.read_text(encoding="utf-8") if text.is_file() else "",
+            outdated=page.outdated(name, place, verb),
+            text=text.read_text(encoding="utf-8") if page.folder.has(text) else "",
             plots=_plots(page.dataset(place / f"{verb}.nc") if verb == "sweep" else None, verb),
-            pictures=_files(place, verb, (".png",)),
-            files=_files(place, verb, ANSWER_SUFFIXES),
+            pictures=_files(page.folder, place, verb, (".png",)),
+            files=_files(page.folder, place, verb, ANSWER_SUFFIXES),
             folder=page.folder.name(place),
             environment=environment,
             answers=page.answered(name),
@@ -158,7 +160,7 @@ def routes(page: Page) -> APIRouter:
     @router.get("/report/{name:path}", response_class=HTMLResponse)
     def written(name: str) -> Response:
         place = page.folder.answers(name)
-        files = [file for file in ("report.html", "report.pdf") if (place / file).is_file()]
+        files = [file for file in ("report.html", "report.pdf") if page.folder.has(place / file)]
         if not files:
             cure = "Make it on the page of the study."
             raise InputError(f"{name}: report", "is not written yet", cure=cure)
@@ -169,7 +171,7 @@ def routes(page: Page) -> APIRouter:
         names = [name for name in page.folder.studies() if page.answered(name)]
         found: dict[str, object] = {"verbs": [], "verb": verb, "comparison": None}
         if first and second:
-            found = _compared(page.folder.answers(first), page.folder.answers(second), verb)
+            found = _compared(page, first, second, verb)
         return page.html("compare.html", names=names, first=first, second=second, **found)
 
     return router
@@ -184,14 +186,14 @@ def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
     return [*PLOTS.get(verb, {})]
 
 
-def _files(place: Path, verb: str, suffixes: tuple[str, ...]) -> list[str]:
+def _files(folder: Folder, place: Path, verb: str, suffixes: tuple[str, ...]) -> list[str]:
     if not place.is_dir():
         return []
     stems = FIGURES_OF.get(verb, (f"{verb}-",))
     return sorted(
         path.name
         for path in place.iterdir()
-        if path.suffix in suffixes and (path.stem == verb or path.stem.startswith(stems)) and path.is_file()
+        if path.suffix in suffixes and (path.stem == verb or path.stem.startswith(stems)) and folder.has(path)
     )
 
 
@@ -253,16 +255,16 @@ def _digits(values: Array) -> object:
     return found
 
 
-def _compared(first: Path, second: Path, verb: str) -> dict[str, object]:
-    """Return the comparison of two folders of answers, by one verb that both have."""
-    for place in (first, second):
-        if not place.is_dir():
-            raise InputError(place.name, "has no answers yet", cure="Run a verb of it.")
-    pair = [read_answers(place) for place in (first, second)]
+def _compared(page: Page, first: str, second: str, verb: str) -> dict[str, object]:
+    """Return the comparison of the answers to two studies, by one verb that both have."""
+    for name in (first, second):
+        if not page.answered(name):
+            raise InputError(name, "has no answers yet", cure="Run a verb of it.")
+    with reading_only_in(page.folder.root):
+        pair = [read_answers(page.folder.answers(name)) for name in (first, second)]
     shared = [one for one in VERBS if all(one in found for found in pair)]
     if not shared:
-        names = f"{first.name} and {second.name}"
-        raise InputError(names, "have no answer of one verb", cure="Run one of both.")
+        raise InputError(f"{first} and {second}", "have no answer of one verb", cure="Run one of both.")
     chosen = verb if verb in shared else shared[0]
     found = compared(pair[0][chosen], pair[1][chosen])
     own = found.environment or ""

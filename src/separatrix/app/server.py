@@ -17,8 +17,10 @@ from urllib.parse import parse_qs
 
 import uvicorn
 from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
+from starlette.exceptions import HTTPException
 
 from separatrix.app import editing, exploring, logs, results
 from separatrix.app.jobs import Jobs
@@ -28,6 +30,7 @@ from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.figures.space_film import PAGE_PARTS
 from separatrix.study_file import read_study
+from separatrix.units import printable, shown
 
 HOST = "127.0.0.1"
 MOST_CONNECTIONS = 200
@@ -98,13 +101,26 @@ def application(root: Path) -> FastAPI:
     for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
         app.include_router(routes(page))
 
+    def words(request: Request, faults: list[str], status: HTTPStatus) -> Response:
+        template = "refusal.html" if "hx-request" in request.headers else "refused.html"
+        found = page.html(template, faults=faults)
+        found.status_code = int(status)
+        return found
+
     @app.exception_handler(SeparatrixError)
     def refused(request: Request, error: SeparatrixError) -> Response:
         problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
-        template = "refusal.html" if "hx-request" in request.headers else "refused.html"
-        found = page.html(template, faults=[str(one) for one in problems])
-        found.status_code = 422
-        return found
+        return words(request, [str(one) for one in problems], HTTPStatus.UNPROCESSABLE_ENTITY)
+
+    @app.exception_handler(HTTPException)
+    def unknown(request: Request, error: HTTPException) -> Response:
+        place = f"{request.method} {printable(request.url.path, 100)}"
+        return words(request, [f"{place} is not an address of this page."], HTTPStatus(error.status_code))
+
+    @app.exception_handler(RequestValidationError)
+    def invalid(request: Request, error: RequestValidationError) -> Response:
+        faults = [f"{one['loc'][-1]}: {one['msg']}; got {shown(one['input'])}." for one in error.errors()]
+        return words(request, faults, HTTPStatus.UNPROCESSABLE_ENTITY)
 
     @app.get("/static/plotly.min.js")
     def plotly() -> FileResponse:

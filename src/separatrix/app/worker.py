@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import signal
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -12,10 +13,11 @@ from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from pathlib import Path
 from queue import SimpleQueue
+from types import FrameType
 from typing import TYPE_CHECKING
 
 from separatrix.errors import InputError, SeparatrixError
-from separatrix.units import Second
+from separatrix.units import Second, shown
 
 if TYPE_CHECKING:
     from separatrix.questions import Computed, Verb
@@ -24,8 +26,11 @@ if TYPE_CHECKING:
 REPORT = "report"
 """In the place of a verb: the report of a study."""
 
-CANCEL, END = "cancel", "end"
-"""What the page may send besides a task."""
+END = "end"
+"""What the page sends when it is closed."""
+
+AGAIN = 0.05
+"""Time after which a cancel that came in the middle of an import is tried again [s]."""
 
 INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
 
@@ -54,6 +59,13 @@ class Task:
     values: Mapping[str, float] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class Cancel:
+    """A cancel of one job, which has begun or not, and of no other."""
+
+    number: int
+
+
 class Reporter:
     """Reports how far a long job is, and what time it will take."""
 
@@ -75,11 +87,33 @@ class Reporter:
 def work(pipe: Connection) -> None:
     """Compute tasks from a pipe until it ends; the body of the process.
 
-    A cancel interrupts the task in hand as Ctrl-C would: what was finished is kept and answered. A fault of
-    ours ends the process with its place in the terminal, and the page begins another one.
+    A cancel interrupts its own task as Ctrl-C would, also before it began: what was finished is kept and
+    answered. It waits for the end of an import, since a module that was cut off may never load again. A
+    fault of ours ends the process with its place in the terminal, and the page begins another one.
     """
     waiting: SimpleQueue[Task | None] = SimpleQueue()
     in_hand: list[int] = []
+    cancelled: set[int] = set()
+    is_ended = threading.Event()
+
+    def break_in(number: int) -> None:
+        if number in in_hand:
+            _thread.interrupt_main()
+
+    def interrupt(_: int, frame: FrameType | None) -> None:
+        if is_importing(frame):
+            for number in in_hand:
+                threading.Timer(AGAIN, break_in, (number,)).start()
+        else:
+            refuse_cancelled()
+
+    def refuse_cancelled() -> None:
+        for number in in_hand:
+            if is_ended.is_set() or number in cancelled:
+                cancelled.discard(number)
+                raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
 
     def listen() -> None:
         while True:
@@ -90,11 +124,15 @@ def work(pipe: Connection) -> None:
             if isinstance(message, Task):
                 waiting.put(message)
                 continue
-            if in_hand:
-                _thread.interrupt_main()
-            if message == END:
-                waiting.put(None)
-                return
+            if isinstance(message, Cancel):
+                cancelled.add(message.number)
+                break_in(message.number)
+                continue
+            is_ended.set()
+            for number in in_hand:
+                break_in(number)
+            waiting.put(None)
+            return
 
     threading.Thread(target=listen, daemon=True).start()
 
@@ -105,30 +143,35 @@ def work(pipe: Connection) -> None:
             in_hand.clear()
 
     while True:
-        try:
-            task = waiting.get()
-            if task is None:
-                return
-            _compute(task, in_hand, partial(send, task.number))
-        except KeyboardInterrupt:  # a cancel of a task that had just ended
-            in_hand.clear()
+        task = waiting.get()
+        if task is None:
+            return
+        _compute(task, in_hand, refuse_cancelled, partial(send, task.number))
 
 
-def _compute(task: Task, in_hand: list[int], send: Send) -> None:
-    in_hand.append(task.number)
-    send(state="running")
+def is_importing(frame: FrameType | None) -> bool:
+    """Whether a module is being imported at a place in the program, or in what called it."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None], send: Send) -> None:
     try:
+        in_hand.append(task.number)
+        refuse_cancelled()  # one that was cancelled before it began
+        send(state="running")
         state, message = _answered(task, send)
     except KeyboardInterrupt:
         state, message = "cancelled", "Cancelled before anything was finished."
     except SeparatrixError as error:
         problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
         state, message = "refused", "\n".join(str(one) for one in problems)
-    in_hand.clear()
-    try:
-        send(state=state, message=message)
-    except KeyboardInterrupt:  # as above; the page must receive the end
-        send(state=state, message=message)
+    finally:
+        in_hand.clear()  # nothing interrupts the end
+    send(state=state, message=message)
 
 
 def _answered(task: Task, send: Send) -> tuple[str, str]:
@@ -147,6 +190,7 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
         verb = None if task.verb == REPORT else verb_named(task.verb)
         study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
         study = varied(study, task.values) if task.values else study
+        _refuse_links_out(task)
         task.folder.mkdir(parents=True, exist_ok=True)
 
         def compute(one: Verb) -> Computed:
@@ -163,6 +207,16 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
             return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken
+
+
+def _refuse_links_out(task: Task) -> None:
+    """Refuse to write where a link leads out of the folder of the page."""
+    from separatrix.input_files import is_inside
+
+    for path in (task.folder, *(task.folder.iterdir() if task.folder.is_dir() else ())):
+        if not is_inside(path, task.root):
+            rule = "leads out of the folder of the studies"
+            raise InputError(shown(path.name), rule, cure="Remove this link.")
 
 
 def _reported(

@@ -36,9 +36,10 @@ document.addEventListener("DOMContentLoaded", () => {
 
   function say(found) {
     if (!found.has_curve) state.textContent = "There is no curve yet: run stability or rank, then margin and threshold appear.";
-    else if (found.is_refined) state.textContent = "The curve belongs to these values.";
+    else if (!found.is_to_refine) state.textContent = found.outdated || "The curve belongs to these values.";
     else {
-      state.textContent = "The curve is that of the study; it is computed for these values in the background.";
+      const whose = found.outdated || "The curve is that of the study.";
+      state.textContent = `${whose} It is computed for these values in the background.`;
       clearTimeout(refining);
       const values = String(query());
       if (!begun.has(values)) refining = setTimeout(refine, PAUSE, values);

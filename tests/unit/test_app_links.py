@@ -1,0 +1,155 @@
+"""A link out of the page's folder is answered like a missing file; nothing is written through it."""
+
+import json
+import shutil
+
+import pytest
+from fastapi.testclient import TestClient
+from test_cli_answers import SMALL
+
+from separatrix.app.server import application
+from separatrix.app.worker import Task, _answered
+from separatrix.errors import InputError
+from separatrix.ledger import NAME
+
+NEIGHBOUR = "the study of a neighbour"
+ANSWER = {
+    "title": NEIGHBOUR,
+    "warnings": [],
+    "overall": [{"rank": 1, "name": NEIGHBOUR, "verdict": "STABLE"}],
+}
+
+
+@pytest.fixture
+def outside(tmp_path):
+    """A folder beside that of the page, with files as the page has them."""
+    place = tmp_path / "outside"
+    (place / "small").mkdir(parents=True)
+    (place / "small" / "rank.json").write_text(json.dumps(ANSWER))
+    for name in ("rank.txt", "rank.nc", "report.html", "log.csv", "draft.toml"):
+        (place / "small" / name).write_text(f"# {NEIGHBOUR}\n")
+    return place / "small"
+
+
+@pytest.fixture
+def page(tmp_path):
+    """The page of a folder with one study, without its guard."""
+    root = tmp_path / "studies"
+    root.mkdir()
+    (root / "small.toml").write_text(SMALL)
+    with TestClient(application(root)) as client:
+        yield client
+
+
+def root_of(page):
+    """Return the folder of a page."""
+    return page.app.state.root
+
+
+def before(folder):
+    """Return the content of each file of a folder."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def linked(page, outside, how):
+    """Make the answers a link, or each file in them."""
+    place = root_of(page) / "small"
+    if how == "folder":
+        place.symlink_to(outside)
+        return
+    place.mkdir()
+    for path in outside.iterdir():
+        (place / path.name).symlink_to(path)
+
+
+@pytest.mark.parametrize("how", ["folder", "files"])
+@pytest.mark.parametrize(
+    "place",
+    [
+        "/",
+        "/study/small.toml",
+        "/answer/rank/small.toml",
+        "/report/small.toml",
+        "/compare",
+        "/file/small/rank.json",
+        "/compare?first=small.toml&second=small.toml&verb=rank",
+        "/plot/rank/curve/small.toml",
+    ],
+)
+def test_answers_outside_are_not_shown(page, outside, how, place):
+    """Neither in the list, nor in a page of their own; and the list does not fail over them."""
+    missing = page.get(place)
+    linked(page, outside, how)
+    found = page.get(place)
+    assert NEIGHBOUR not in found.text
+    assert found.status_code == missing.status_code
+    assert "rank.json" not in found.text.replace("small/rank.json", "")
+
+
+@pytest.mark.parametrize("how", ["folder", "files"])
+def test_answers_outside_are_not_read_ahead(page, outside, how):
+    """They are left out of the newest."""
+    linked(page, outside, how)
+    assert page.app.state.page.newest(("rank",)) == []
+
+
+def test_a_study_beside_a_way_back_in_is_not_reached(page, outside):
+    """A link outside that leads to a study inside has its draft and answers outside."""
+    (outside / "back.toml").symlink_to(root_of(page) / "small.toml")
+    (root_of(page) / "linked").symlink_to(outside)
+    assert page.get("/study/linked/back.toml").status_code == 422
+
+
+def test_a_draft_outside_is_neither_shown_nor_written(page, outside):
+    """An edit takes the place of the link."""
+    draft, kept = root_of(page) / ".small.toml.draft", before(outside)
+    draft.symlink_to(outside / "draft.toml")
+    found = page.get("/study/small.toml").text
+    assert NEIGHBOUR not in found
+    assert "unsaved edits" not in page.get("/").text
+    version = found.partition('name="version" value="')[2][:16]
+    page.post("/edit/small.toml", data={"version": version, "text": SMALL + "# mine\n"})
+    assert before(outside) == kept
+    assert "# mine" in draft.read_text()
+
+
+def test_a_folder_of_logs_outside_is_neither_listed_nor_written(page, outside):
+    """Dropping a log is refused."""
+    kept = before(outside)
+    (root_of(page) / "logs").symlink_to(outside)
+    assert "log.csv" not in page.get("/logs").text
+    found = page.put("/logs/new.csv", content=b"a")
+    assert (found.status_code, "leads out of the folder" in found.text) == (422, True)
+    assert page.get("/log/log.csv").status_code == 422
+    assert before(outside) == kept
+
+
+def test_a_log_outside_is_not_listed(page, outside):
+    """Nor is its content compared with what is dropped."""
+    (root_of(page) / "logs").mkdir()
+    (root_of(page) / "logs" / "log.csv").symlink_to(outside / "log.csv")
+    assert "log.csv" not in page.get("/logs").text
+    assert page.put("/logs/log.csv", content=(outside / "log.csv").read_bytes()).status_code == 422
+
+
+@pytest.mark.parametrize("inside", ["", "points", "explored", f"{NAME}"])
+def test_nothing_is_written_through_a_link(page, outside, inside):
+    """Whether the folder of the answers, one in it, or a file in it leads out: the job is refused first."""
+    root, kept = root_of(page), before(outside)
+    place = root / "small"
+    if inside:
+        place.mkdir()
+    (place / inside).symlink_to(outside if "." not in inside else outside / "new")
+    folder = place / inside / "mark" if inside in ("points", "explored") else place
+    task = Task(number=1, verb="bearing", study=root / "small.toml", folder=folder, root=root)
+    with pytest.raises(InputError, match="leads out of the folder of the studies"):
+        _answered(task, lambda **_: None)
+    assert before(outside) == kept
+    assert not (outside / "mark").exists()
+
+
+def test_a_link_to_answers_inside_is_followed(page, outside):
+    """Only what leads out is missing."""
+    shutil.copytree(outside, root_of(page) / "other")
+    (root_of(page) / "small").symlink_to(root_of(page) / "other")
+    assert NEIGHBOUR in page.get("/").text

@@ -1,0 +1,53 @@
+"""A cancel of the page ends its own job only, at whatever moment it comes."""
+
+import importlib.util
+import sys
+import time
+
+from test_cli_answers import SMALL
+
+from separatrix.app.jobs import Jobs
+from separatrix.app.worker import is_importing
+
+PATIENCE = 120.0
+"""Time for a job on a loaded machine [s]."""
+
+
+def ended(queue, number):
+    """Wait for the end of a job; return it."""
+    until = time.monotonic() + PATIENCE
+    while (job := queue.job(number)).is_active:
+        assert time.monotonic() < until, job
+        time.sleep(0.02)
+    return job
+
+
+def test_a_cancel_at_once_ends_its_job_and_no_other(tmp_path):
+    """Before the process has begun, in its first imports, or as the job ends: the next one finishes."""
+    study = tmp_path / "small.toml"
+    study.write_text(SMALL)
+    queue = Jobs(tmp_path)
+    try:
+        for wait in (0.0, 0.3, 0.6, 1.2):
+            asked = {"study": study, "folder": tmp_path / f"after-{wait}", "name": "small.toml"}
+            first = queue.ask("bearing", **asked)
+            time.sleep(wait)
+            queue.cancel(first.number)
+            state = ended(queue, first.number).state
+            assert state == "cancelled" or (wait > 0.0 and state == "finished")
+            second = queue.ask("bearing", **asked)
+            found = ended(queue, second.number)
+            assert found.state == "finished", found
+    finally:
+        queue.close()
+
+
+def test_an_import_is_seen_from_within(tmp_path):
+    """An interrupt would leave a module half made."""
+    path = tmp_path / "slow_module.py"
+    path.write_text("import sys\nframe = sys._getframe()\n")
+    made = importlib.util.spec_from_file_location("slow_module", path)
+    module = importlib.util.module_from_spec(made)
+    made.loader.exec_module(module)
+    assert is_importing(module.frame)
+    assert not is_importing(sys._getframe())
