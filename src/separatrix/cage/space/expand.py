@@ -40,6 +40,8 @@ from separatrix.cage.space.records import (
     NONE,
     PRESSED,
     PUSH,
+    RIM_COS,
+    RIM_SIN,
     RIMS,
     RUB_Q,
     RUB_R,
@@ -62,7 +64,7 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
-from separatrix.cage.space.rim import expand_rim
+from separatrix.cage.space.rim import expand_rim, is_on_round
 from separatrix.cage.step import LONGEST, PRECISION
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
@@ -215,7 +217,22 @@ def step_length(p: Numbers, parts: Parts) -> float:
         h = min(h, (scale / last) ** (1.0 / n))
     if before > 0.0:
         h = min(h, (scale / before) ** (1.0 / (n - 1)))
+    walls = parts.listed[CONTACTS] - parts.listed[RIMS]
+    for a in range(walls, parts.listed[CONTACTS]):
+        if is_on_round(p, parts, parts.touching[a]):
+            e = parts.rim[parts.touching[a]]
+            last = abs(e[n, RIM_SIN]) + abs(e[n, RIM_COS])
+            before = abs(e[n - 1, RIM_SIN]) + abs(e[n - 1, RIM_COS])
+            if last > 0.0:
+                h = min(h, (ANGLE / last) ** (1.0 / n))
+            if before > 0.0:
+                h = min(h, (ANGLE / before) ** (1.0 / (n - 1)))
     return float(h)
+
+
+ANGLE = 1e-8
+"""Last two terms of the place on a round edge [rad]: near its evolute the nearest point swings fast, and
+neither force nor depth shows it."""
 
 
 @inlined_kernel

@@ -187,6 +187,8 @@ def parts_of(cage: PlanarCage) -> Parts:
         strip_stiffness=K * T * T / M,
         strip_damping=damping * share / whole * T / M,
         kind=np.zeros(2 * Z, np.int64),
+        stiff=np.full(2 * Z, cage.ball_cage_stiffness * T * T / M),
+        paired=np.zeros(Z, np.int64),
         region=np.zeros(Z, np.int64),
         moving=np.zeros(Z, np.int64),
         creeping=np.zeros(Z, np.int64),

@@ -29,7 +29,6 @@ from separatrix.cage.space.records import (
     CAGE_COLUMNS,
     CLEAR,
     CONTACTS,
-    DEPTH,
     DEPTH_L,
     DZ,
     FLAT_BACK,
@@ -67,8 +66,9 @@ from separatrix.cage.space.records import (
     Y,
     Z,
 )
-from separatrix.cage.space.rim_events import EDGE, PASS, met_kind, region_of, rim_event
+from separatrix.cage.space.rim_events import EDGE, PASS, met_kind, rim_event
 from separatrix.cage.space.tally import enter_step, kinetic
+from separatrix.cage.space.two_points import change_edge, come_to_edge, mark_points, pass_edge, tend_edges
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
@@ -198,25 +198,25 @@ def change(
                     parts.ball[j, n, k] = 0.0
             parts.ball[j, 0, LEAD] = lead
         parts.kind[which], parts.moving[j] = becomes, 1
+        if edged:
+            parts.stiff[which] = p.stiffness
+            if becomes >= OUTER_CLEAR:
+                come_to_edge(p, parts, which)
         if becomes < OUTER_CLEAR:
             hits[j] += 1
             look.strikes += 1.0
     elif edged and event == EDGE:
-        parts.kind[which] = becomes
-        if becomes == NONE and p.is_slot:
-            parts.region[which // 2] = region_of(p, parts, which // 2)
+        change_edge(p, parts, which, becomes)
     elif edged and event == PASS:
-        other = which + 1 if which % 2 == 0 else which - 1
-        parts.kind[other], parts.kind[which] = parts.kind[which], NONE
-        parts.contact[other, 0, DEPTH] = parts.contact[which, 0, DEPTH]
-        parts.region[which // 2] = becomes
+        pass_edge(p, parts, which, becomes)
     elif event == REGION:
         parts.region[which] = becomes
         one, two = 2 * which, 2 * which + 1
         if becomes == 0 and parts.kind[one] != NONE:
             parts.kind[two] = FLAT_FRONT if parts.ball[which, 0, DZ] > 0.0 else FLAT_BACK
-            parts.kind[one] = NONE
+            parts.kind[one], parts.stiff[two] = NONE, parts.stiff[one]
         elif becomes != 0 and parts.kind[two] != NONE:
+            parts.stiff[one] = parts.stiff[two]
             parts.kind[one], parts.kind[two] = ROUND_END, NONE
     elif becomes == PRESSED:
         look.land_hits += parts.mode[which] == CLEAR
@@ -264,6 +264,8 @@ def take_steps(
         end, event, which, becomes = slide_event(p, parts, now.share, h, end, event, which, becomes)
         enter_step(p, parts, now, h, end, end * h / longest, works, step, look, heat)
         finish(p, parts, state, end * h)
+        if edged and parts.listed[RIMS] > 0:
+            mark_points(parts, end * h)
         done = length if event == NOTHING and h == length - done else done + end * h
         # What the next step may last: about twice the last ones where events end them
         state.reach = 2.0 * h if event == NOTHING else 0.5 * state.reach + end * h
@@ -273,6 +275,9 @@ def take_steps(
             change_creep(p, parts, now.share, which if event == SLIDE_OFF else -1, works)
         if event != NOTHING and event < SLIDE_OFF:
             change(p, parts, event, which, becomes, look, hits, edged)
+        if edged and parts.listed[RIMS] > 0:
+            load(p, parts, state)
+            tend_edges(p, parts)
         settle_balls(p, parts, works)
     look.steps += taken
     return True

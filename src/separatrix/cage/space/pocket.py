@@ -100,7 +100,7 @@ def expand_flat(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
     if n < 2:
         out += now[n] * (p.spin_t * z - p.spin_z * t)
         across -= p.spin_r * now[n]
-    push = p.stiffness * depth
+    push = parts.stiff[i] * depth
     c[n, DEPTH], c[n, PUSH] = depth, push
     rub(p, c, push, out, across, n)
     out, across = c[n, RUB_R], c[n, RUB_Q]
@@ -119,7 +119,7 @@ def expand_round(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
         far = math.sqrt(z * z + t * t)
         pz, pt, depth = -z / far, -t / far, far - p.around - parts.play[j]
         c[0, PER_FAR] = 1.0 / far
-        push = p.stiffness * depth
+        push = parts.stiff[i] * depth
         push_z, push_t = push * pz, push * pt
         across = ball[0, CZ] * pt - ball[0, CT] * pz
     else:
@@ -143,7 +143,7 @@ def expand_round(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
         per, z0, t0 = c[0, PER_FAR], c[0, PZ], c[0, PT]
         far = (c[0, HERE_Z] * z + c[0, HERE_T] * t + half) * per
         pz, pt, depth = -(z + back_z + far * z0) * per, -(t + back_t + far * t0) * per, far
-        push = p.stiffness * depth
+        push = parts.stiff[i] * depth
         push_z += c[0, PUSH] * pz + push * z0
         push_t += c[0, PUSH] * pt + push * t0
         axial += ball[0, CZ] * pt + ball[n, CZ] * t0

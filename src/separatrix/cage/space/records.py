@@ -161,6 +161,8 @@ class Parts(NamedTuple):
     strip_stiffness: Array
     strip_damping: Array
     kind: Whole  # what each contact is, shape (2 ball,): along the orbit, and along the axis
+    stiff: Array  # of each contact: k, or what keeps its energy where two points of an edge touch
+    paired: Whole  # whether both contacts of a ball are on the round edge of its pocket
     region: Whole  # of a slot: which part of it the ball is in: -1, 0, 1
     moving: Whole  # whether a ball moves against its free orbit or its groove
     creeping: Whole  # whether its speed along the orbit follows the force on it at once

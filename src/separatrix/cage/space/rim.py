@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 from separatrix.cage.records import Pace
-from separatrix.cage.series import ROUNDING
+from separatrix.cage.space.edge_points import GONE_ANGLE, follow_minimum, nearest
 from separatrix.cage.space.records import (
     AWAY,
     CLOSING,
@@ -67,8 +67,11 @@ from separatrix.cage.space.records import (
 from separatrix.compiled import inlined_kernel, inner_kernel
 from separatrix.units import Array
 
-MOST_TURNS = 100
-"""Of the search for the nearest point, whose every step halves at least where it may be."""
+
+@inner_kernel
+def is_on_round(p: Numbers, parts: Parts, i: int) -> bool:
+    """Whether a contact is on the round part of its pocket."""
+    return bool(p.is_round and (i % 2 == 0 or parts.paired[i // 2] != 0))
 
 
 @inner_kernel
@@ -95,51 +98,32 @@ def place_edge(p: Numbers, parts: Parts, i: int, n: int) -> None:
     e, ball, cage = parts.rim[i], parts.ball[j], parts.cage
     e[n, HEIGHT] = -(cage[n, GX] * parts.cosine[j] + cage[n, GY] * parts.sine[j])
     e[n, IN_Z], e[n, IN_T] = -ball[n, DZ], -ball[n, DT]
-    if i % 2 == 1:
-        e[n, PLACE] = e[n, IN_T]
-    elif not p.is_round:
-        e[n, PLACE] = 0.0
+    is_round = is_on_round(p, parts, i)
+    if not is_round:
+        e[n, PLACE] = e[n, IN_T] if i % 2 == 1 else 0.0
     if n > 0:
         return
     e[0, HEIGHT] += p.radius
-    if i % 2 == 0 and p.is_round:
+    if is_round:
         e[0, IN_T] += parts.region[j] * p.apart
     elif i % 2 == 0:
         e[0, PLACE] = math.copysign(p.ball_radius + p.around + parts.play[j], e[0, IN_T])
 
 
 @inner_kernel
-def nearest(t: float, z: float, height: float, radius: float, middle: float, edge: float) -> float:
-    """Angle on a round edge of the point that is nearest to a ball, within a right angle of the ball's."""
-    angle = math.atan2(z, t)
-    low, high = angle - 0.5 * math.pi, angle + 0.5 * math.pi
-    for _ in range(MOST_TURNS):
-        sine, cosine = math.sin(angle), math.cos(angle)
-        place = middle + radius * cosine
-        level = math.sqrt((edge - place) * (edge + place))
-        swept, over = place * sine, 1.0 - height / level
-        f = t * sine - z * cosine + swept * over
-        if f > 0.0:
-            high = angle
-        else:
-            low = angle
-        slope = t * cosine + z * sine + (place * cosine - radius * sine * sine) * over
-        slope += swept * height * place * radius * sine / level**3
-        other = angle - f / slope if slope > 0.0 else low - 1.0
-        if not low < other < high:
-            other = 0.5 * (low + high)
-        if abs(other - angle) <= ROUNDING:
-            break
-        angle = other
-    return angle
-
-
-@inner_kernel
 def find_round(p: Numbers, parts: Parts, i: int, edge: float) -> None:
-    """First coefficients of the nearest point of a round edge."""
+    """First coefficients of the nearest point of a round edge; that from before, where it is known."""
     e, radius = parts.rim[i], p.ball_radius + p.around + parts.play[i // 2]
     middle = -parts.region[i // 2] * p.apart
-    angle = nearest(e[0, IN_T], e[0, IN_Z], e[0, HEIGHT], radius, middle, edge)
+    t, z, height, angle = e[0, IN_T], e[0, IN_Z], e[0, HEIGHT], GONE_ANGLE
+    if e[0, RIM_SIN] != 0.0 or e[0, RIM_COS] != 0.0:
+        angle = math.atan2(e[0, RIM_SIN], e[0, RIM_COS])
+        last = angle
+        angle = follow_minimum(t, z, height, radius, middle, edge, angle)
+        if angle == GONE_ANGLE and parts.paired[i // 2] != 0:
+            angle = last
+    if angle == GONE_ANGLE:
+        angle = nearest(t, z, height, radius, middle, edge, -float(parts.region[i // 2]))
     e[0, RIM_SIN], e[0, RIM_COS] = math.sin(angle), math.cos(angle)
     e[0, PLACE] = middle + radius * e[0, RIM_COS]
     e[0, LEVEL] = math.sqrt((edge - e[0, PLACE]) * (edge + e[0, PLACE]))
@@ -203,7 +187,7 @@ def expand_rim(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
     c, e, kind = parts.contact[i], parts.rim[i], parts.kind[i]
     edge = p.outer_edge if kind % 2 == 0 else p.inner_edge
     place_edge(p, parts, i, n)
-    if i % 2 == 1 or not p.is_round:
+    if not is_on_round(p, parts, i):
         expand_flat_edge(p, parts, i, edge, n)
     elif n == 0:
         find_round(p, parts, i, edge)
@@ -221,7 +205,7 @@ def expand_rim(p: Numbers, parts: Parts, i: int, now: Pace, n: int) -> None:
         if n > 0:
             lag -= product(e, AWAY, TO_Z + k, n) + e[n, AWAY] * e[0, TO_Z + k]
         e[n, TO_Z + k] = lag / e[0, AWAY]
-    c[n, PUSH] = p.stiffness * c[n, DEPTH]
+    c[n, PUSH] = parts.stiff[i] * c[n, DEPTH]
     if kind >= OUTER_CLEAR:
         c[n, FZ] = c[n, FT] = c[n, RUB_R] = c[n, RUB_Q] = c[n, SPIN] = c[n, LEAN] = c[n, SLIDE] = 0.0
     else:

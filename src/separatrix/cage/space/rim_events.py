@@ -43,7 +43,7 @@ from separatrix.cage.space.records import (
     S,
     Z,
 )
-from separatrix.cage.space.rim import place_edge
+from separatrix.cage.space.rim import is_on_round, place_edge
 from separatrix.compiled import inner_kernel
 from separatrix.units import Array
 
@@ -149,9 +149,9 @@ def edge_event(
     """Earliest change up to a time, if that of a contact at an edge comes before."""
     e, c, last, j, kind = parts.rim[i], parts.c, parts.listed[LAST], i // 2, parts.kind[i]
     is_clear, side = kind >= OUTER_CLEAR, 1.0 if kind % 2 == 0 else -1.0
-    is_round, column = i % 2 == 0 and p.is_round, IN_Z if i % 2 == 1 else IN_T
+    is_round, column = is_on_round(p, parts, i), IN_Z if i % 2 == 1 else IN_T
     edge = p.outer_edge if kind % 2 == 0 else p.inner_edge
-    play = p.beside if i % 2 == 1 else p.around + parts.play[j]
+    play = p.beside if i % 2 == 1 and not is_round else p.around + parts.play[j]
     depth, noise = parts.contact[i, 0, DEPTH], e[0, HEIGHT]
     parts.contact[i, 0, WAY] = scaled(parts.contact[i], last, DEPTH, h, c)
     if is_clear:

@@ -61,6 +61,7 @@ def begin(p: Numbers, parts: Parts, start: Array, kicks: Array, state: Motion, a
     if p.tilt_swiftness > 0.0:
         state.va, state.vb = kicks[2] * np.cos(start[TILT_WAY]), kicks[2] * np.sin(start[TILT_WAY])
     parts.kind[:], parts.moving[:], parts.mode[:], parts.region[:] = NONE, 0, CLEAR, 0
+    parts.stiff[:], parts.paired[:] = p.stiffness, 0
     parts.creeping[:] = 1 if p.slides_from > 0.0 else 0
     parts.ball[:, :, :], parts.contact[:, :, :] = 0.0, 0.0
     angle = start[FIRST_LEAD + 2 * count :]
@@ -247,7 +248,7 @@ def follow_run(
 
 @part
 def enter_edges(p: Numbers, parts: Parts, row: Array) -> None:
-    """Force of each edge on its ball, -1 where none is near; then its direction: axial, outward, along."""
+    """Force of the edges on each ball, -1 where none is near; then its direction: axial, outward, along."""
     count = parts.moving.size
     row[:count], row[count:] = -1.0, 0.0
     for i in range(2 * count):
@@ -256,6 +257,12 @@ def enter_edges(p: Numbers, parts: Parts, row: Array) -> None:
         j = i // 2
         place_ball(parts, j)
         expand_rim(p, parts, i, Pace(1.0, 0.0), 0)
-        row[j] = parts.contact[i, 0, PUSH] if parts.kind[i] < OUTER_CLEAR else 0.0
+        push, before = parts.contact[i, 0, PUSH] if parts.kind[i] < OUTER_CLEAR else 0.0, max(0.0, row[j])
+        squared = 0.0
         for k in range(3):
-            row[(k + 1) * count + j] = parts.rim[i, 0, TO_Z + k]
+            at = (k + 1) * count + j
+            row[at] = before * row[at] + push * parts.rim[i, 0, TO_Z + k]
+            squared += row[at] * row[at]
+        row[j] = np.sqrt(squared)
+        for k in range(3):
+            row[(k + 1) * count + j] /= row[j] if squared > 0.0 else 1.0

@@ -100,7 +100,7 @@ def held_energy(p: Numbers, parts: Parts) -> float:
             total += 0.5 * p.ball_mass * ball[SPEED] ** 2
     for i in range(parts.kind.size):
         if parts.kind[i] != NONE and parts.kind[i] < OUTER_CLEAR:
-            total += 0.5 * p.stiffness * parts.contact[i, 0, DEPTH] ** 2
+            total += 0.5 * parts.stiff[i] * parts.contact[i, 0, DEPTH] ** 2
     for i in range(parts.mode.size):
         if parts.mode[i] != CLEAR:
             total += 0.5 * parts.strip_stiffness[i] * parts.strip[i, 0, DEPTH_L] ** 2
@@ -160,7 +160,7 @@ def enter_step(
         c[0, DEPTH] = depth
         if parts.kind[i] >= OUTER_CLEAR:
             continue
-        step.pocket_friction += 0.5 * p.stiffness * (depth - before) * (depth + before)
+        step.pocket_friction += 0.5 * parts.stiff[i] * (depth - before) * (depth + before)
         if p.stiffness * (abs(before) + c[0, WAY]) > look.force_max:
             scaled(c, parts.listed[LAST], PUSH, h, parts.c)
             look.force_max = max(look.force_max, peak(parts.c, 1.0, end))
