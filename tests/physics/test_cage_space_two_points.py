@@ -21,7 +21,8 @@ def drawn_on_edges(rng):
     """Draw a cage whose walls end near its balls, and a start."""
     while True:
         cage, start = drawn(rng)
-        beyond, is_outer, is_thin, is_dry = rng.uniform(-6e-4, 1.2e-3), *rng.integers(0, [2, 4, 4])
+        beyond = rng.uniform(-6e-4, 1.2e-3)
+        is_outer, is_thin, is_dry = rng.integers(0, [2, 4, 4])
         radii = {"outer_radius": R - beyond} if is_outer else {"inner_radius": R + beyond}
         if is_thin == 0:
             radii = {"inner_radius": R - 2e-4 + beyond / 3.0, "outer_radius": R + 6e-4 + beyond / 3.0}

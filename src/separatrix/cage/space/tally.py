@@ -161,7 +161,7 @@ def enter_step(
         if parts.kind[i] >= OUTER_CLEAR:
             continue
         step.pocket_friction += 0.5 * parts.stiff[i] * (depth - before) * (depth + before)
-        if p.stiffness * (abs(before) + c[0, WAY]) > look.force_max:
+        if parts.stiff[i] * (abs(before) + c[0, WAY]) > look.force_max:
             scaled(c, parts.listed[LAST], PUSH, h, parts.c)
             look.force_max = max(look.force_max, peak(parts.c, 1.0, end))
     close(works, step)
