@@ -108,7 +108,7 @@ DESIGNS = [
     (
         SPACE,
         {"pocket_clearance": 0.0, "pocket_shape": PocketShape.CYLINDRICAL},
-        "CageDesign.pocket_clearance must be > 0 for round pockets in space",
+        "pocket_clearance must be > 0 for round pockets in space",
     ),
     (SPACE, {"land_count": 2}, "land_spacing is missing: two lands have a distance"),
     (SPACE, {"land_spacing": 1e-2}, "land_spacing has no meaning for one land"),
