@@ -2,16 +2,6 @@ PYTHON ?= python3
 BIN := .venv/bin
 # A file of tests is one worker's, so that what its tests share is made once.
 TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile --no-loadscope-reorder
-# Compiles all kernels once, before the tests: else each worker would compile the same. One process compiles those
-# of the chain and of runs in space, the other first those of the cage in the plane, which need no chain.
-COMPILE := $(BIN)/python -c 'import sys; from separatrix.cli import main; [main(one.split()) for one in sys.argv[1:]]'
-CASE := cryogenic-turbopump --json --quiet
-SPACE := map $(CASE) --points 2 --runs 1 --jobs 1 --motion space
-PLANE := from dataclasses import replace; from cages import TURNING as cage; \
-  from separatrix import StabilitySettings, run_ensemble, run_hard_ensemble; \
-  few = StabilitySettings(kicks=(0.5,), runs=1, duration=1e-3); \
-  run_ensemble(cage, few); run_ensemble(replace(cage, gravity=9.81), few); run_hard_ensemble(cage, few)
-
 # Modules compiled to bytecode are kept, which halves the start of every command.
 unexport PYTHONDONTWRITEBYTECODE
 
@@ -26,9 +16,7 @@ test: kernels ## every test
 	$(TESTS)
 
 kernels: .venv/ready
-	@$(COMPILE) "$(SPACE)" > /dev/null & \
-	PYTHONPATH=tests/physics $(BIN)/python -c '$(PLANE)' && \
-	$(COMPILE) "traction $(CASE)" "mobility $(CASE)" "simulate $(CASE) --motion space" > /dev/null && wait $$!
+	@$(BIN)/python tests/kernels.py space & $(BIN)/python tests/kernels.py plane && wait $$!
 
 check: kernels docs ## what reviewers run: lint, types, layers, docs, tests
 	$(BIN)/ruff check .

@@ -6,8 +6,9 @@ import math
 
 from separatrix import _check, cage_design
 from separatrix.bearing_design import BallBearing
-from separatrix.cage_design import CageDesign, MotionModel
+from separatrix.cage_design import CageDesign, ClearanceState, Guidance, MotionModel
 from separatrix.errors import InputError
+from separatrix.pocket_shape import half_play, too_tight_for_edges
 from separatrix.units import format_quantity
 
 WIDEST = 4.0
@@ -68,6 +69,7 @@ def _body_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
     if cage.motion is not MotionModel.SPACE:
         return
     pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
+    yield from _edges_of_pockets(cage, bearing)
     if cage.land_diameter is not None and not pitch - ball < cage.land_diameter < pitch + ball:
         low, high = (format_quantity(d, "m") for d in (pitch - ball, pitch + ball))
         rule = f"must lie between the bottoms of the grooves, {low} and {high}"
@@ -90,6 +92,21 @@ def _body_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
             rule = f"must lie between {low}, half that about the axis, and {high}"
             cure = f"A flat ring has half of it, one with its mass {WIDEST:g} balls apart the most."
             yield _check.problem(cage, "transverse_inertia", rule, cure)
+
+
+def _edges_of_pockets(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+    """Pockets whose walls end beside their balls are wide enough for that, as the bearing runs."""
+    if cage.clearances is not ClearanceState.RUNNING:
+        return  # known only to the chain
+    is_loose = cage.guidance is Guidance.BALL or cage.land_clearance is None
+    yield from too_tight_for_edges(
+        cage,
+        ball_diameter=bearing.ball_diameter,
+        pitch_radius=bearing.pitch_diameter / 2.0,
+        edges=((cage.inner_diameter or 0.0) / 2.0, (cage.outer_diameter or math.inf) / 2.0),
+        way=half_play(cage) if is_loose else cage.land_clearance / 2.0,
+        axial_play=(cage.pocket_axial_clearance or cage.pocket_clearance) / 2.0,
+    )
 
 
 def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:

@@ -10,7 +10,8 @@ import math
 from enum import Enum
 from typing import Protocol
 
-from separatrix.units import Metre, Ratio
+from separatrix import _check
+from separatrix.units import Metre, Ratio, format_quantity
 
 
 class PocketShape(Enum):
@@ -67,3 +68,40 @@ def tilt(pocket: Pocket) -> tuple[Ratio, Ratio]:
     z, c_a = pocket.pocket_axial_offset, end_half_play(pocket)
     sine = z / c_a if z != 0.0 else 0.0
     return math.sqrt((1.0 - sine) * (1.0 + sine)), sine
+
+
+def edge_level(radius: Metre, along: Metre) -> Metre:
+    """Height over the axis of the cage of an edge at a radius, at a place along the orbit [m]."""
+    return math.sqrt(max(0.0, (radius - along) * (radius + along)))
+
+
+def too_tight_for_edges(
+    pocket: Pocket,
+    *,
+    ball_diameter: Metre,
+    pitch_radius: Metre,
+    edges: tuple[Metre, Metre],
+    way: Metre,
+    axial_play: Metre,
+) -> _check.Problems:
+    """Refuse a pocket so tight that two points of its edge may be as near to a ball.
+
+    With the ball's equator s beyond an edge at the height u, and half a pocket's length b, one point is the
+    nearest where the ball is more than b s/u off the middle. The least clearance is twice that, at the
+    largest s that the cage reaches on its way. A square pocket must have one, if an edge is within reach.
+    """
+    b, R, play = (ball_diameter + pocket.pocket_clearance) / 2.0, pitch_radius, end_half_play(pocket)
+    inner, outer = (edge_level(radius, b) for radius in edges)
+    least = []
+    if inner > 0.0:
+        least.append(b / inner * (edges[0] - R + way))
+    if outer < math.inf:
+        least.append(b / outer * (R + way - outer))
+    tight = max((each for each in least if each > 0.0), default=-math.inf)
+    if pocket.pocket_shape is PocketShape.SQUARE:
+        tight, play = min(tight, 0.0), min(pocket.pocket_clearance / 2.0, axial_play)
+    if tight >= play:
+        key = "pocket_axial_clearance" if pocket.pocket_shape is PocketShape.ELONGATED else "pocket_clearance"
+        rule = f"must be > {format_quantity(2.0 * tight, 'm', 4)} where the wall of a pocket ends beside its ball"
+        cure = "Two points of its edge would be as near to a ball; give a longer wall or square pockets."
+        yield _check.problem(pocket, key, rule, cure)

@@ -7,7 +7,7 @@ import pytest
 from cages import ON_A_LAND, TURNING
 from space_cages import IN_PLANE, ROUND, in_space
 
-from separatrix.cage_design import CageDesign, MotionModel, PocketContact
+from separatrix.cage_design import CageDesign, ClearanceState, MotionModel, PocketContact
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
@@ -62,14 +62,14 @@ CAGES = [
 EDGES = [
     ("SQUARE", 6e-4, {"outer_radius": 27.5e-3}, "SpaceBody.outer_radius must be > 0.02757 [m]; got 27.5 mm"),
     ("SQUARE", 6e-4, {"inner_radius": 38.1e-3}, "SpaceBody.inner_radius must be < 0.03806 [m]; got 38.1 mm"),
-    ("SQUARE", 0.0, {"outer_radius": 32.2e-3}, "PlanarCage.pocket_clearance must be > 0 [m] where the wall"),
+    ("SQUARE", 0.0, {"outer_radius": 32.2e-3}, "PlanarCage.pocket_clearance must be > 0 m where the wall"),
     (
         "CYLINDRICAL",
         4e-4,
         {"outer_radius": 32.2e-3},
-        "pocket_clearance must be > 0.0004792 [m] where the",
+        "pocket_clearance must be > 479.2 um where the",
     ),
-    ("CYLINDRICAL", 4e-4, {"inner_radius": 33.8e-3}, "must be > 0.0006222 [m] where the"),
+    ("CYLINDRICAL", 4e-4, {"inner_radius": 33.8e-3}, "must be > 622.2 um where the"),
 ]
 
 
@@ -155,6 +155,28 @@ def test_a_body_in_space_that_the_bearing_cannot_hold_is_refused(changes, words)
     lands = {"land_count": 2, "land_spacing": 12e-3, "land_width": 3e-3, "land_diameter": 66e-3}
     held = {"added_mass": 0.2, "transverse_inertia": 1.4e-5}
     replace(study, cage=replace(study.cage, motion=MotionModel.SPACE, **lands, **held))
+
+
+EDGED = {
+    "motion": MotionModel.SPACE,
+    "pocket_shape": PocketShape.CYLINDRICAL,
+    "inner_diameter": 60e-3,
+    "outer_diameter": 64.6e-3,
+    "width": 18e-3,
+}
+
+
+def test_pockets_too_tight_for_their_edges_are_refused_by_their_key():
+    """With the study, where its clearances are as it runs; else by the chain, with the same key."""
+    study = read_study("cryogenic-turbopump")
+    with pytest.raises(InputError) as caught:
+        replace(study, cage=replace(study.cage, **EDGED, pocket_clearance=1e-4))
+    assert str(caught.value).startswith("CageDesign.pocket_clearance must be > 419.5 um where the wall")
+    at_rest = replace(study.cage, **EDGED, pocket_clearance=3e-4, clearances=ClearanceState.AT_REST)
+    with pytest.raises(InputError) as caught:
+        solve(replace(study, cage=at_rest)).cage_with(0.1)
+    assert str(caught.value).startswith("[cage] pocket_clearance must be > 44")
+    solve(replace(study, cage=replace(study.cage, **EDGED, pocket_clearance=6e-4))).cage_with(0.1)
 
 
 def test_the_lever_of_friction_is_the_radius_of_the_ball_unless_it_is_given():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.pocket_shape import PocketShape
+from separatrix.pocket_shape import PocketShape, edge_level, too_tight_for_edges
 from separatrix.study import Guidance
 from separatrix.units import (
     Kilogram,
@@ -178,27 +178,6 @@ def pocket_half_length(cage: PlanarCage, body: SpaceBody) -> Metre:
     return (body.ball_diameter + cage.pocket_clearance) / 2.0
 
 
-def edge_level(radius: Metre, along: Metre) -> Metre:
-    """Height over the axis of the cage of an edge at a radius, at a place along the orbit [m]."""
-    return math.sqrt(max(0.0, (radius - along) * (radius + along)))
-
-
-def least_play(cage: PlanarCage, body: SpaceBody) -> Metre:
-    """Half the clearance of round pockets up to which two points of an edge may be as near to a ball [m].
-
-    With the ball's equator s beyond an edge at the height u, and half a pocket's length b, one point is the
-    nearest where the ball is more than b s/u off the middle. The cage moves by its land's clearance, or its
-    pockets'. -inf: no edge is within reach.
-    """
-    b, R = pocket_half_length(cage, body), cage.pitch_radius
-    way = cage.land_gap if cage.guidance is not Guidance.BALL else cage.half_play
-    inner, outer = (edge_level(radius, b) for radius in body.edges)
-    plays = [b / outer * (R + way - outer)]
-    if inner > 0.0:
-        plays.append(b / inner * (body.edges[0] - R + way))
-    return max((play for play in plays if play > 0.0), default=-math.inf)
-
-
 def refused_in_space(cage: PlanarCage) -> Iterator[InputError]:
     """What the motion in space leaves out, and an inertia that no body can have."""
     body = cage.space
@@ -233,11 +212,11 @@ def _refused_edges(cage: PlanarCage, body: SpaceBody) -> Iterator[InputError]:
     if not inner < R + h:
         yield _check.problem(body, "inner_radius", f"must be < {R + h:.4g} [m]", lost)
         return
-    (around, _, beside), tight = pocket_plays(cage, body), least_play(cage, body)
-    if cage.pocket_shape is PocketShape.SQUARE:
-        tight, around = min(tight, 0.0), min(around, beside)
-    if tight >= around:
-        slot = cage.pocket_shape is PocketShape.ELONGATED
-        rule = f"must be > {2.0 * tight:.4g} [m] where the wall of a pocket ends beside its ball"
-        cure = "Two points of its edge would be as near to a ball; give a longer wall or square pockets."
-        yield _check.problem(cage, "pocket_axial_clearance" if slot else "pocket_clearance", rule, cure)
+    yield from too_tight_for_edges(
+        cage,
+        ball_diameter=body.ball_diameter,
+        pitch_radius=R,
+        edges=body.edges,
+        way=cage.land_gap if cage.guidance is not Guidance.BALL else cage.half_play,
+        axial_play=body.axial_play,
+    )

@@ -42,7 +42,7 @@ from separatrix.chain.restitution import (
     hertz_coefficient_for,
     restitution,
 )
-from separatrix.errors import InputError, ValidityWarning
+from separatrix.errors import InputError, ValidityWarning, together
 from separatrix.study import (
     BallModel,
     CageDesign,
@@ -330,29 +330,35 @@ class Solution:
         damping, waves, radius = self.restitution, self._waves, self.study.bearing.pitch_diameter / 2.0
         hertz = design.pocket_contact is not PocketContact.LINEAR
         stiffness = damping.ball_cage_stiffness
-        cage = PlanarCage(
-            mass=body.mass,
-            moment_of_inertia=body.moment_of_inertia,
-            ball_count=study.bearing.ball_count,
-            pitch_radius=radius,
-            cage_speed=self.bearing.cage_speed,
-            inner_speed=study.operation.inner_speed,
-            outer_speed=study.operation.outer_speed,
-            ball_cage_stiffness=stiffness,
-            race_damping=damping.race_damping,
-            ball_cage_friction=friction,
-            # equal energy and depth in an impact at the impact speed
-            hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, self.impact_speed)
-            if hertz
-            else None,
-            orbital_cosines=waves.cosines,
-            orbital_sines=waves.sines,
-            ramp_time=study.operation.ramp_time,
-            ramp_start=study.operation.ramp_start,
-            traction=self.mobility.traction if design.ball is BallModel.TRACTION else None,
-            space=self._in_space(stiffness) if design.motion is MotionModel.SPACE else None,
-            **as_designed(design),
-        )
+        try:
+            cage = PlanarCage(
+                mass=body.mass,
+                moment_of_inertia=body.moment_of_inertia,
+                ball_count=study.bearing.ball_count,
+                pitch_radius=radius,
+                cage_speed=self.bearing.cage_speed,
+                inner_speed=study.operation.inner_speed,
+                outer_speed=study.operation.outer_speed,
+                ball_cage_stiffness=stiffness,
+                race_damping=damping.race_damping,
+                ball_cage_friction=friction,
+                # equal energy and depth in an impact at the impact speed
+                hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, self.impact_speed)
+                if hertz
+                else None,
+                orbital_cosines=waves.cosines,
+                orbital_sines=waves.sines,
+                ramp_time=study.operation.ramp_time,
+                ramp_start=study.operation.ramp_start,
+                traction=self.mobility.traction if design.ball is BallModel.TRACTION else None,
+                space=self._in_space(stiffness) if design.motion is MotionModel.SPACE else None,
+                **as_designed(design),
+            )
+        except InputError as error:  # of clearances as the cage runs
+            refused = (
+                one.at(one.path.replace("PlanarCage.", "[cage] ")) for one in error.problems or (error,)
+            )
+            raise together(list(refused)) from None
         warn_if_balls_are_driven(cage)
         return cage
 
