@@ -60,7 +60,11 @@ KEYS = {
 }
 """Verb and place in its document -> the keys that scripts rely on."""
 
-EXTRA = {"map": ("--points", "3", "--runs", "2"), "sweep": ("--vary", "film.thickness=0.2..1um:3")}
+EXTRA = {
+    "map": ("--points", "3", "--runs", "2"),
+    "sensitivity": ("--samples", "64"),
+    "sweep": ("--vary", "film.thickness=0.2..1um:3"),
+}
 """Options without which a verb would take long."""
 
 LONG = ("traction", "simulate", "rank", "sensitivity")

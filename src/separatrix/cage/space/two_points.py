@@ -59,7 +59,7 @@ AGREES = 1e-9
 """Difference of two depths over the ball's radius up to which they are of one point."""
 
 
-FIRM = 0.02
+FIRM = 0.001
 """Least curvature of the squared distance at one of two points, over that where no edge pulls it around."""
 
 
