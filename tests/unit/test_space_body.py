@@ -175,7 +175,7 @@ def test_pockets_too_tight_for_their_edges_are_refused_by_their_key():
     at_rest = replace(study.cage, **EDGED, pocket_clearance=3e-4, clearances=ClearanceState.AT_REST)
     with pytest.warns(ValidityWarning, match="rest on guesses"), pytest.raises(InputError) as caught:
         solve(replace(study, cage=at_rest)).cage_with(0.1)
-    assert str(caught.value).startswith("[cage] pocket_clearance must be > 44")
+    assert str(caught.value).startswith("[cage] pocket_clearance must be > 479.3 um where the wall")
     solve(replace(study, cage=replace(study.cage, **EDGED, pocket_clearance=6e-4))).cage_with(0.1)
 
 
