@@ -92,16 +92,17 @@ def too_tight_for_edges(
     """
     b, R, play = (ball_diameter + pocket.pocket_clearance) / 2.0, pitch_radius, end_half_play(pocket)
     inner, outer = (edge_level(radius, b) for radius in edges)
-    least = []
+    plays = []
     if inner > 0.0:
-        least.append(b / inner * (edges[0] - R + way))
+        plays.append(b / inner * (edges[0] - R + way))
     if outer < math.inf:
-        least.append(b / outer * (R + way - outer))
-    tight = max((each for each in least if each > 0.0), default=-math.inf)
+        plays.append(b / outer * (R + way - outer))
+    tight = max((each for each in plays if each > 0.0), default=-math.inf)
     if pocket.pocket_shape is PocketShape.SQUARE:
         tight, play = min(tight, 0.0), min(pocket.pocket_clearance / 2.0, axial_play)
     if tight >= play:
         key = "pocket_axial_clearance" if pocket.pocket_shape is PocketShape.ELONGATED else "pocket_clearance"
-        rule = f"must be > {format_quantity(2.0 * tight, 'm', 4)} where the wall of a pocket ends beside its ball"
+        least = format_quantity(2.0 * tight, "m", 4)
+        rule = f"must be > {least} where the wall of a pocket ends beside its ball"
         cure = "Two points of its edge would be as near to a ball; give a longer wall or square pockets."
         yield _check.problem(pocket, key, rule, cure)

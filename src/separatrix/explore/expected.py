@@ -32,6 +32,10 @@ FACTORS = (0.0, 0.7, 1.5)
 """Frictions at which runs of a curve are timed, as multiples of the linear limit: the work is done below it
 and about it, for runs far above end soon."""
 
+QUARTERS = 4
+"""Parts into which the frictions of verdicts are divided by those that are timed: runs near the critical
+friction may take ten times as long as those far from it."""
+
 MAP_POINTS_NOT_TIMED = 30  # a map of so few points needs no estimate
 PICTURES = 5.0  # time of a ranking's figures and files [s]
 CURVE_POINTS = 16.0
@@ -57,11 +61,11 @@ def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, 
 def expected_verdicts(
     cage: PlanarCage, settings: StabilitySettings, frictions: Iterable[Ratio], *, jobs: int
 ) -> Second:
-    """Time of the whole ensembles at these frictions, by those at the least, the middle and the largest."""
+    """Time of the whole ensembles at these frictions, by the least, the quartiles and the largest."""
     asked = sorted(frictions)
     if not asked:
         return 0.0
-    some = {asked[0], asked[len(asked) // 2], asked[-1]}
+    some = {asked[n * (len(asked) - 1) // QUARTERS] for n in range(QUARTERS + 1)}
     each = _mean(_time_of_a_run(replace(cage, ball_cage_friction=f), settings) for f in sorted(some))
     return each * len(asked) * len(settings.kicks) * settings.runs / jobs
 
@@ -102,8 +106,9 @@ def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs:
         return 0.0
     few = replace(settings, runs=min(PART, settings.runs))
     other = with_other_ball(solution, 0.0)
-    middle = sorted(frictions)[len(frictions) // 2 :][:1]  # one for all: such runs may take long to time
-    return expected_verdicts(other, few, middle, jobs=jobs) * len(frictions)
+    asked = sorted(frictions)
+    some = asked[len(asked) // 2 :: max(1, (len(asked) - 1) // 2)]  # two: such runs may take long to time
+    return expected_verdicts(other, few, some, jobs=jobs) * len(asked) / max(1, len(some))
 
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
