@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from separatrix.bearing_design import BallBearing
+from separatrix.cage_design import CageDesign
 from separatrix.errors import InputError
 from separatrix.pocket_shape import PocketShape
-from separatrix.study import BallBearing, CageDesign
 from separatrix.units import Kilogram, KilogramMetre2, Metre
 
 NODES = 40

@@ -6,6 +6,7 @@ import math
 
 from separatrix import _check, cage_design
 from separatrix.bearing_design import BallBearing
+from separatrix.cage_body import CageInertia, cage_inertia
 from separatrix.cage_design import CageDesign, ClearanceState, Guidance, MotionModel
 from separatrix.errors import InputError
 from separatrix.pocket_shape import half_play, too_tight_for_edges
@@ -30,12 +31,12 @@ def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
         rule = f"must be smaller than a ball, {format_quantity(ball, 'm')}"
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
         yield _check.problem(cage, "land_clearance", rule, cure)
-    yield from _ring_between_rings(cage, bearing)
-    yield from _body_in_bearing(cage, bearing)
-    most = math.inf if cage.mass is None else cage.mass * bearing.pitch_diameter / 2.0
-    if cage.unbalance >= most:
-        rule = f"must be smaller than mass times pitch radius, {format_quantity(most, 'kg m')}"
-        yield _check.problem(cage, "unbalance", rule, "It is mass times eccentricity.")
+    yield from _lands_between_rings(cage, bearing)
+    wrong = [*_ring_between_rings(cage, bearing), *_edges_of_pockets(cage, bearing)]
+    yield from wrong
+    density = cage.material.density if cage.material else None
+    if not wrong and (cage.mass is not None or (cage.has_shape and density is not None)):
+        yield from _body_that_can_be(cage, bearing, cage_inertia(cage, bearing))
 
 
 def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
@@ -46,16 +47,22 @@ def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Proble
     pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
     bottom, top = ("bottom of the inner groove", pitch - ball), ("bottom of the outer groove", pitch + ball)
     nearest = farthest = ("pitch diameter", pitch)
-    cure = "The pocket's wall reaches the ball's equator; with motion = \"space\" it need not."
+    short = "The pocket's wall reaches the ball's equator; with motion = \"space\" it need not."
     if cage.motion is MotionModel.SPACE:
         nearest = ("least that holds a ball", math.hypot(pitch - ball, ball + cage.pocket_clearance))
         farthest = top
-        cure = "Beyond it a ball passes between the edges of its pocket."
+        short = "Within it a ball passes between the edges of its pocket."
     limits = {"inner_diameter": (inner, bottom, farthest), "outer_diameter": (outer, nearest, top)}
     for key, (size, low, high) in limits.items():
         if not low[1] < size < high[1]:
             ends = (f"the {what}, {format_quantity(bound, 'm')}" for what, bound in (low, high))
+            is_short = size >= high[1] if key == "inner_diameter" else size <= low[1]
+            cure = short if is_short else "Beyond it is the ring."
             yield _check.problem(cage, key, f"must lie between {' and '.join(ends)}", cure)
+    least_bore = (ball + cage.pocket_clearance) / math.sin(math.pi / bearing.ball_count)
+    if inner <= least_bore < pitch:
+        rule = f"must be > {format_quantity(least_bore, 'm', 4)}, where bars are left between pockets"
+        yield _check.problem(cage, "inner_diameter", rule, "A smaller pocket_clearance leaves more.")
     if width <= ball + cage.pocket_clearance:
         least = format_quantity(ball + cage.pocket_clearance, "m")
         yield _check.problem(cage, "width", f"must be larger than a pocket, {least}", "Pockets are holes.")
@@ -64,54 +71,88 @@ def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Proble
         yield _check.problem(cage, "mass", "is missing, and the density of the cage is not known", cure)
 
 
-def _body_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """In space: lands at the rings and on the cage, and inertias that a body of this mass can have."""
-    if cage.motion is not MotionModel.SPACE:
-        return
-    pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
-    yield from _edges_of_pockets(cage, bearing)
-    if cage.land_diameter is not None and not pitch - ball < cage.land_diameter < pitch + ball:
-        low, high = (format_quantity(d, "m") for d in (pitch - ball, pitch + ball))
-        rule = f"must lie between the bottoms of the grooves, {low} and {high}"
-        yield _check.problem(cage, "land_diameter", rule)
-    most, width = WIDEST * ball, (cage.land_spacing or 0.0) + cage.land_width
+def _lands_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+    """Lands are on the cage, and those of the rings between the grooves."""
+    low, high = bearing.pitch_diameter - bearing.ball_diameter, bearing.pitch_diameter + bearing.ball_diameter
+    is_outer, stated = cage.guidance is Guidance.OUTER, cage.land_diameter
+    if stated is not None:
+        ends, where = (low, high), "the bottoms of the grooves"
+        if cage.has_shape:
+            ends, where = (
+                (cage.inner_diameter or low, cage.outer_diameter or high),
+                "the surfaces of the cage",
+            )
+        if not ends[0] <= stated <= ends[1]:
+            between = " and ".join(format_quantity(end, "m") for end in ends)
+            yield _check.problem(cage, "land_diameter", f"must lie between {where}, {between}")
+            return
+    land = stated or (cage.outer_diameter if is_outer else cage.inner_diameter)
+    if land is not None and cage.land_clearance is not None and cage.guidance is not Guidance.BALL:
+        most = high - land if is_outer else land - low
+        if 0.0 < most <= cage.land_clearance:
+            rule = (
+                f"must be smaller than what is left to the bottom of the groove, {format_quantity(most, 'm')}"
+            )
+            yield _check.problem(cage, "land_clearance", rule, "The land of the ring is beside its groove.")
+    most, width = WIDEST * bearing.ball_diameter, (cage.land_spacing or 0.0) + cage.land_width
     if cage.width is None and width > most:
         key = "land_spacing" if (cage.land_spacing or 0.0) > cage.land_width else "land_width"
         rule = f"must leave all lands within {WIDEST:g} balls, {format_quantity(most, 'm')}"
         yield _check.problem(cage, key, rule, "No bearing of one row is so wide.")
-    if cage.mass is None:
-        return
-    if cage.added_mass > MOST_ADDED * cage.mass:
-        rule = f"must be at most {MOST_ADDED:g} times that of the cage, {format_quantity(cage.mass, 'kg')}"
+
+
+def _body_that_can_be(cage: CageDesign, bearing: BallBearing, body: CageInertia) -> _check.Problems:
+    """Unbalance, fluid, and inertias that a body of this mass and size can have."""
+    mass, pitch, ball = body.mass, bearing.pitch_diameter, bearing.ball_diameter
+    if cage.unbalance >= mass * pitch / 2.0:
+        rule = f"must be smaller than mass times pitch radius, {format_quantity(mass * pitch / 2.0, 'kg m')}"
+        yield _check.problem(cage, "unbalance", rule, "It is mass times eccentricity.")
+    if cage.added_mass > MOST_ADDED * mass:
+        rule = f"must be at most {MOST_ADDED:g} times that of the cage, {format_quantity(mass, 'kg')}"
         yield _check.problem(cage, "added_mass", rule)
-    if cage.transverse_inertia is not None and not cage.has_shape:
-        flat = (cage.moment_of_inertia or cage.mass * (pitch / 2.0) ** 2) / 2.0
-        bounds = flat * (1.0 - 1e-9), flat + cage.mass * (most / 2.0) ** 2
-        if not bounds[0] <= cage.transverse_inertia <= bounds[1]:
-            low, high = (format_quantity(value, "kg m2", 4) for value in (flat, bounds[1]))
-            rule = f"must lie between {low}, half that about the axis, and {high}"
-            cure = f"A flat ring has half of it, one with its mass {WIDEST:g} balls apart the most."
-            yield _check.problem(cage, "transverse_inertia", rule, cure)
+    if cage.moment_of_inertia is not None:
+        radii = ((cage.inner_diameter or pitch - ball) / 2.0, (cage.outer_diameter or pitch + ball) / 2.0)
+        least, most = (mass * radius**2 for radius in radii)
+        if not least <= cage.moment_of_inertia <= most:
+            ends = " and ".join(format_quantity(value, "kg m2", 4) for value in (least, most))
+            where = "surface of the cage" if cage.has_shape else "groove"
+            cure = f"All of the mass would be at the inner or at the outer {where}."
+            yield _check.problem(cage, "moment_of_inertia", f"must lie between {ends}", cure)
+            return
+    if cage.motion is not MotionModel.SPACE:
+        return
+    flat, wide = body.moment_of_inertia / 2.0, cage.width or WIDEST * ball
+    bounds = flat * (1.0 - 1e-9), flat + mass * (wide / 2.0) ** 2
+    if not bounds[0] <= body.transverse_inertia <= bounds[1]:
+        key = "transverse_inertia" if cage.transverse_inertia is not None else "moment_of_inertia"
+        low, high = (format_quantity(value, "kg m2", 4) for value in (flat, bounds[1]))
+        rule = f"must lie between {low}, half that about the axis, and {high}"
+        cure = f"A flat ring has half of it, one with its mass {format_quantity(wide, 'm')} apart the most."
+        if key == "moment_of_inertia":
+            most_axial = format_quantity(2.0 * body.transverse_inertia, "kg m2", 4)
+            rule, cure = f"must be at most twice that about a diameter, {most_axial} by the shape", ""
+        yield _check.problem(cage, key, rule, cure)
 
 
 def _edges_of_pockets(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
     """Pockets whose walls end beside their balls are wide enough for that, as the bearing runs."""
-    if cage.clearances is not ClearanceState.RUNNING:
-        return  # known only to the chain
-    is_loose = cage.guidance is Guidance.BALL or cage.land_clearance is None
+    if cage.motion is not MotionModel.SPACE or cage.clearances is not ClearanceState.RUNNING:
+        return  # without edges, or with clearances that only the chain knows
+    land = None if cage.guidance is Guidance.BALL else cage.land_clearance
     yield from too_tight_for_edges(
         cage,
         ball_diameter=bearing.ball_diameter,
         pitch_radius=bearing.pitch_diameter / 2.0,
         edges=((cage.inner_diameter or 0.0) / 2.0, (cage.outer_diameter or math.inf) / 2.0),
-        way=half_play(cage) if is_loose else cage.land_clearance / 2.0,
+        way=half_play(cage) if land is None else land / 2.0,
         axial_play=(cage.pocket_axial_clearance or cage.pocket_clearance) / 2.0,
     )
 
 
 def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
     """Uneven pockets: one for each ball, and a bar between any two."""
-    room = (bearing.ball_diameter + cage.pocket_clearance) / bearing.pitch_diameter
+    across = cage.inner_diameter if cage.has_shape else None
+    room = (bearing.ball_diameter + cage.pocket_clearance) / (across or bearing.pitch_diameter)
     if not 0.0 < room < math.sin(math.pi / bearing.ball_count):
         return  # overlapping already when even
     needed = 2.0 * math.asin(room)

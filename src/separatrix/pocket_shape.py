@@ -104,5 +104,5 @@ def too_tight_for_edges(
         key = "pocket_axial_clearance" if pocket.pocket_shape is PocketShape.ELONGATED else "pocket_clearance"
         least = format_quantity(2.0 * tight, "m", 4)
         rule = f"must be > {least} where the wall of a pocket ends beside its ball"
-        cure = "Two points of its edge would be as near to a ball; give a longer wall or square pockets."
+        cure = "Two points of the edge would touch; give a longer wall, a tighter land or square pockets."
         yield _check.problem(pocket, key, rule, cure)

@@ -42,7 +42,7 @@ from separatrix.limits.map_records import KICK, MapQuestion
 from separatrix.limits.response import cage_at
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.rank import rank as rank_materials
-from separatrix.ranking.reason import Moved, beyond_motion, transmitted_force
+from separatrix.ranking.reason import Moved, beyond_motion, transmitted_force, within_a_turn
 from separatrix.runner import Runner, made_into
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
 from separatrix.units import NUMBER, MetrePerSecond, Ratio, format_quantity, parse, printable
@@ -310,7 +310,8 @@ def simulate(
         offset = float((history.position**2).sum(axis=1).max() ** 0.5)
         answer = answers.SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
     made_of = cage_candidate(study)
-    for note in beyond_motion(solution, [Moved(made_of.name if made_of else "The cage", force, offset)]):
+    moved = [Moved(made_of.name if made_of else "The cage", force, offset)]
+    for note in (*within_a_turn(solution), *beyond_motion(solution, moved)):
         warnings.warn(note, ValidityWarning, stacklevel=2)
     return answer
 

@@ -7,7 +7,7 @@ from cages import ON_A_LAND, ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.cage import Ensemble, RunOutcome, Verdict, judge
+from separatrix.cage import CageMotion, Ensemble, RunOutcome, Verdict, judge
 
 quick = settings(derandomize=True, max_examples=150, deadline=None)
 
@@ -67,6 +67,21 @@ def test_no_verdict_contradicts_its_counts(runs):
         assert not most_whirl
     if worst.whirls == 0 and worst.settles == worst.runs:
         assert found.verdict is not Verdict.UNSTABLE
+
+
+@quick
+@given(ensembles())
+def test_the_evidence_is_that_of_the_motion_that_is_named(runs):
+    """Medians of whirls where the motion is one, else of the other runs; and the motion is the frequent one."""
+    marked = replace(runs, end_energy=np.where(runs.outcome == WHIRLS, 1.0, 2.0))
+    found = judge(CAGE, marked)
+    worst = next(k for k in found.by_kick if k.kick == found.worst_kick)
+    whirls = found.cage_motion is CageMotion.WHIRLING or worst.whirls == worst.runs
+    assert found.end_energy == (1.0 if whirls else 2.0)
+    most = max(worst.settles, worst.whirls, worst.drifts)
+    assert (found.cage_motion is CageMotion.WHIRLING) == (0 < worst.whirls == most >= worst.unresolved)
+    if found.cage_motion in (CageMotion.CENTRED, CageMotion.ON_THE_LAND):
+        assert worst.settles > worst.whirls
 
 
 @quick

@@ -157,6 +157,38 @@ def test_a_body_in_space_that_the_bearing_cannot_hold_is_refused(changes, words)
     replace(study, cage=replace(study.cage, motion=MotionModel.SPACE, **lands, **held))
 
 
+RING = {"inner_diameter": 58e-3, "outer_diameter": 72e-3, "width": 18e-3}
+FROM_SHAPE = {**RING, "mass": None}
+IMPOSSIBLE = [
+    ({"moment_of_inertia": 1e-3}, "moment_of_inertia must lie between 18.15 kg mm2 and 36.21 kg mm2; got"),
+    ({"moment_of_inertia": 1e-9}, "moment_of_inertia must lie between 18.15 kg mm2 and 36.21 kg mm2; got"),
+    ({**RING, "moment_of_inertia": 4e-5}, "moment_of_inertia must lie between 21.03 kg mm2 and 32.4 kg mm2"),
+    ({**RING, "moment_of_inertia": 3.2e-5}, "moment_of_inertia must be at most twice that about a diameter"),
+    ({**RING, "transverse_inertia": 1e-3}, "transverse_inertia must lie between 13."),
+    ({**FROM_SHAPE, "transverse_inertia": 1e-7}, "transverse_inertia must lie between"),
+    ({**FROM_SHAPE, "unbalance": 1e-2}, "unbalance must be smaller than mass times pitch radius"),
+    ({**FROM_SHAPE, "added_mass": 50.0}, "added_mass must be at most 100 times that of the cage"),
+    ({**RING, "pocket_clearance": 4e-3}, "inner_diameter must be > 63.15 mm, where bars are left"),
+    ({**RING, "land_diameter": 80e-3}, "land_diameter must lie between the surfaces of the cage, 58 mm and"),
+    ({**RING, "land_clearance": 5e-3}, "land_clearance must be smaller than what is left to the bottom of"),
+    ({**RING, "outer_diameter": 80e-3}, "outer_diameter must lie between the least that holds a ball"),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), IMPOSSIBLE)
+def test_a_body_that_no_cage_of_this_size_has_is_refused(changes, words):
+    """Whether the mass is stated or that of the ring; the ring itself is taken, and says how it may be."""
+    study = read_study("cryogenic-turbopump")
+    known = replace(
+        study.cage, motion=MotionModel.SPACE, material=replace(study.cage.material, density=1.8e3)
+    )
+    with pytest.raises(InputError) as caught:
+        replace(study, cage=replace(known, **changes))
+    assert f"CageDesign.{words}" in str(caught.value)
+    assert "\n" not in str(caught.value)
+    replace(study, cage=replace(known, **FROM_SHAPE))
+
+
 EDGED = {
     "motion": MotionModel.SPACE,
     "pocket_shape": PocketShape.CYLINDRICAL,

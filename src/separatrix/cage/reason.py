@@ -54,18 +54,17 @@ def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
     kick : int
         Place of the kick in the ensemble.
     """
-    outcome, rubbing = ensemble.outcome[kick], ensemble.rubbing_force[kick] > 0.0
+    outcome = ensemble.outcome[kick]
     settled = outcome == RunOutcome.SETTLES
-    shares = {
-        CageMotion.WHIRLING: outcome == RunOutcome.WHIRLS,
-        CageMotion.DRIFTING: outcome == RunOutcome.DRIFTS,
-        CageMotion.ON_THE_LAND: settled & rubbing,
-        CageMotion.CENTRED: settled & ~rubbing,
-    }
-    counts = {motion: int(np.count_nonzero(runs)) for motion, runs in shares.items()}
-    most = max(counts, key=lambda motion: counts[motion])
-    unresolved = int(np.count_nonzero(outcome == RunOutcome.UNRESOLVED))
-    return most if counts[most] >= max(1, unresolved) else None
+    counts = {one: int(np.count_nonzero(outcome == one)) for one in RunOutcome}
+    unresolved = counts.pop(RunOutcome.UNRESOLVED)
+    most = max(counts, key=lambda one: (counts[one], one))
+    if counts[most] < max(1, unresolved):
+        return None
+    if most == RunOutcome.SETTLES:
+        rubs = 2 * np.count_nonzero(ensemble.rubbing_force[kick][settled] > 0.0) > counts[most]
+        return CageMotion.ON_THE_LAND if rubs else CageMotion.CENTRED
+    return CageMotion.WHIRLING if most == RunOutcome.WHIRLS else CageMotion.DRIFTING
 
 
 def left_pockets(cage: PlanarCage, ensemble: Ensemble) -> Mask:

@@ -111,7 +111,8 @@ class Judgement:
     land_impact_share : float
         Share of the land in all impacts [-].
     whirl_frequency, whirl_direction
-        Medians over the runs that whirl, over all if none does [Hz]; 1 forward, -1 backward, 0 none.
+        Medians over the runs that whirl if `cage_motion` is that, else over those that do not [Hz]; 1
+        forward, -1 backward, 0 none.
     whirl_ratio : float or None
         Speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's; median
         over the same runs. 1 goes round with the balls. None if the ball set is at rest [-].
@@ -122,8 +123,8 @@ class Judgement:
         Median power that the friction of pockets and of the land feeds into the cage there; below 0 it
         takes from it [W].
     rubbing_force, rubbing_speed, rubbing_power : float
-        Medians over the runs from the worst kick that settle: mean force on the land [N], sliding speed
-        there [m/s], and the power that rubbing turns to heat [W]; 0 if none rubs.
+        Medians over the same runs: mean force on the land [N], sliding speed there [m/s], and the power
+        that rubbing turns to heat [W]; 0 if none rubs.
     energy_imbalance : float
         The worst of all runs [-].
     duration, longest_run : float
@@ -226,16 +227,15 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     verdict, because = decide(cage, ensemble, counts)
     at = worst(counts)
     outcome = ensemble.outcome[at]
-    settled = outcome == RunOutcome.SETTLES
-    whirling = outcome == RunOutcome.WHIRLS
-    shown = whirling if whirling.any() else np.ones_like(whirling)
+    whirling, motion = outcome == RunOutcome.WHIRLS, cage_motion(ensemble, at)
+    shown = whirling if motion is CageMotion.WHIRLING or whirling.all() else ~whirling
     rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
     pockets, land = _impact_shares(ensemble)
 
     def median(name: str) -> float:
         return float(np.median(getattr(ensemble, name)[at][shown]))
 
-    force, speed = ensemble.rubbing_force[at][settled], ensemble.rubbing_speed[at][settled]
+    force, speed = ensemble.rubbing_force[at][shown], ensemble.rubbing_speed[at][shown]
     return Judgement(
         verdict=verdict,
         probability_stable=counts[at].probability_stable,
@@ -244,7 +244,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         worst_kick=counts[at].kick,
         by_kick=counts,
         reason=because,
-        cage_motion=cage_motion(ensemble, at),
+        cage_motion=motion,
         growth_rate=rate,
         growth_rate_low=rate_low,
         growth_rate_high=rate_high,

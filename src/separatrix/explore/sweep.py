@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
-from separatrix.cage import Judgement, judge, linear_whirl_frequency
+from separatrix.cage import CageMotion, Judgement, judge, linear_whirl_frequency
 from separatrix.cage_choice import require_friction
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
@@ -345,8 +345,7 @@ def _with_verdict(found: SweptCase, solution: Solution, runner: Runner) -> Swept
     """The case with the verdict of its whole ensemble; the orbit is that of the runs that whirl."""
     cage = solution.cage
     judged = judge(cage, runner.whole_ensemble(cage, solution.stability))
-    whirls = any(count.whirls and count.kick == judged.worst_kick for count in judged.by_kick)
-    if whirls and judged.whirl_ratio is not None:
+    if judged.cage_motion is CageMotion.WHIRLING and judged.whirl_ratio is not None:
         orbit = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
         found = replace(found, orbit_frequency=orbit)
     return replace(

@@ -117,8 +117,9 @@ def within_a_turn(solution: Solution) -> Iterator[str]:
     if 0.0 < turns < 1.0:
         turn = format_quantity(duration / turns, "s", 3)
         yield (
-            f"Runs of {format_quantity(duration, 's', 3)} are {turns:.2g} turns of the cage: what comes once "
-            "a turn, by gravity, unbalance or an uneven land, is not judged. Whole turns need [stability] "
+            f"Runs of {format_quantity(duration, 's', 3)} are {turns:.2g} turns of the cage: they may "
+            "not show where its motion ends, and what comes once a turn, by gravity, unbalance or an uneven "
+            "land, is not judged. Whole turns need [stability] "
             f'duration = "{turn}" or longer.'
         )
 

@@ -298,7 +298,8 @@ def _whirl(history: SpaceHistory, speed: Array, here: slice) -> Whirl:
 
     def ratios(part: slice) -> tuple[float, float | None, float | None]:
         at, frame = time[part], speed[part]
-        mean = integral(at, cage_speed[part]) / float(at[-1] - at[0])
+        length = float(at[-1] - at[0])
+        mean = integral(at, cage_speed[part]) / length if length > 0.0 else float(cage_speed[part].mean())
         orbit = whirl_speed(at, history.centre[part], history.centre_velocity[part], frame)
         cone = whirl_speed(at, history.lean[part], history.lean_rate[part], frame)
         return mean, _ratio(orbit, mean), _ratio(cone, mean)
