@@ -21,7 +21,7 @@ adds pi rho R L^3/(12 g): 70 cages half a ball thick, two balls wide and as dens
 
 
 def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """Clearances are smaller than what they are clearances of, and the centre of mass is inside the cage."""
+    """Clearances smaller than what they are clearances of; a ring, lands and an inertia that fit."""
     gap, ball = bearing.ball_gap, bearing.ball_diameter
     if cage.pocket_clearance >= gap:  # no bar would be left between pockets
         rule = f"must be smaller than the gap between balls, {format_quantity(gap, 'm')}"
@@ -32,7 +32,7 @@ def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
         yield _check.problem(cage, "land_clearance", rule, cure)
     yield from _lands_between_rings(cage, bearing)
-    wrong = [*_ring_between_rings(cage, bearing), *_edges_of_pockets(cage, bearing)]
+    wrong = list(_ring_between_rings(cage, bearing)) or list(_edges_of_pockets(cage, bearing))
     yield from wrong
     density = cage.material.density if cage.material else None
     if not wrong and (cage.mass is not None or (cage.has_shape and density is not None)):
@@ -51,7 +51,7 @@ def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Proble
     if cage.motion is MotionModel.SPACE:
         nearest = ("least that holds a ball", math.hypot(pitch - ball, ball + cage.pocket_clearance))
         farthest = top
-        short = "Within it a ball passes between the edges of its pocket."
+        short = "A ball would pass between the edges of its pocket."
     limits = {"inner_diameter": (inner, bottom, farthest), "outer_diameter": (outer, nearest, top)}
     for key, (size, low, high) in limits.items():
         if not low[1] < size < high[1]:
@@ -78,10 +78,8 @@ def _lands_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Probl
     if stated is not None:
         ends, where = (low, high), "the bottoms of the grooves"
         if cage.has_shape:
-            ends, where = (
-                (cage.inner_diameter or low, cage.outer_diameter or high),
-                "the surfaces of the cage",
-            )
+            ends = cage.inner_diameter or low, cage.outer_diameter or high
+            where = "the surfaces of the cage"
         if not ends[0] <= stated <= ends[1]:
             between = " and ".join(format_quantity(end, "m") for end in ends)
             yield _check.problem(cage, "land_diameter", f"must lie between {where}, {between}")
@@ -90,9 +88,8 @@ def _lands_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Probl
     if land is not None and cage.land_clearance is not None and cage.guidance is not Guidance.BALL:
         most = high - land if is_outer else land - low
         if 0.0 < most <= cage.land_clearance:
-            rule = (
-                f"must be smaller than what is left to the bottom of the groove, {format_quantity(most, 'm')}"
-            )
+            left = format_quantity(most, "m")
+            rule = f"must be smaller than what is left to the bottom of the groove, {left}"
             yield _check.problem(cage, "land_clearance", rule, "The land of the ring is beside its groove.")
     most, width = WIDEST * bearing.ball_diameter, (cage.land_spacing or 0.0) + cage.land_width
     if cage.width is None and width > most:

@@ -41,7 +41,7 @@ width = "14 mm"
 kicks = ["0.5 m/s"]
 tilt_kick = 1.0
 axial_kick = 0.5
-duration = "6 ms"
+duration = "10 ms"
 """
 
 PICTURES = ("simulation", "simulation-whirl", "simulation-forces", "simulation-energy")
@@ -240,7 +240,7 @@ def test_a_run_that_grows_has_all_its_samples_before_its_end(folder):
     text = SPACE.replace("ball_cage_friction = 0.2", 'ball_cage_friction = 0.6\npocket_shape = "cylindrical"')
     for key in ("guidance", "land_clearance", "land_count", "land_spacing"):
         text = re.sub(rf"{key} = .*\n", "", text)
-    text = text.replace("tilt_kick = 1.0\naxial_kick = 0.5", "tilt_kick = 0.3").replace('"6 ms"', '"50 ms"')
+    text = text.replace("tilt_kick = 1.0\naxial_kick = 0.5", "tilt_kick = 0.3").replace('"10 ms"', '"50 ms"')
     (folder / "grows.toml").write_text(text)
     with pytest.warns(separatrix.errors.ValidityWarning):  # of forces, which grow too
         found = separatrix.simulate(folder / "grows.toml", kick=2.0).record.history

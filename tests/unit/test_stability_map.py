@@ -292,7 +292,7 @@ def test_every_parameter_reaches_the_study(name, study):
         study = replace(study, film=worn)
     here = value_in(study, name)
     value = 3 if parameters()[name].is_whole else 1.02 * (here or 1e-6)
-    fits = {"cage.land_diameter": 66e-3, "cage.transverse_inertia": 1.4e-5}
+    fits = {"cage.land_diameter": 66e-3, "cage.moment_of_inertia": 2.6e-5, "cage.transverse_inertia": 1.4e-5}
     value = {"cage.land_count": 2, "film.elastic_modulus": 2e9, **fits}.get(name, value)
     assert (varied(study, {name: value}) == study) == (name in ("restitution_factor", "kick"))
 
