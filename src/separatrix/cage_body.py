@@ -104,8 +104,8 @@ def cage_inertia(design: CageDesign, bearing: BallBearing) -> CageInertia:
         mass = density * shape.volume
     thin = mass * (bearing.pitch_diameter / 2.0) ** 2
     axial, transverse = shape.inertia(mass) if shape is not None else (thin, thin / 2.0)
-    if shape is None and design.moment_of_inertia is not None:
-        transverse = design.moment_of_inertia / 2.0
+    if design.moment_of_inertia is not None:  # what the mass has along the axis stays as it is
+        transverse += (design.moment_of_inertia - axial) / 2.0
     return CageInertia(
         mass=mass,
         moment_of_inertia=design.moment_of_inertia or axial,

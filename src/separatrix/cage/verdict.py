@@ -19,6 +19,7 @@ from separatrix.units import (
     Array,
     Hertz,
     Joule,
+    Mask,
     Metre,
     MetrePerSecond,
     Newton,
@@ -97,9 +98,10 @@ class Judgement:
     largest_offset : float
         Largest offset of the cage centre in any run [m].
     mean_offset : float
-        Median of the mean offset in the last part of the runs [m].
+        Median of the mean offset in the last part of the runs that end in `cage_motion`, or of all if that
+        is None [m].
     orbit_evenness : float
-        Median of the offset's spread over its mean there: 0 on a circle about the axis, 0.52 in a
+        Median of the offset's spread over its mean there, in the same runs: 0 on a circle about the axis, 0.52 in a
         motion without any preferred radius [-].
     drift_rate, drift_rate_law : float
         Median growth rate of the mean offset of the runs that do not whirl, and the linear law's for a
@@ -111,8 +113,7 @@ class Judgement:
     land_impact_share : float
         Share of the land in all impacts [-].
     whirl_frequency, whirl_direction
-        Medians over the runs that whirl if `cage_motion` is that, else over those that do not [Hz]; 1
-        forward, -1 backward, 0 none.
+        Medians over the same runs [Hz]; 1 forward, -1 backward, 0 none.
     whirl_ratio : float or None
         Speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's; median
         over the same runs. 1 goes round with the balls. None if the ball set is at rest [-].
@@ -228,7 +229,8 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
     at = worst(counts)
     outcome = ensemble.outcome[at]
     whirling, motion = outcome == RunOutcome.WHIRLS, cage_motion(ensemble, at)
-    shown = whirling if motion is CageMotion.WHIRLING or whirling.all() else ~whirling
+    ends = {CageMotion.WHIRLING: RunOutcome.WHIRLS, CageMotion.DRIFTING: RunOutcome.DRIFTS}
+    shown = np.ones_like(whirling) if motion is None else outcome == ends.get(motion, RunOutcome.SETTLES)
     rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
     pockets, land = _impact_shares(ensemble)
 
@@ -250,7 +252,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         growth_rate_high=rate_high,
         largest_offset=float(ensemble.largest_offset.max()),
         mean_offset=median("mean_offset"),
-        orbit_evenness=_evenness(ensemble, at),
+        orbit_evenness=_evenness(ensemble, at, shown),
         drift_rate=_median(ensemble.drift_rate[at][~whirling]),
         drift_rate_law=drift_rate_law(cage),
         largest_contact_force=float(ensemble.largest_contact_force.max()),
@@ -316,9 +318,9 @@ def _median(values: Array) -> float:
     return float(np.median(values)) if values.size else 0.0
 
 
-def _evenness(ensemble: Ensemble, kick: int) -> Ratio:
-    """Median of spread over mean of the offset, over the runs that left the axis at all."""
-    mean, spread = ensemble.mean_offset[kick], ensemble.offset_spread[kick]
+def _evenness(ensemble: Ensemble, kick: int, shown: Mask) -> Ratio:
+    """Median of spread over mean of the offset, over the runs shown that left the axis at all."""
+    mean, spread = ensemble.mean_offset[kick][shown], ensemble.offset_spread[kick][shown]
     return _median(spread[mean > 0.0] / mean[mean > 0.0])
 
 

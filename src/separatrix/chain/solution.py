@@ -42,7 +42,7 @@ from separatrix.chain.restitution import (
     hertz_coefficient_for,
     restitution,
 )
-from separatrix.errors import InputError, ValidityWarning, together
+from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import (
     BallModel,
     CageDesign,
@@ -354,11 +354,11 @@ class Solution:
                 space=self._in_space(stiffness) if design.motion is MotionModel.SPACE else None,
                 **as_designed(design),
             )
-        except InputError as error:  # of clearances as the cage runs
-            refused = (
-                one.at(one.path.replace("PlanarCage.", "[cage] ")) for one in error.problems or (error,)
-            )
-            raise together(list(refused)) from None
+        except InputError as error:
+            key = error.path.removeprefix("PlanarCage.")
+            if key not in ("pocket_clearance", "pocket_axial_clearance"):
+                raise
+            raise error.at(f"[cage] {key}", cure=f"It is that of the running cage. {error.cure}") from None
         warn_if_balls_are_driven(cage)
         return cage
 

@@ -342,7 +342,7 @@ def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptC
 
 
 def _with_verdict(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
-    """The case with the verdict of its whole ensemble; the orbit is that of the runs that whirl."""
+    """The case with the verdict of its whole ensemble; an orbit where most runs whirl."""
     cage = solution.cage
     judged = judge(cage, runner.whole_ensemble(cage, solution.stability))
     if judged.cage_motion is CageMotion.WHIRLING and judged.whirl_ratio is not None:
