@@ -19,7 +19,6 @@ from separatrix.units import (
     Array,
     Hertz,
     Joule,
-    Mask,
     Metre,
     MetrePerSecond,
     Newton,
@@ -101,8 +100,8 @@ class Judgement:
         Median of the mean offset in the last part of the runs that end in `cage_motion`, or of all if that
         is None [m].
     orbit_evenness : float
-        Median of the offset's spread over its mean there, in the same runs: 0 on a circle about the axis, 0.52 in a
-        motion without any preferred radius [-].
+        Median of the offset's spread over its mean there, in the same runs: 0 on a circle about the axis,
+        0.52 in a motion without any preferred radius [-].
     drift_rate, drift_rate_law : float
         Median growth rate of the mean offset of the runs that do not whirl, and the linear law's for a
         cage without a land; 0 with one [1/s].
@@ -318,7 +317,7 @@ def _median(values: Array) -> float:
     return float(np.median(values)) if values.size else 0.0
 
 
-def _evenness(ensemble: Ensemble, kick: int, shown: Mask) -> Ratio:
+def _evenness(ensemble: Ensemble, kick: int, shown: Array) -> Ratio:
     """Median of spread over mean of the offset, over the runs shown that left the axis at all."""
     mean, spread = ensemble.mean_offset[kick][shown], ensemble.offset_spread[kick][shown]
     return _median(spread[mean > 0.0] / mean[mean > 0.0])
