@@ -2,6 +2,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 # A file of tests is one worker's, so that what its tests share is made once.
 TESTS := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadfile --no-loadscope-reorder
+
 # Modules compiled to bytecode are kept, which halves the start of every command.
 unexport PYTHONDONTWRITEBYTECODE
 

@@ -7,7 +7,6 @@ that share functions are compiled by one process, where the shared ones are comp
 import contextlib
 import os
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -46,5 +45,4 @@ def _answer(verb: str) -> None:
 
 
 if __name__ == "__main__":
-    PARTS: dict[str, Callable[[], None]] = {"plane": plane, "space": space}
-    PARTS[sys.argv[1]]()
+    {"plane": plane, "space": space}[sys.argv[1]]()

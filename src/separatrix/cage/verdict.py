@@ -91,7 +91,8 @@ class Judgement:
     cage_motion : CageMotion or None
         What most runs from the worst kick end in; None if most are unresolved.
     growth_rate : float
-        Mean over those runs of half the logarithmic rate of the kinetic energy in their second half [1/s].
+        Mean over all runs from the worst kick of half the logarithmic rate of the kinetic energy in their
+        second half [1/s].
     growth_rate_low, growth_rate_high : float or None
         Student's 95 % interval of that mean; None with fewer than two runs [1/s].
     largest_offset : float

@@ -48,9 +48,9 @@ LEGEND = (
     "P(stable): share of runs that settle from the worst kick."
 )
 EVIDENCE_LEGEND = (
-    "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over those runs. "
-    "offset of the cage centre, force at a pocket and at the land: largest in any run. drift: median growth "
-    "of the mean offset of the runs that do not whirl. whirl: median of the runs that end in the "
+    "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over all of "
+    "them. offset of the cage centre, force at a pocket and at the land: largest in any run. drift: median "
+    "growth of the mean offset of the runs that do not whirl. whirl: median of the runs that end in the "
     "motion, seen from the balls; ratio: speed at which the centre orbits the axis over "
     "that of the balls."
 )
