@@ -21,10 +21,12 @@ from separatrix.runner import PART, Runner
 from separatrix.study import StabilitySettings, Study, TractionModel
 from separatrix.units import Ratio, Second
 
-SAMPLED = 3  # runs from each kick that are timed at a friction
 LONGEST_SAMPLE = 5.0  # time after which no further friction is timed [s]
-BRIEF = (1e-3, 1e-2, 1e-1)  # shares of the duration at which a run is timed before it is timed whole
-SLOW = 0.1  # share of `LONGEST_SAMPLE` from which on the time of a brief run is scaled up
+SHARES = (1e-3, 1e-2, 1e-1, 1.0)
+"""Parts of the duration for which one run from each kick is timed. The first is timed twice, for it may wait
+for compiled code to be loaded. More runs at a friction take longer and tell no more."""
+
+SLOW = 0.1  # part of `LONGEST_SAMPLE` from which on the time of a brief run is scaled up
 DAMPINGS = (None, 0.0, 0.5, 1.0)
 """Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
 
@@ -190,15 +192,17 @@ def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
     timed in place of the whole.
     """
 
-    def taken(share: Ratio, runs: int) -> Second:
+    def taken(share: Ratio) -> Second:
         some = replace(settings, duration=share * settings.duration)
         begun = time.perf_counter()
-        run_ensemble(cage, some, runs=runs)
-        return (time.perf_counter() - begun) / (runs * share * len(settings.kicks))
+        run_ensemble(cage, some, runs=1)
+        return (time.perf_counter() - begun) / len(settings.kicks)
 
-    taken(BRIEF[0], 1)
-    for share in BRIEF:
-        whole = taken(share, 1)
-        if whole * share * len(settings.kicks) > SLOW * LONGEST_SAMPLE:
-            return whole
-    return taken(1.0, SAMPLED)
+    taken(SHARES[0])
+    whole = 0.0
+    for share in SHARES:
+        brief = taken(share)
+        whole = brief / share
+        if brief * len(settings.kicks) > SLOW * LONGEST_SAMPLE:
+            break
+    return whole
