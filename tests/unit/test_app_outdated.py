@@ -8,8 +8,7 @@ import pytest
 from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
-from separatrix.app import outdated
-from separatrix.app.server import application
+from separatrix.app import outdated, server
 from separatrix.app.worker import Task, _answered
 from separatrix.study_file import read_study
 
@@ -50,7 +49,7 @@ def answered(tmp_path_factory):
 @pytest.fixture
 def page(answered):
     """The page of that folder; the study is afterwards as it was."""
-    with TestClient(application(answered)) as client:
+    with TestClient(server.application(answered)) as client:
         yield client
     (answered / "small.toml").write_text(SMALL)
 
@@ -72,6 +71,27 @@ def test_an_answer_is_marked_after_its_study_was_changed(page, place):
     assert ("outdated" in found, words in found) == (True, True)
     save(page, SMALL)
     assert "outdated" not in page.get(place).text
+
+
+def test_every_view_of_an_outdated_answer_says_so(page):
+    """Beside "Last answer", at the moving cage, between compared studies, and at the report."""
+    root = page.app.state.root
+    answer(root, "simulate", motion="plane")
+    (root / "small" / "report.html").write_text("written after its answers")
+    views = ("/study/small.toml", "/cage/small.toml", "/report/small.toml")
+    views = (*views, "/compare?first=small.toml&second=small.toml&verb=stability")
+    words = ("outdated", "Run it again", "Make the report again", "The study was changed")
+    for view in views:
+        found = page.get(view)
+        assert (view, found.status_code, [w for w in words if w in found.text]) == (view, 200, [])
+    save(page, SMALL.replace("[cage]", '[cage]\nmass = "26 g"'))
+    assert page.get(views[0]).text.count(">outdated<") == 3
+    for view in views[1:]:
+        assert "The study was changed after this answer: cage.mass. Run it again." in page.get(view).text
+    save(page, SMALL)
+    answer(root, "bearing")
+    assert "Newer than this report: bearing. Make the report again." in page.get("/report/small.toml").text
+    (root / "small" / "report.html").unlink()
 
 
 def test_a_change_in_a_file_that_the_study_names_is_seen(page):
@@ -139,3 +159,17 @@ def test_a_study_is_read_once_for_each_state(page, monkeypatch):
     with pytest.raises(ZeroDivisionError):
         page.get("/")
     monkeypatch.setattr(outdated, "read_study", read_study)
+
+
+def test_the_page_ends_after_what_it_reads(answered, monkeypatch):
+    """A thread that the interpreter ends while it reads a dataset would keep the lock of HDF5 for ever."""
+    read = []
+
+    def slow(_):
+        time.sleep(0.5)  # longer than the page is open
+        read.append(True)
+
+    monkeypatch.setattr(server, "made_ready", slow)
+    with TestClient(server.application(answered)):
+        pass
+    assert read == [True]

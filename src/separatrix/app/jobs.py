@@ -182,7 +182,7 @@ class Jobs:
                 if changes.get("state", RUNNING) not in ACTIVE:
                     changes["ended"] = time.monotonic()
                     if (job := self._jobs.get(number)) is not None:
-                        threading.Thread(target=self.after, args=(job.task,), daemon=True).start()
+                        threading.Thread(target=self.after, args=(job.task,)).start()
                 self._change(number, **changes)
                 self._feed()
 

@@ -207,6 +207,12 @@ class Page:
         path = place / f"{verb}.json"
         return self.studies.change(self.folder.study(study), path, values) if self.folder.has(path) else ""
 
+    def outdated_answers(self, study: str) -> dict[str, str]:
+        """Return the verbs whose saved answer is no longer that of the study, each with the reason."""
+        place = self.folder.answers(study)
+        found = {verb: self.outdated(study, place, verb) for verb in self.answered(study)}
+        return {verb: sentence for verb, sentence in found.items() if sentence}
+
     def title(self, study: str) -> str:
         """Return the title that the file of a study has; empty if it has none of its own."""
         path = self.folder.study(study)

@@ -28,6 +28,7 @@ from separatrix.figures.style import OUTCOMES, study_of
 from separatrix.input_files import reading_only_in
 from separatrix.limits.map_records import KICK, RESTITUTION
 from separatrix.questions import verb_named
+from separatrix.reporting.content import NEEDED
 from separatrix.units import Array, format_number, printable, shown
 
 PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
@@ -118,6 +119,7 @@ def routes(page: Page) -> APIRouter:
             name=name,
             point=point,
             title=str(data.attrs.get("title", name)),
+            outdated="" if point else page.outdated(name, page.folder.answers(name), "simulate"),
             found=found,
             view=view,
             answers=page.answered(name),
@@ -164,17 +166,33 @@ def routes(page: Page) -> APIRouter:
         if not files:
             cure = "Make it on the page of the study."
             raise InputError(f"{name}: report", "is not written yet", cure=cure)
-        return page.html("report.html", name=name, files=files, folder=page.folder.name(place))
+        outdated = _report_outdated(page, name, min((place / file).stat().st_mtime_ns for file in files))
+        return page.html(
+            "report.html", name=name, files=files, folder=page.folder.name(place), outdated=outdated
+        )
 
     @router.get("/compare", response_class=HTMLResponse)
     def compare(first: str = "", second: str = "", verb: str = "") -> Response:
         names = [name for name in page.folder.studies() if page.answered(name)]
-        found: dict[str, object] = {"verbs": [], "verb": verb, "comparison": None}
+        found: dict[str, object] = {"verbs": [], "verb": verb, "comparison": None, "outdated": []}
         if first and second:
             found = _compared(page, first, second, verb)
         return page.html("compare.html", names=names, first=first, second=second, **found)
 
     return router
+
+
+def _report_outdated(page: Page, name: str, written: int) -> str:
+    """Return why a report of this time is not that of the study and its answers now; empty if it is."""
+    place = page.folder.answers(name)
+    shown = [verb for verb in NEEDED if verb in page.answered(name)]
+    reasons = page.outdated_answers(name)
+    if old := [verb for verb in shown if verb in reasons]:
+        return (
+            f"An answer in this report, {old[0]}, is outdated. {reasons[old[0]]} Then make the report again."
+        )
+    newer = [verb for verb in shown if (place / f"{verb}.json").stat().st_mtime_ns > written]
+    return f"Newer than this report: {', '.join(newer)}. Make the report again." if newer else ""
 
 
 def _plots(data: xr.Dataset | None, verb: str) -> list[str]:
@@ -267,11 +285,13 @@ def _compared(page: Page, first: str, second: str, verb: str) -> dict[str, objec
         raise InputError(f"{first} and {second}", "have no answer of one verb", cure="Run one of both.")
     chosen = verb if verb in shared else shared[0]
     found = compared(pair[0][chosen], pair[1][chosen])
+    reasons = ((name, page.outdated_answers(name).get(chosen)) for name in (first, second))
     own = found.environment or ""
     return {
         "verbs": shared,
         "verb": chosen,
         "comparison": found,
+        "outdated": [f"{name}: {reason}" for name, reason in reasons if reason],
         "text": in_words(found, full=True),
         "verdicts": [(row.place, row.name, *pair_words(row)) for row in found.verdicts],
         "rows": [result_words(row, own) for row in shown_rows(found)],

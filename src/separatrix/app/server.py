@@ -92,9 +92,11 @@ def application(root: Path) -> FastAPI:
 
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
-        threading.Thread(target=made_ready, args=(page,), daemon=True).start()
+        reading = threading.Thread(target=made_ready, args=(page,))
+        reading.start()
         yield
         page.jobs.close()
+        reading.join()  # ended while it reads a dataset it would keep HDF5's lock, and the exit hang
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
