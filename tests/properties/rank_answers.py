@@ -57,7 +57,7 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
     if row["mean_offset"] > 1.2 * room:
         yield f"ends {row['mean_offset']} m off in a room of {room} m"
     for count in counts:
-        if count["settles"] < 0.9 * row["runs"] or 2 * count["kept_by_land"] > row["runs"]:
+        if count["settles"] < 0.9 * row["runs"] or count["kept_by_land"] > 0.1 * row["runs"]:
             yield f"STABLE with {count}"
     if row["cage_motion"] not in ("CENTRED", "ON THE LAND"):
         yield f"STABLE and {row['cage_motion']}"

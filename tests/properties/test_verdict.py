@@ -7,7 +7,7 @@ from cages import ON_A_LAND, ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.cage import CageMotion, Ensemble, RunOutcome, Verdict, judge
+from separatrix.cage import CageMotion, Cause, Ensemble, RunOutcome, Verdict, judge
 
 quick = settings(derandomize=True, max_examples=150, deadline=None)
 
@@ -93,3 +93,13 @@ def test_a_kick_from_which_all_runs_whirl_is_the_worst(runs):
     if runs.outcome.shape[1] >= 4:
         assert (found.verdict, found.probability_stable) == (Verdict.UNSTABLE, 0.0)
     assert found.worst_kick in {k.kick for k in found.by_kick if k.settles == 0 or k.whirls > 0.5 * k.runs}
+
+
+@quick
+@given(st.lists(st.integers(0, 24), min_size=1, max_size=4))
+def test_a_cage_that_its_land_keeps_moving_is_not_stable(kept):
+    """More than a tenth of the runs from any kick suffice; the evidence is of the kick with most of them."""
+    cause = np.where(np.arange(24) < np.array(kept)[:, np.newaxis], int(Cause.LAND_FRICTION), 0)
+    found = judge(CAGE, replace(ensemble(np.full(cause.shape, SETTLES), CAGE.ball_count), cause=cause))
+    assert (found.verdict is Verdict.STABLE) == (max(kept) <= 0.1 * 24)
+    assert found.worst_kick == found.by_kick[int(np.argmax(kept))].kick

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from separatrix.cage import CageMotion, Judgement, Verdict, judge
+from separatrix.cage import CageMotion, Judgement, Verdict, judge, longest_duration, run_ensemble
 from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
 from separatrix.draws import Case
@@ -15,7 +15,7 @@ from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger
 from separatrix.limits.curve import RestitutionThreshold
 from separatrix.ranking.rank import _row, rank
-from separatrix.ranking.reason import Pocket, disagreement, reason
+from separatrix.ranking.reason import Pocket, disagreement, reason, with_other_ball
 from separatrix.ranking.records import (
     MeanFriction,
     NotFinished,
@@ -271,6 +271,40 @@ def test_each_candidate_has_the_stiffness_of_its_own_pocket():
         assert repr(replace(row, rank=1, probability_lowest_friction=None)) == repr(alone)
 
 
+def test_a_cage_by_its_shape_has_the_mass_of_each_candidate():
+    """Its density where it is known, else that of the cage's material; a stated mass is that of all."""
+    study = quick_study()
+    wall = Material(name="light", elastic_modulus=3e9, poisson_ratio=0.4, density=1300.0)
+    walls = (wall, replace(wall, name="heavy", density=8800.0), replace(wall, name="unknown", density=None))
+    candidates = tuple(
+        Candidate(name=m.name, friction={"air": Friction(mean=0.3)}, material=m) for m in walls
+    )
+    ring = {"inner_diameter": 61e-3, "outer_diameter": 69e-3, "width": 15e-3}
+    cage = replace(study.cage, mass=None, material=wall, land_diameter=None, **ring)
+    question = RankingQuestion(environments=("air",), candidates=candidates)
+    found = {row.name: row for row in rank(replace(study, cage=cage, ranking=question)).overall}
+    assert found["heavy"].cage_mass == pytest.approx(8800.0 / 1300.0 * found["light"].cage_mass, rel=1e-12)
+    assert found["unknown"].cage_mass == found["light"].cage_mass
+    assert found["heavy"].restitution_factor != found["light"].restitution_factor
+    given = rank(replace(study, cage=replace(cage, mass=0.02), ranking=question)).overall
+    assert {row.cage_mass for row in given} == {0.02}
+
+
+def test_balls_too_fast_for_the_runs_leave_out_their_second_verdict(monkeypatch):
+    """The ranking is answered, and a note says what is missing; the limit is that of `run_ensemble`."""
+    study = quick_study()
+    monkeypatch.setattr("separatrix.ranking.reason.longest_duration", lambda _: 0.5 * QUICK.duration)
+    found = rank(study)
+    rows = [row for row in found.environments[0].materials if isinstance(row, Ranked)]
+    assert rows
+    assert all(row.other_ball is None for row in rows)
+    assert any("runs longer than 10 ms would take too many steps" in note for note in found.notes)
+    cage = with_other_ball(solve(study), 0.1)
+    too_long = replace(QUICK, duration=1.01 * longest_duration(cage))
+    with pytest.raises(InputError, match="duration must be at most"):
+        run_ensemble(cage, too_long)
+
+
 def test_one_measured_friction_alone_has_no_probability_of_being_the_lowest():
     """There is nothing to compare it with; with another, the two add up to 1, however small the means."""
     one = Friction(mean=0.2, standard_deviation=0.05)
@@ -290,7 +324,7 @@ def test_a_study_without_candidates_is_refused():
 def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     """Every number of it is absent, so that the answer can be written."""
     eta = SimpleNamespace(restitution_factor=0.3)
-    pocket = Pocket(1e6, 1e-4, 0.0)
+    pocket = Pocket(0.02, 1e6, 1e-4, 0.0)
     question = SimpleNamespace(pockets={"A": pocket}, cages={pocket: SimpleNamespace(restitution=eta)})
     evidence = judgement(largest_contact_force=float(bad))
     found = SimpleNamespace(judgements={(pocket, 0.1): evidence}, points={})

@@ -68,7 +68,7 @@ SETTINGS = {
     ),
     "kick lost in rounding": ('kicks = ["1e-300 m/s"]', "> 1e-09 and < 10000 [m/s]; got 1e-300. A kick"),
     "run of a week": ('duration = "168 h"', "duration must be <= 10000 s; got"),
-    "run of an hour": ('duration = "1 h"', "for this cage [s]; got 3600. Shorten the run"),
+    "run of an hour": ('duration = "1 h"', "for this cage; got 3600 s. Shorten the run"),
     "run of no time": ('duration = "1e-12 s"', "duration must be >= 0.001 us; got"),
 }
 

@@ -13,7 +13,7 @@ from separatrix.cage.hard import run_hard_ensemble
 from separatrix.cage.history import History, follow, simulate
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
 from separatrix.cage.reason import CageMotion
-from separatrix.cage.runs import run_ensemble
+from separatrix.cage.runs import longest_duration, run_ensemble
 from separatrix.cage.space.analysis import SpaceAnalysis, analyse
 from separatrix.cage.space.ensemble import SpaceEnsemble
 from separatrix.cage.space.history import SpaceHistory, simulate_in_space
@@ -42,6 +42,7 @@ __all__ = [
     "linear_critical_friction",
     "linear_roots",
     "linear_whirl_frequency",
+    "longest_duration",
     "run_ensemble",
     "run_hard_ensemble",
     "settings_for",

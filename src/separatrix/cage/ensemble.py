@@ -17,7 +17,7 @@ from separatrix.cage.records import PLAIN, Evidence, Samples, dtype_of, samples_
 from separatrix.cage.run import books_for, random_start, run_chunk, run_plain_chunk
 from separatrix.errors import InputError
 from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
-from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio, Second
+from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio, Second, format_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -160,7 +160,7 @@ def run_in_plane(
     forward = cage.rotation_sense > 0
     cage = turned_forward(cage)
     speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
-    check_length(cage, settings.duration)
+    check_length(settings.duration, fastest_rate(cage))
     starts = random_starts(cage, settings, first_run, runs)
     evidence = np.zeros((len(speeds), runs), dtype_of(Evidence))
     hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
@@ -205,19 +205,19 @@ def run_rows(
         evidence[name] *= cage.mass
 
 
-def check_length(cage: PlanarCage, duration: Second) -> None:
-    """Refuse a run that would take longer than anyone waits.
+def check_length(duration: Second, fastest: RadianPerSecond) -> None:
+    """Refuse a run of a cage with this fastest motion that would take longer than anyone waits.
 
     Raises
     ------
     InputError
         It would need too many steps.
     """
-    longest = MOST_RADIANS / fastest_rate(cage)
+    longest = MOST_RADIANS / fastest
     if not duration <= longest:
-        cure = "Shorten the run, or check the cage's stiffnesses, damping, mass and moment of inertia."
-        rule = f"must be at most {longest:.3g} for this cage [s]"
-        raise InputError("[stability] duration", rule, f"{duration:g}", cure)
+        cure = "Shorten the run, or check the cage's stiffnesses, damping, mass and moments of inertia."
+        rule = f"must be at most {format_quantity(longest, 's', 3)} for this cage"
+        raise InputError("[stability] duration", rule, format_quantity(duration, "s"), cure)
 
 
 def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:

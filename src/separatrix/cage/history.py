@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from separatrix.cage.closed_forms import time_unit
+from separatrix.cage.closed_forms import fastest_rate, time_unit
 from separatrix.cage.ensemble import check_length, chosen, other_way_round, random_starts, run_rows
 from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, turned_forward
 from separatrix.cage.records import SOURCES, Evidence, Samples, dtype_of, samples_for
@@ -185,7 +185,7 @@ def follow(
         raise InputError("ball_lead", rule, f"{lead.tolist()}")
     settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
     chosen(settings, None, None)
-    check_length(cage, duration)
+    check_length(duration, fastest_rate(cage))
     angles = np.array(cage.ball_angles) if pocket_angle is None else pocket_angle
     starts = np.concatenate([[direction], lead, play, angles])[np.newaxis]
     evidence = np.zeros(1, dtype_of(Evidence))

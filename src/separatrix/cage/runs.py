@@ -5,13 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from separatrix.cage.ensemble import Ensemble, run_in_plane
+from separatrix.cage.closed_forms import fastest_rate
+from separatrix.cage.ensemble import MOST_RADIANS, Ensemble, run_in_plane
 from separatrix.cage.space.ensemble import run_in_space
+from separatrix.cage.space.inputs import fastest_in_space
 
 if TYPE_CHECKING:
     from separatrix.cage.planar import PlanarCage
     from separatrix.study import StabilitySettings
-    from separatrix.units import MetrePerSecond
+    from separatrix.units import MetrePerSecond, Second
+
+
+def longest_duration(cage: PlanarCage) -> Second:
+    """Duration above which `run_ensemble` refuses a run of this cage."""
+    return MOST_RADIANS / (fastest_rate(cage) if cage.space is None else fastest_in_space(cage))
 
 
 def run_ensemble(

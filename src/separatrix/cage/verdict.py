@@ -210,9 +210,16 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
 
 
 def worst(counts: tuple[KickCount, ...]) -> int:
-    """Place of the worst kick: of those from which most runs whirl, if any, the one that settles least."""
+    """Place of the worst kick: of those from which most runs whirl, if any, the one that settles least.
+
+    Of several it is the one with most whirls, then with most runs that the land keeps moving.
+    """
     whirling = [i for i, count in enumerate(counts) if _mostly(count.whirls, count.runs)]
-    return min(whirling or range(len(counts)), key=lambda i: (counts[i].settles, -counts[i].whirls, i))
+
+    def goodness(i: int) -> tuple[int, int, int, int]:
+        return counts[i].settles, -counts[i].whirls, -counts[i].kept_by_land, i
+
+    return min(whirling or range(len(counts)), key=goodness)
 
 
 def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
@@ -220,9 +227,9 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
 
     UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
     settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
-    ends outside its pockets nor left its room nor, in any run, the range of numbers, nor do most runs from a
-    kick end in a motion that friction on the land keeps up. UNDECIDED otherwise. The rule is ours; it asks
-    more of a stable cage than of an unstable one.
+    ends outside its pockets nor left its room nor, in any run, the range of numbers, nor does friction on the
+    land keep it moving in more than a tenth of the runs from a kick. UNDECIDED otherwise. The rule is ours;
+    it asks more of a stable cage than of an unstable one.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)
@@ -355,7 +362,7 @@ def decide(
     left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
     if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
         return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)
-    if any(2 * count.kept_by_land > count.runs for count in counts):
+    if any(not _clear(count.runs - count.kept_by_land, count.runs) for count in counts):
         return Verdict.UNDECIDED, reason.kept_by_land(cage, ensemble)
     if ensemble.largest_offset.max() > largest_room(cage):
         return Verdict.UNDECIDED, reason.beyond_room(cage, ensemble)

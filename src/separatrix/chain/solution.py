@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from separatrix.cage import PlanarCage
@@ -223,8 +223,14 @@ class Solution:
 
     @cached_property
     def inertia(self) -> CageInertia:
-        """Mass and moments of inertia of the cage: as stated, of its shape, or of a thin ring."""
-        return cage_inertia(self.stated_design, self.study.bearing)
+        """Mass and moments of inertia of the cage: as stated, of its shape, or of a thin ring.
+
+        A shape has the density of the candidate's material where that is known, else of the cage's.
+        """
+        design, wall = self.stated_design, self.cage_material
+        if wall is not None and wall.density is not None:
+            design = replace(design, material=wall)
+        return cage_inertia(design, self.study.bearing)
 
     @cached_property
     def mobility(self) -> Mobility:

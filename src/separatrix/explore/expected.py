@@ -16,7 +16,7 @@ from separatrix.limits.map import PointFinder, require_cage_friction
 from separatrix.limits.map_records import MapQuestion
 from separatrix.limits.point import linear_guess
 from separatrix.limits.response import GrowthCounter
-from separatrix.ranking.reason import NOTICED, transmitted_force, with_other_ball
+from separatrix.ranking.reason import NOTICED, no_second, transmitted_force, with_other_ball
 from separatrix.runner import PART, Runner
 from separatrix.study import StabilitySettings, Study, TractionModel
 from separatrix.units import Ratio, Second
@@ -104,7 +104,7 @@ def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs:
     cage = solution.cage_with(0.0)
     settings = settings_for(solution.stability, cage)
     force = max(settings.kicks) * math.sqrt(cage.ball_cage_stiffness * cage.mass / 2.0)
-    if force < NOTICED * transmitted_force(solution):
+    if force < NOTICED * transmitted_force(solution) or no_second(solution):
         return 0.0
     few = replace(settings, runs=min(PART, settings.runs))
     other = with_other_ball(solution, 0.0)

@@ -23,7 +23,7 @@ from separatrix.answers import (
 )
 from separatrix.cage import History, Judgement, PlanarCage, SpaceHistory
 from separatrix.cage.closed_forms import drift_rate_law
-from separatrix.cage.planar import OUTCOME_SENTENCES
+from separatrix.cage.planar import OUTCOME_SENTENCES, Cause
 from separatrix.cage.reason import CAUSES
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
@@ -196,6 +196,8 @@ def _(found: MapAnswer) -> Node:
 
 def outcome_sentence(history: History | SpaceHistory) -> str:
     """Return in words where the motion of a run ends."""
+    if history.cause is Cause.LAND_FRICTION:
+        return "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
     cause = CAUSES.get(history.cause)
     return OUTCOME_SENTENCES[history.outcome] + (f" Cause: {cause}." if cause else "")
 

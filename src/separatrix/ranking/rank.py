@@ -40,6 +40,7 @@ from separatrix.ranking.reason import (
     Second,
     beyond_motion,
     is_beyond,
+    no_second,
     not_finite,
     not_measured,
     pocket_of,
@@ -170,6 +171,8 @@ def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequ
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
     reference = question.cages[question.reference]
+    if (missing := no_second(reference)) and any(is_beyond(reference, one) for _, one in judged):
+        notes.append(missing)
     return (*notes, *within_a_turn(reference), *beyond_motion(reference, moved))
 
 
@@ -283,7 +286,8 @@ def _more(
 
 def _wants_second(question: _Question, key: Key, found: Judgement) -> bool:
     """Whether a verdict of the bearing's own environment rests on forces beyond the range of its ball."""
-    return key in question.own and is_beyond(question.cages[key[0]], found)
+    solution = question.cages[key[0]]
+    return key in question.own and is_beyond(solution, found) and not no_second(solution)
 
 
 def _points_of(
@@ -361,6 +365,7 @@ def _row(
         probability_lowest_friction=chance,
         friction_scatter_assumed=friction.assumed,
         extrapolation=friction.extrapolation,
+        cage_mass=pocket.mass,
         ball_cage_stiffness=pocket.stiffness,
         pocket_clearance=pocket.clearance,
         land_clearance=pocket.land or None,

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import NamedTuple
 
-from separatrix.cage import Judgement, KickCount, PlanarCage, Verdict, judge
+from separatrix.cage import Judgement, KickCount, PlanarCage, Verdict, judge, longest_duration
 from separatrix.chain.pocket import contact_radius
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
 from separatrix.chain.solution import Solution, solve
@@ -25,7 +25,7 @@ from separatrix.study import (
     StabilitySettings,
     Study,
 )
-from separatrix.units import Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
+from separatrix.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity, shown
 
 STRONG: Ratio = 1.0
 """Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
@@ -213,15 +213,16 @@ traction still has its slope, and at the capacity itself a fifth less."""
 class Pocket(NamedTuple):
     """What the cages of candidates differ in besides friction; 0 without a land."""
 
+    mass: Kilogram
     stiffness: NewtonPerMetre
     clearance: Metre
     land: Metre
 
 
 def pocket_of(solution: Solution) -> Pocket:
-    """Stiffness and running clearances of the cage."""
-    design = solution.design
-    return Pocket(solution.ball_cage_stiffness, design.pocket_clearance, design.land_clearance or 0.0)
+    """Mass, stiffness and running clearances of the cage."""
+    design, land = solution.design, solution.design.land_clearance or 0.0
+    return Pocket(solution.inertia.mass, solution.ball_cage_stiffness, design.pocket_clearance, land)
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,6 +236,18 @@ class Second:
 def is_beyond(solution: Solution, judgement: Judgement) -> bool:
     """Whether a run pressed a pocket with more than a tenth of what the races can transmit to its ball."""
     return judgement.largest_contact_force > NOTICED * transmitted_force(solution)
+
+
+def no_second(solution: Solution) -> str:
+    """Return why there is no verdict by the other model of a ball; empty if there can be one."""
+    longest, duration = longest_duration(with_other_ball(solution, 0.0)), solution.stability.duration
+    if duration <= longest:
+        return ""
+    model = "traction" if solution.design.ball is BallModel.DAMPER else "damper"
+    return (
+        f"There is no second verdict, with ball = {shown(model)}: its balls move so fast between pocket and "
+        f"races that runs longer than {format_quantity(longest, 's', 3)} would take too many steps."
+    )
 
 
 def with_other_ball(solution: Solution, friction: Ratio) -> PlanarCage:

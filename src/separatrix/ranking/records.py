@@ -13,7 +13,7 @@ from separatrix.cage import Judgement
 from separatrix.chain.pocket import PocketConditions, standard_error
 from separatrix.limits.curve import StabilityCurve
 from separatrix.study import BallModel, Friction, MotionModel
-from separatrix.units import Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
+from separatrix.units import Kilogram, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +39,7 @@ class NotFinished:
     probability_lowest_friction: Ratio | None = None  # that no other candidate's mean friction is lower
     friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
     extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
+    cage_mass: Kilogram  # of a shape that of its material
     ball_cage_stiffness: NewtonPerMetre  # of its own pocket
     pocket_clearance: Metre  # running, along the circumference
     land_clearance: Metre | None  # running, diametral; null without a land
@@ -62,6 +63,7 @@ class Ranked:
     """That no other candidate's mean friction is lower; null without another."""
     friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
     extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
+    cage_mass: Kilogram  # of a shape that of its material
     ball_cage_stiffness: NewtonPerMetre  # of its own pocket
     pocket_clearance: Metre  # running, along the circumference
     land_clearance: Metre | None  # running, diametral; null without a land

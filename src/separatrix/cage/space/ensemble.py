@@ -15,9 +15,9 @@ from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.ending import run_limits
 from separatrix.cage.ensemble import (
     CHUNK_RADIANS,
-    MOST_RADIANS,
     PER_MASS,
     Ensemble,
+    check_length,
     chosen,
     free_leads,
     other_way_round,
@@ -34,7 +34,6 @@ from separatrix.cage.space.records import (
     books_for,
 )
 from separatrix.cage.space.run import AXIAL_WAY, DIRECTION, FIRST_LEAD, TILT_WAY, run_chunk
-from separatrix.errors import InputError
 from separatrix.units import Array
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
 
     from separatrix.cage.planar import PlanarCage
     from separatrix.study import StabilitySettings
-    from separatrix.units import MetrePerSecond, Second
+    from separatrix.units import MetrePerSecond
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +101,7 @@ def run_in_space(
     forward = cage.rotation_sense > 0
     cage = turned_forward_in_space(cage)
     speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
-    check_length(cage, settings.duration)
+    check_length(settings.duration, fastest_in_space(cage))
     starts = random_starts(cage, settings, first_run, runs)
     evidence = np.zeros((len(speeds), runs), dtype_of(SpaceEvidence))
     hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
@@ -159,21 +158,6 @@ def kick_speeds(cage: PlanarCage, kick: MetrePerSecond) -> Array:
     """Speeds of the kick across the axis, along it and of the rim's tilt, in metres by the unit of time."""
     body = body_of(cage)
     return np.array([1.0, body.axial_kick, body.tilt_kick]) * kick * time_unit(cage)
-
-
-def check_length(cage: PlanarCage, duration: Second) -> None:
-    """Refuse a run that would take longer than anyone waits.
-
-    Raises
-    ------
-    InputError
-        It would need too many steps.
-    """
-    longest = MOST_RADIANS / fastest_in_space(cage)
-    if not duration <= longest:
-        cure = "Shorten the run, or check the cage's stiffnesses, damping, mass and moments of inertia."
-        rule = f"must be at most {longest:.3g} for this cage in space [s]"
-        raise InputError("[stability] duration", rule, f"{duration:g}", cure)
 
 
 def turned_forward_in_space(cage: PlanarCage) -> PlanarCage:

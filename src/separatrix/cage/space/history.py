@@ -9,17 +9,17 @@ import numpy as np
 
 from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.ending import run_limits
+from separatrix.cage.ensemble import check_length
 from separatrix.cage.history import MOST_SAMPLES
 from separatrix.cage.planar import Cause, RunOutcome
 from separatrix.cage.records import dtype_of
 from separatrix.cage.space.ensemble import (
-    check_length,
     kick_speeds,
     random_starts,
     run_rows,
     turned_forward_in_space,
 )
-from separatrix.cage.space.inputs import land_strips, numbers, parts_of
+from separatrix.cage.space.inputs import fastest_in_space, land_strips, numbers, parts_of
 from separatrix.cage.space.records import (
     SpaceEvidence,
     Works,
@@ -181,7 +181,7 @@ def simulate_in_space(
         kicks=(kick,), runs=1, duration=duration, ball_scatter=ball_scatter, seed=seed
     )
     cage = turned_forward_in_space(cage)
-    check_length(cage, duration)
+    check_length(duration, fastest_in_space(cage))
     starts = random_starts(cage, settings, run, 1)
     evidence = np.zeros(1, dtype_of(SpaceEvidence))
     hits, heat = np.zeros((1, cage.ball_count), np.int64), np.zeros((1, cage.ball_count))

@@ -349,11 +349,20 @@ def _holds_for(answer: RankingAnswer, study: Study) -> list[tuple[str, str]]:
         *basis(study, answer),
         *ensemble_facts(found.kicks, found.runs, found.duration),
         ("Ball on pocket", f"{slip}; mean pressure {pressure} in an impact of {force} (impact speed)"),
+        *_masses(answer),
         *_running_clearances(answer),
         ("Unrepeated tests", scatter),
         ("The paper's bound", found.paper_statement),
         *film,
     ]
+
+
+def _masses(answer: RankingAnswer) -> list[tuple[str, str]]:
+    rows = _measured(answer.ranking.overall)
+    if len({row.cage_mass for row in rows}) < 2:
+        return []
+    each = (f"{row.name} {quantity(row.cage_mass, 'kg', 3)}" for row in rows)
+    return [("Mass of the cage", f"by its shape: {'; '.join(each)}")]
 
 
 def _running_clearances(answer: RankingAnswer) -> list[tuple[str, str]]:
