@@ -89,6 +89,7 @@ def test_on_one_curve_frictions_tell_who_issame_rank():
     assert same_rank(b, a, known)
     assert not same_rank(c, a, known)  # 2.5 standard deviations; the intervals meet
     assert same_rank(replace(c, ball_cage_stiffness=4e6), a, known)
+    assert same_rank(replace(c, cage_mass=0.05), a, known)
     assert same_rank(replace(c, pocket_clearance=5e-4), a, known)
     assert same_rank(replace(c, margin=a.margin), a, known)  # such as 1: stable at any factor
 

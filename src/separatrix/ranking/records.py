@@ -269,7 +269,7 @@ def _meet(other: Interval, leader: Interval) -> bool:
     return other[2] >= leader[1]
 
 
-POCKET = ("ball_cage_stiffness", "pocket_clearance", "land_clearance")  # alike for candidates of one curve
+POCKET = ("cage_mass", "ball_cage_stiffness", "pocket_clearance", "land_clearance")  # alike on one curve
 
 
 def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:

@@ -161,8 +161,8 @@ def _cage(study: Study, cage: CageDesign) -> Iterator[str]:
     }
     absent = [f"{key} {text}" for key, text in assumed.items() if f"cage.{key}" not in study.origins]
     if absent and cage.guidance is not Guidance.BALL:
-        verb = "is" if len(absent) == 1 else "are"
-        yield f"[cage] {', '.join(absent)} {verb} assumed: guesses, on which the motion on the land depends."
+        verb = "is assumed: a guess" if len(absent) == 1 else "are assumed: guesses"
+        yield f"[cage] {', '.join(absent)} {verb}, on which the motion on the land depends."
     if abs(tilt(cage)[1]) > STEEP:
         play = format_quantity(half_play(cage), "m", 3)
         yield (

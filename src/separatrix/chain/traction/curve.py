@@ -33,7 +33,7 @@ from separatrix.chain.traction.profile import Profile, edges_of, ends_of
 from separatrix.compiled import kernel
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import Material
-from separatrix.units import Array, Metre, Ratio
+from separatrix.units import Array, Metre, Ratio, format_quantity
 
 NODES = (200, 400, 800)  # elements a strip of the coarser of two solutions; the finer one has twice as many
 INTERPOLATION = (
@@ -306,8 +306,9 @@ def _checked_case(
     check_film(race_friction=friction, film_compliance=compliance, film_thickness=thickness)
     if layer is None and thickness > THIN * ellipse.semi_minor > 0.0:
         warnings.warn(
-            f"film of {thickness:g} m is {thickness / ellipse.semi_minor:.3g} of the semi-minor axis: "
-            f"a film in series with the half-planes is valid up to {THIN:g} (docs/theory/traction.md).",
+            f"film of {format_quantity(thickness, 'm', 3)} is {thickness / ellipse.semi_minor:.3g} of the "
+            f"semi-minor axis: a film in series with the half-planes is valid up to {THIN:g} "
+            "(docs/theory/traction.md).",
             ValidityWarning,
             stacklevel=3,
         )

@@ -68,7 +68,7 @@ def simulate(answer: SimulationAnswer | SpaceSimulationAnswer, study: Study) -> 
     ]
     energies = {name: getattr(history, name) for name in ("kinetic_energy", "spring_energy", "land_energy")}
     ledger = [
-        (name.replace("_", " "), f"{significant(1e3 * values[-1])} mJ")
+        (name.replace("_", " "), quantity(float(values[-1]), "J"))
         for name, values in (history.work | energies).items()
         if values.any()
     ]
@@ -138,8 +138,8 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
     mean = f"{stated(found, 'mean_offset')} at the end, relative spread {number(found.orbit_evenness, 2)}"
     forces = f"{stated(found, 'largest_contact_force')} at a pocket, {stated(found, 'largest_land_force')}"
     energy = (
-        f"{significant(1e3 * found.end_energy, 3)} mJ; frame and loads alone can supply "
-        f"{significant(1e3 * found.drive_energy, 3)} mJ"
+        f"{quantity(found.end_energy, 'J', 3)}; frame and loads alone can supply "
+        f"{quantity(found.drive_energy, 'J', 3)}"
     )
     growth = f"{significant(found.growth_rate, 3)} 1/s (one run: no interval)"
     if found.growth_rate_low is not None:
