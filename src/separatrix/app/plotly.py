@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterator
 from typing import Any
 
-from separatrix.figures.hover import Plot, Series
+from separatrix.figures.hover import Plot, Series, plain
 
 Spec = dict[str, Any]
 """Data and layout of a figure of Plotly, as JSON has it."""
@@ -65,7 +65,7 @@ def spec(*plots: Plot) -> Spec:
 
 def _axis(label: str, *, is_log: bool) -> Spec:
     kind = {"type": "log"} if is_log else {}
-    return {"title": {"text": _plain(label)}, "gridcolor": GRID, "zeroline": False, **kind}
+    return {"title": {"text": _plain(plain(label))}, "gridcolor": GRID, "zeroline": False, **kind}
 
 
 def _plain(text: str) -> str:
