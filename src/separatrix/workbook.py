@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.cage import Judgement
 from separatrix.present.nodes import field_units
+from separatrix.present.text.sentences import verdict
 from separatrix.ranking.records import Ranked
 from separatrix.workbook_files import (
     BAND,
@@ -157,9 +158,7 @@ def _completed(row: Document) -> Document:
                 found[f"margin_{end}"] = value + away
     if row.get("friction") is not None and row.get(LOWEST) is None:
         found[LOWEST] = "none: no other measured"
-    if row.get("verdict") is None:
-        found["verdict"] = "not measured" if row.get("friction") is None else "not finished"
-    return found
+    return found | {"verdict": verdict(row)}
 
 
 def _cell(value: object, column: Column) -> Cell:

@@ -30,6 +30,7 @@ from separatrix.figures.style import (
     canvas,
     with_ends,
 )
+from separatrix.present.text.sentences import deciding
 from separatrix.present.text.tables import interval, number, significant
 from separatrix.units import Array, format_quantity
 
@@ -57,13 +58,6 @@ FREQUENCIES: dict[str, tuple[str, str, Dashes]] = {
     "cage_frequency": ("cage and ball set, 1x", GREEN, (0, (3, 1.5))),
 }
 """Whirl and orders of the bearing: words, colour and dashes."""
-
-SENTENCES = {
-    "margin": "lowest margin, {:.3f}",
-    "probability_stable": "lowest P(stable), {:.3g}",
-    "restitution_factor": "highest restitution factor, {:.3f}",
-}
-"""What decides the worst case."""
 
 Place = tuple[Array, bool]
 """Place of each case along the axis, and whether lines between them have a meaning."""
@@ -218,7 +212,7 @@ def worst(data: xr.Dataset, place: Place) -> tuple[float | None, str] | None:
     if "worst_case" not in data:
         return None
     case, alike = int(data["worst_case"]), int(data["worst_alike"])
-    why = SENTENCES[str(data["worst_quantity"].values)].format(float(data["worst_value"]))
+    why = deciding(str(data["worst_quantity"].values), float(data["worst_value"]))
     why = why.replace("-", "\N{MINUS SIGN}")
     if alike == int(data["worst_compared"]) > 1:
         return None, f"No worst case: all {alike} have the {why}"

@@ -5,6 +5,15 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping
 
+from separatrix.present.text.sentences import (
+    margin,
+    next_test,
+    probability,
+    rank_texts,
+    threshold,
+    verdict,
+    with_interval,
+)
 from separatrix.present.text.tables import ABSENT, grouped, number, rate
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import (
@@ -16,14 +25,8 @@ from separatrix.reporting.record import (
     Table,
     entry,
     facts,
-    margin,
     own_rows,
-    places,
-    probability,
     quantity,
-    threshold,
-    verdict,
-    with_interval,
 )
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
@@ -129,7 +132,7 @@ def _short(name: str, rows: list[Row]) -> Table:
         caption = "Candidates overall: mean friction over the environments in which each was measured."
     cells = (
         (place, str(row["name"]), verdict(row), _friction(row), threshold(row), margin(row), probability(row))
-        for place, row in zip(places(rows), rows, strict=True)
+        for place, row in zip(rank_texts(row["rank"] for row in rows), rows, strict=True)
     )
     head = ("rank", "candidate", "verdict", "friction", "threshold (95 %)", "margin", "P(stable) (95 %)")
     return Table(head, tuple(cells), caption, left=3)
@@ -212,18 +215,7 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
         largest = sorted(one["shares"], key=lambda share: -share["share"])[:MOST_DRIVERS]
         words = ", ".join(f"{share['name']} {100.0 * share['share']:.0f} %" for share in largest)
         yield Paragraph(f"{one['name']}: the variance of its verdict comes from {words}.")
-    undecided = found["undecided"]
-    if not undecided:
-        yield Paragraph("No case is undecided: no measurement would change a verdict.")
-        return
-    yield Paragraph(f"Undecided: {'; '.join(undecided)}.")
-    for test in found["next_tests"][:MOST_TESTS]:
-        each = zip(test["cases"], test["chances"], strict=True)
-        cases = "; ".join(f"{case} ({100.0 * chance:.0f} %)" for case, chance in each)
-        settled = f"{test['settled']:.1f} of them on average"
-        yield Paragraph(f"Measuring {test['name']} would settle {settled}: {cases}.")
-    if not found["next_tests"]:
-        yield Paragraph("No single measurement would settle any of them.")
+    yield from map(Paragraph, next_test(found, MOST_TESTS))
 
 
 def outside(kept: Mapping[str, Kept]) -> Section:
