@@ -28,9 +28,9 @@ from separatrix.reporting.record import (
     own_rows,
     quantity,
 )
+from separatrix.study_file import inputs_of
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
-SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 PROPERTIES = {
     "elastic_modulus": "elastic modulus",
     "poisson_ratio": "Poisson's ratio",
@@ -235,7 +235,15 @@ def outside(kept: Mapping[str, Kept]) -> Section:
 def inputs(kept: Mapping[str, Kept]) -> Section:
     """Return every input of the study with where it was given, and materials and frictions with sources."""
     study = next(iter(kept.values())).document["study"]
-    rows = [row for section in SECTIONS for row in _rows(section, study.get(section) or {})]
+    rows = [
+        (
+            f"{section}: {key.replace('_', ' ')}",
+            (str(item["name"]) if "name" in item else entry(item))
+            + (f" ({item['distribution']['words']})" if "distribution" in item else ""),
+            str(item["origin"]),
+        )
+        for section, key, item in inputs_of(study)
+    ]
     blocks: list[Block] = [Table(("input", "value", "given in"), tuple(rows), "Inputs of the study.", left=3)]
     materials = tuple(dict.fromkeys(_materials(study)))
     if materials:
@@ -244,16 +252,6 @@ def inputs(kept: Mapping[str, Kept]) -> Section:
     if study.get("ranking"):
         blocks += _frictions(study["ranking"])
     return Section("Inputs and their sources", tuple(blocks))
-
-
-def _rows(section: str, items: Row) -> Iterator[tuple[str, ...]]:
-    for key, item in items.items():
-        if not isinstance(item, dict) or "origin" not in item:
-            continue
-        value = str(item["name"]) if "name" in item else entry(item)
-        if "distribution" in item:
-            value += f" ({item['distribution']['words']})"
-        yield f"{section}: {key.replace('_', ' ')}", value, str(item["origin"])
 
 
 def _materials(study: Row) -> Iterator[tuple[str, ...]]:
