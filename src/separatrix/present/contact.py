@@ -42,6 +42,7 @@ OF_MOTION = {Motion.ROLLING: CREEPS, Motion.SHIFT: SHIFTS, Motion.TRANSIENT: (*C
 FIELDS = ("fraction", "pressure", "traction", "slip", "stick")
 
 
+UNITS = field_units(ContactSolution) | field_units(ContactCase)
 WHERE = {"long_name": "1 where the surfaces stick"}
 
 
@@ -110,11 +111,10 @@ def contact_dataset(answer: ContactAnswer, notes: Sequence[str] = ()) -> xr.Data
         for key in ("slope", "slope_error", "free_rolling_offset")
         if key in slope
     }
-    units = field_units(ContactSolution) | field_units(ContactCase)
     names = ("force_share", "lateral_force_share", "stick_cells", "slip_cells", "residual")
     for name in (*NUMBERS, *GIVEN, *names):
         values = np.array([row[name] for row in rows], dtype=float)
-        data[name] = ("case", values, {"units": units.get(name, "-")})
+        data[name] = ("case", values, {"units": UNITS.get(name, "-")})
     data["contact"] = ("case", np.array([row["contact"] for row in rows]))
     data["turned"] = ("case", np.array([one.case.turned for one in answer.cases]))
     for name in ("motion", "reason"):
@@ -141,13 +141,12 @@ def _fields(solutions: Sequence[ContactSolution | None]) -> dict[str, object]:
         values = np.stack([padded(None if x is None else getattr(x, name), (size[dim],)) for x in solutions])
         long = {"units": "m", "long_name": f"{'x' if name == 'along' else 'y'}, {name}"}
         found[name] = (dim, getattr(known[0], name), long) if is_one else (("case", dim), values, long)
-    units = field_units(ContactSolution)
     for name in FIELDS:
         vector = name in ("traction", "slip")
         shape = (2,) * vector + (size["row"], size["column"])
         values = np.stack([padded(None if x is None else getattr(x, name), shape) for x in solutions])
         dims = ("case", *(("direction",) if vector else ()), "row", "column")
-        found[name] = (dims, values, {"units": units[name]} if name in units else WHERE)
+        found[name] = (dims, values, {"units": UNITS[name]} if name in UNITS else WHERE)
     return found
 
 
