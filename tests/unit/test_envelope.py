@@ -251,3 +251,13 @@ def test_alike_and_refused_cases_have_their_pictures():
     alike = pictures([{"operation.temperature": t} for t in (280.0, 290.0, 300.0)])["envelope"]
     assert alike.axes[0].get_title(loc="left").startswith("No worst case: all 3 have the highest")
     assert "envelope" not in pictures([{"bearing.ball_diameter": d} for d in (0.5, 0.6)])
+
+
+def test_a_refused_case_is_a_gap_in_every_line():
+    """In the picture and under the pointer: nothing is known between its neighbours."""
+    data = dataset("sweep", sweep(STUDY, [{SPEED: n} for n in (-300.0, 0.0, 300.0)]), STUDY, [])
+    lines = [one for plot in envelope_plots(data) for one in plot.series if one.kind == "line"]
+    assert len(lines) > 4
+    assert all([value is None for value in one.y] == [False, True, False] for one in lines)
+    drawn = dict(draw("sweep", data))["envelope"].axes[0].lines[0].get_ydata()
+    assert np.isnan(drawn).tolist() == [False, True, False]

@@ -65,12 +65,12 @@ def spec(*plots: Plot) -> Spec:
 
 def _axis(label: str, *, is_log: bool) -> Spec:
     kind = {"type": "log"} if is_log else {}
-    return {"title": {"text": _plain(plain(label))}, "gridcolor": GRID, "zeroline": False, **kind}
+    return {"title": {"text": _plain(label)}, "gridcolor": GRID, "zeroline": False, **kind}
 
 
 def _plain(text: str) -> str:
-    """Return a text that Plotly shows as it is: it would take some tags."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    """Return a text that Plotly shows as it is: it would take some tags, and has no formulas."""
+    return plain(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _traces(one: Series, *, across: bool) -> Iterator[Spec]:

@@ -330,7 +330,7 @@ def _margin(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series
             text + (f", margin {t - e:+.3f}" if np.isfinite(t) else "")
             for text, (_, e, t, _, _) in zip(texts, rows, strict=True)
         ]
-    yield _series("restitution factor", eta, texts, place, BLACK, marker="o", size=3.0)
+    yield _series(r"restitution factor $\eta$", eta, texts, place, BLACK, marker="o", size=3.0)
 
 
 def _probability(data: xr.Dataset, place: Place, names: list[str]) -> Iterator[Series]:

@@ -316,7 +316,7 @@ def traction_plot(data: xr.Dataset) -> Plot:
 
 
 def plain(label: str) -> str:
-    """Return a label of an axis without formulas."""
+    """Return a label without formulas."""
     for formula, symbol in SYMBOLS.items():
         label = label.replace(formula, symbol)
     return label
