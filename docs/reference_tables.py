@@ -21,7 +21,7 @@ from separatrix.comparing.records import Comparison
 from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
-from separatrix.present.contact import GIVEN, NUMBERS
+from separatrix.present.contact import GIVEN, NUMBERS, UNITS
 from separatrix.study_file import document
 from separatrix.study_file.templates import quantity_of, section_remarks, template_keys, units_like
 from separatrix.study_file.values import READERS, required_fields
@@ -169,8 +169,8 @@ CONTACT = (
     Line("case", meaning="number of the case"),
     Line("contact", meaning="its contact, from 0"),
     Line("motion", meaning="rolling, shift or transient"),
-    *(Line(name, unit, meaning="given, or found from a wanted force") for name, unit in GIVEN.items()),
-    *(Line(name, unit, meaning="of the solution") for name, unit in NUMBERS.items()),
+    *(Line(name, UNITS[name], meaning="given, or found from a wanted force") for name in GIVEN),
+    *(Line(name, UNITS[name], meaning="of the solution") for name in NUMBERS),
     Line("force_share", "-", meaning="force along, over that of sliding"),
     Line("lateral_force_share", "-", meaning="force across, over that of sliding"),
     Line("stick_cells", meaning="cells that stick"),

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.cage import Judgement
 from separatrix.present.nodes import field_units
+from separatrix.present.text.sentences import verdict
 from separatrix.ranking.records import Ranked
+from separatrix.study_file import inputs_of
 from separatrix.workbook_files import (
     BAND,
     HEADING,
@@ -157,9 +159,7 @@ def _completed(row: Document) -> Document:
                 found[f"margin_{end}"] = value + away
     if row.get("friction") is not None and row.get(LOWEST) is None:
         found[LOWEST] = "none: no other measured"
-    if row.get("verdict") is None:
-        found["verdict"] = "not measured" if row.get("friction") is None else "not finished"
-    return found
+    return found | {"verdict": verdict(row)}
 
 
 def _cell(value: object, column: Column) -> Cell:
@@ -268,7 +268,6 @@ def _chart(sheet: Worksheet, points: int, candidates: int) -> ScatterChart:
 
 # Inputs with their origins, materials and frictions with their sources, and the settings.
 
-SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 ROLES = {
     ("bearing", "ball_material"): "balls",
     ("bearing", "ring_material"): "rings",
@@ -279,19 +278,16 @@ ROLES = {
 
 def _inputs(study: Document) -> Iterator[list[Cell]]:
     """Yield the inputs of a study in SI, section by section; a material by its name."""
-    given = [(section, *one) for section in SECTIONS for one in (study.get(section) or {}).items()]
-    ranking = study.get("ranking")
-    if ranking is not None:
+    given = [*inputs_of(study)]
+    if (ranking := study.get("ranking")) is not None:
         names = ", ".join(candidate["name"] for candidate in ranking["candidates"])
         given.append(("ranking", "candidates", {"value": names, "origin": ranking.get("origin")}))
-        given.append(("ranking", "friction_scatter", ranking["friction_scatter"]))
     for section, key, item in given:
-        known = item if isinstance(item, Mapping) else {"value": item, "origin": "from the values above"}
-        value, origin = known.get("value", known.get("name")), known.get("origin") or ""
+        value, origin = item.get("value", item.get("name")), item.get("origin") or ""
         if isinstance(value, list):  # as one text, in the spelling in which a study workbook takes it
             value = "; ".join(map(str, value))
         look = Look(fill=BAND if origin.startswith(("default", "not given")) else "")
-        values = (section, key, value, known.get("unit") or "")
+        values = (section, key, value, item.get("unit") or "")
         yield [*(Cell(one, look) for one in values), Cell(origin, WRAPPED)]
 
 

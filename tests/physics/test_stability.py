@@ -11,7 +11,7 @@ from separatrix.cage import drift_law, judge, run_ensemble, wilson_interval
 from separatrix.limits.curve import curve_of_points, restitution_threshold, stability_curve
 from separatrix.limits.point import critical_friction, hard_limit, linear_limit
 from separatrix.limits.response import GrowthCounter, cage_at
-from separatrix.present.text.stability import drift_note
+from separatrix.present.text.sentences import drift_sentence
 from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
 
@@ -200,9 +200,9 @@ def test_the_curve_of_a_landless_cage_says_that_it_drifts():
     found = curve_of_points(landless, SETTINGS, [])
     assert found.drifts
     assert found.drift_rate_law == law
-    text = " ".join(drift_note(found).split())
+    text = drift_sentence(found.drifts, found.drift_rate_law)
     assert f"drifts at any friction, by the linear law at {law:.3f} 1/s" in text
     assert "no verdict there is STABLE" in text
     held = curve_of_points(replace(landless, cage_speed=0.0), SETTINGS, [])
     assert not held.drifts
-    assert drift_note(held) == ""
+    assert drift_sentence(held.drifts, held.drift_rate_law) == ""

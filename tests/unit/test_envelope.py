@@ -19,7 +19,6 @@ from separatrix.errors import InputError
 from separatrix.explore.sweep import duty, orders, sweep, time_shares, worst_case
 from separatrix.figures import draw
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
-from separatrix.figures.hover import plain
 from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
 from separatrix.present import dataset, load
 from separatrix.reporting.pictures import picture
@@ -86,14 +85,12 @@ def test_every_panel_of_the_envelope_has_its_points_to_point_at(answered):
     """Panels, axes and values are those of the figure; a case has its number, its values and its margin."""
     data = load(answered / "sweep.nc")
     plots, figure = envelope_plots(data), dict(draw("sweep", data))["envelope"]
-    assert [one.y_label.replace("\N{GREEK SMALL LETTER ETA}", r"$\eta$") for one in plots] == [
-        axes.get_ylabel() for axes in figure.axes
-    ]
+    assert [one.y_label for one in plots] == [axes.get_ylabel() for axes in figure.axes]
     threshold = next(one for one in plots[0].series if one.name.startswith("threshold"))
     assert threshold.y == pytest.approx(data["restitution_threshold"].values[1:])
     assert threshold.text[1].startswith("case 2, inner speed 6000 rpm, ball cage friction 1.5: threshold")
     assert threshold.text[1].endswith(f"margin {float(data['margin'][2]):+.3f}")
-    assert plots[0].title.startswith("Worst case: case 2: lowest margin")
+    assert plots[0].title.startswith("Worst case (dashed line): case 2: lowest margin")
     assert [one.x for one in plots[0].series if one.kind == "upright"] == [(2.0,)]
     assert plots[3].series[0].y == pytest.approx([25.0, 50.0, 12.5, 12.5])
 
@@ -116,7 +113,7 @@ def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
     data = dataset("sweep", sweep(STUDY, cases), STUDY, [])
     assert not has_envelope(data)
     plots, figure = sweep_plots(data), dict(draw("sweep", data))["sweep"]
-    assert [plain(axes.get_xlabel()) for axes in figure.axes] == [plot.x_label for plot in plots]
+    assert [axes.get_xlabel() for axes in figure.axes] == [plot.x_label for plot in plots]
     for plot in plots:
         (only,) = plot.series
         assert only.y == pytest.approx(np.delete(data["restitution_factor"].values, 3))
@@ -252,5 +249,15 @@ def test_alike_and_refused_cases_have_their_pictures():
         return dict(draw("sweep", data))
 
     alike = pictures([{"operation.temperature": t} for t in (280.0, 290.0, 300.0)])["envelope"]
-    assert alike.axes[0].get_title(loc="left").startswith("no worst case: all 3 have the highest")
+    assert alike.axes[0].get_title(loc="left").startswith("No worst case: all 3 have the highest")
     assert "envelope" not in pictures([{"bearing.ball_diameter": d} for d in (0.5, 0.6)])
+
+
+def test_a_refused_case_is_a_gap_in_every_line():
+    """In the picture and under the pointer: nothing is known between its neighbours."""
+    data = dataset("sweep", sweep(STUDY, [{SPEED: n} for n in (-300.0, 0.0, 300.0)]), STUDY, [])
+    lines = [one for plot in envelope_plots(data) for one in plot.series if one.kind == "line"]
+    assert len(lines) > 4
+    assert all([value is None for value in one.y] == [False, True, False] for one in lines)
+    drawn = dict(draw("sweep", data))["envelope"].axes[0].lines[0].get_ydata()
+    assert np.isnan(drawn).tolist() == [False, True, False]

@@ -14,7 +14,7 @@ import separatrix
 from separatrix import figures
 from separatrix.errors import InputError
 from separatrix.figures.chain import signed
-from separatrix.figures.map import sweep
+from separatrix.figures.envelope import sweep
 from separatrix.figures.ranking import file_name, overview, rank_texts, text_order
 from separatrix.figures.sensitivity import bearings
 from separatrix.figures.style import (

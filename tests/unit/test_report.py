@@ -13,8 +13,8 @@ from separatrix.present import in_words, whereabouts
 from separatrix.present.text import ranking
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
+from separatrix.present.text.sentences import verdict_sentences
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
-from separatrix.reporting.first_page import verdict_sentences
 from separatrix.study import BallModel, MotionModel
 from separatrix.study_file import read_study
 
@@ -225,30 +225,28 @@ def test_candidates_with_one_reason_share_it():
     [
         (
             [row("A", 1), row("B", 2), row("C", 3, Verdict.UNSTABLE), MISSING],
-            "A ranks first in air: STABLE. It tolerates a restitution factor up to 0.60; this bearing with "
-            "its pocket has 0.30 (margin +0.30). The others: STABLE B; UNSTABLE C; not measured D.",
+            "A ranks first in air: STABLE. The cage remains stable up to a restitution factor of 0.60 (0.55 "
+            "to 0.64); this bearing and film have 0.30, a margin of +0.30. The others: STABLE B; UNSTABLE C; "
+            "not measured D.",
         ),
         (
             [row("A", 1), row("B", 1, Verdict.UNDECIDED, margin=0.2, restitution_factor=0.4)],
-            "2 materials tie for first in air: STABLE A; UNDECIDED B. They tolerate a restitution factor "
-            "up to 0.60; this bearing and their pockets have 0.30 to 0.40 (margin +0.20 to +0.30).",
-        ),
-        (
-            [row("A", 1), row("B", 1, Verdict.UNSTABLE)],
-            "2 materials tie for first in air: STABLE A; UNSTABLE B. From the reference kick the largest "
-            "stable restitution factor is 0.60; this bearing and their pockets have 0.30 (margin +0.30).",
+            "2 materials tie for first in air: STABLE A; UNDECIDED B. From the reference disturbance the "
+            "largest stable restitution factor is 0.60; this bearing and film have 0.30 to 0.40, a margin of "
+            "+0.20 to +0.30. There is no other candidate.",
         ),
         (
             [row("A", 1, Verdict.UNDECIDED), row("B", 2)],
-            "A ranks first in air: UNDECIDED. It tolerates a restitution factor up to 0.60; this bearing "
-            "with its pocket has 0.30 (margin +0.30). A: So it is. The others: STABLE B.",
+            "A ranks first in air: UNDECIDED. From the reference disturbance the largest stable restitution "
+            "factor is 0.60 (0.55 to 0.64); this bearing and film have 0.30, a margin of +0.30. A: So it is. "
+            "The others: STABLE B.",
         ),
         ([MISSING], "No candidate was ranked in air."),
     ],
 )
 def test_the_answer_in_short(rows, words):
     """Who is first, with verdict and margin, why if undecided, and others; nobody if none was measured."""
-    assert ranking.in_short(found(*rows)) == words
+    assert " ".join(text(*rows).split("\n\n")[1].split()) == words
 
 
 def test_the_report_says_why_the_first_is_undecided():
@@ -257,8 +255,7 @@ def test_the_report_says_why_the_first_is_undecided():
     numbers |= {"restitution_threshold_low": 0.5, "restitution_threshold_high": 0.7, "reason": "So it is."}
     for verdict, ends in (("UNDECIDED", "+0.30. A: So it is."), ("STABLE", "a margin of +0.30.")):
         rows = [numbers | {"verdict": verdict}]
-        answer = {"environment": "air", "environments": [{"name": "air", "materials": rows}]}
-        assert verdict_sentences(answer)[1].endswith(ends)
+        assert verdict_sentences(rows, "air")[1].endswith(ends)
 
 
 def test_a_ranking_fits_a_screen():

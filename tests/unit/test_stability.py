@@ -379,7 +379,13 @@ def test_the_report_says_between_which_frictions_the_kick_decides():
     point = CriticalFriction(restitution_factor=0.5, critical_friction_low=0.1, critical_friction_high=0.2)
     limit = SimpleNamespace(restitution_factor=0.5, critical_friction=0.07)
     found = SimpleNamespace(
-        curve=[point], linear_limit=[limit], hard_limit=[limit], here=here, kicks=(0.1, 2.0), drifts=False
+        curve=[point],
+        linear_limit=[limit],
+        hard_limit=[limit],
+        here=here,
+        kicks=(0.1, 2.0),
+        drifts=False,
+        drift_rate_law=None,
     )
     text = "\n".join(curve(found))
     assert "0.500 - 0.100 0.200 0.070 0.070" in " ".join(text.split())

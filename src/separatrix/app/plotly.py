@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterator
 from typing import Any
 
-from separatrix.figures.hover import Plot, Series
+from separatrix.figures.hover import Plot, Series, plain
 
 Spec = dict[str, Any]
 """Data and layout of a figure of Plotly, as JSON has it."""
@@ -69,8 +69,8 @@ def _axis(label: str, *, is_log: bool) -> Spec:
 
 
 def _plain(text: str) -> str:
-    """Return a text that Plotly shows as it is: it would take some tags."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    """Return a text that Plotly shows as it is: it would take some tags, and has no formulas."""
+    return plain(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _traces(one: Series, *, across: bool) -> Iterator[Spec]:

@@ -14,7 +14,7 @@ from separatrix.cli.console import answer, answer_json, interruptible, progress_
 from separatrix.cli.verbs import Jobs, Json, Quiet, folder, named, threads
 from separatrix.errors import InputError
 from separatrix.messages import grouped, harmless, noted_warnings
-from separatrix.staged import staged, writable_folder
+from separatrix.staged import refuse_existing, staged, writable_folder
 from separatrix.units import format_quantity, parse, printable, shown
 
 if TYPE_CHECKING:
@@ -131,12 +131,11 @@ def tribometer(
         if pages is not None:
             _draw_pages(found, pages, quiet=quiet)
         if to is not None and found.friction_tests is not None:
-            from separatrix.friction.file import exists_already, friction_text
+            from separatrix.friction.file import friction_text
 
             with staged(to.parent) as stage:
                 (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
-                if to.exists():  # since the first check
-                    raise exists_already(to)
+                refuse_existing(to)  # it may have been made since the first check
         from separatrix.present.tribometer import document, in_words
 
         written = None if to is None else str(to)
@@ -148,18 +147,15 @@ def tribometer(
 
 
 def _refuse_out(out: Path) -> None:
-    from separatrix.friction.file import exists_already
-
     try:
-        is_folder, exists = out.is_dir(), out.exists() or out.is_symlink()
+        is_folder = out.is_dir()
     except OSError as error:
         where = f"--out {printable(str(out), 200)}"
         raise InputError(where, "cannot be written", error.strerror or type(error).__name__) from None
     if out.suffix != ".toml" or is_folder:
         cure = 'Name a file like "friction.toml".'
         raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
-    if exists:
-        raise exists_already(out)
+    refuse_existing(out)
 
 
 def _draw_pages(found: ReducedLogs, pages: Path, *, quiet: bool) -> None:

@@ -29,6 +29,7 @@ from separatrix.contact_file.question import (
     mirrored,
 )
 from separatrix.errors import ConvergenceError, InputError
+from separatrix.runner import Progress
 from separatrix.units import Array
 
 BALANCED = 1e-6  # of a wanted force, over the force of sliding
@@ -36,8 +37,6 @@ DOUBLINGS = 60
 MOST_CELLS = 5_000_000  # of all cases: their fields take 60 bytes a cell
 LARGEST_MISS = 1e-4  # of two wanted forces, over the force of sliding
 FAILED_BEFORE = "the case before it, from which it starts, has no solution"
-
-Progress = Callable[[int, int], None]
 
 
 def solve_cases(question: ContactQuestion, progress: Progress | None = None) -> ContactAnswer:

@@ -40,6 +40,7 @@ Floats = tuple[float | None, ...]
 """Numbers along a series; None where there is none."""
 
 Kind = Literal["line", "points", "band", "upright", "cells", "bars"]
+Dashes = str | tuple[int, tuple[float, ...]]
 POINTS = 72.0
 """Points of an inch: the unit of matplotlib's SVG."""
 
@@ -56,7 +57,7 @@ class Series:
 
     `x` and `y` are its points, `text` one line for each. `low` and `high` are the interval of each `y` (of
     `x` in `candidates_plot`), empty without one; of a band they are its ends. `value` is what the colour of
-    a cell shows.
+    a cell shows. `marker`, `size` and `dashes` are those of matplotlib.
     """
 
     name: str
@@ -68,6 +69,9 @@ class Series:
     low: Floats = ()
     high: Floats = ()
     value: Floats = ()
+    marker: str = ""
+    size: float = 4.0
+    dashes: Dashes = "-"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +99,7 @@ def stability_plot(data: xr.Dataset) -> Plot:
     if "material_friction" in data:
         series += _candidates(data)
         title = str(data["environment"].values)
-    return Plot(title=title, x_label=plain(ETA_LABEL), y_label=plain(FRICTION_LABEL), series=tuple(series))
+    return Plot(title=title, x_label=ETA_LABEL, y_label=FRICTION_LABEL, series=tuple(series))
 
 
 def _curve(data: xr.Dataset) -> Iterator[Series]:
@@ -197,7 +201,7 @@ def candidates_plot(data: xr.Dataset) -> Plot:
     series.append(_thresholds(data, "overall_", 0.0, names, "overall", BLACK))
     return Plot(
         title="Restitution thresholds",
-        x_label=f"threshold of the {plain(ETA_LABEL)}",
+        x_label=f"threshold of the {ETA_LABEL}",
         y_label="",
         series=tuple(series),
         y_names=tuple(names),
@@ -306,13 +310,13 @@ def traction_plot(data: xr.Dataset) -> Plot:
     return Plot(
         title="Traction curves",
         x_label="creep increment [%]",
-        y_label="traction coefficient C_T [-]",
+        y_label="traction coefficient $C_T$ [-]",
         series=tuple(series),
     )
 
 
 def plain(label: str) -> str:
-    """Return a label of an axis without formulas."""
+    """Return a label without formulas."""
     for formula, symbol in SYMBOLS.items():
         label = label.replace(formula, symbol)
     return label

@@ -1,4 +1,4 @@
-"""The stability map over two parameters of a study, and the cases of a sweep against each parameter."""
+"""The stability map over two parameters of a study, and axes named by a key of a study."""
 
 from __future__ import annotations
 
@@ -19,8 +19,6 @@ from separatrix.figures.style import (
     BLACK,
     GREY,
     PAGE,
-    VERDICT_COLOURS,
-    VERDICT_MARKERS,
     VERMILION,
     Look,
     canvas,
@@ -43,10 +41,6 @@ warning, where it is not."""
 
 NAMES = {"restitution_factor": ETA_LABEL, "ball_cage_friction": FRICTION_LABEL}
 """Parameters with a symbol."""
-
-MOST_PANELS = 6
-SIZES = {"STABLE": 5.0, "UNSTABLE": 4.0, "UNDECIDED": 3.0}
-"""Marks of each verdict in a sweep: where several fall on one place, each is seen."""
 
 
 class Cells(NamedTuple):
@@ -195,30 +189,3 @@ def _axis(axes: Axes, data: xr.Dataset, name: str, values: Array, edges: Array) 
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
-
-
-def sweep(data: xr.Dataset) -> Figure:
-    """Restitution factor against each of the first parameters, marked by verdict where there is one."""
-    names = [str(name) for name in data["parameter"].values[:MOST_PANELS]]
-    columns = min(3, len(names))
-    rows = -(-len(names) // columns)
-    figure, panels = canvas(PAGE, 2.4 * rows + 0.4, nrows=rows, ncols=columns, sharey=True, squeeze=False)
-    eta, verdict = data["restitution_factor"].values, data["verdict"].values.astype(str)
-    for axes, name in zip(panels.flat, names, strict=False):
-        x = axis_values(data, name)
-        axes.plot(x[verdict == ""], eta[verdict == ""], "o", ms=2.5, mew=0.0, color=BLACK)
-        for known, size in SIZES.items():
-            those, mark = verdict == known, VERDICT_MARKERS[known]
-            look: Look = {"ms": size, "mew": 0.8, "mfc": "none", "color": VERDICT_COLOURS[known]}
-            if those.any():
-                axes.plot(x[those], eta[those], mark, ls="", label=known, **look)
-        axes.set_xlabel(axis_label(data, name, name))
-    for axes in panels.flat[len(names) :]:
-        axes.set_visible(False)
-    for row in panels:
-        row[0].set_ylabel(ETA_LABEL)
-    top = float(np.nanmax(eta, initial=0.05))
-    panels.flat[0].set_ylim(-0.03 * top, 1.08 * top)
-    if np.any(verdict != ""):
-        figure.legend(*panels.flat[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    return figure

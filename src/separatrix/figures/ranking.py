@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import cycle
 
 import numpy as np
@@ -37,6 +37,7 @@ from separatrix.figures.style import (
     study_of,
     with_ends,
 )
+from separatrix.present.text.sentences import rank_texts
 
 VERDICT_AT, RIGHT = 1.05, 1.24
 """Column of the verdicts in the overview, beyond the axis, and the end of the picture."""
@@ -64,12 +65,6 @@ def own_environment(data: xr.Dataset) -> int | None:
     own = stated(study_of(data), "ranking", "environment")
     names = [str(name) for name in data["environment"].values]
     return names.index(own) if own in names else (0 if len(names) == 1 else None)
-
-
-def rank_texts(column: Sequence[float | str | None]) -> list[str]:
-    """Return the ranks as text: = after a shared one, a dash for none; a column of nothing is of text."""
-    ranks = [int(rank) if isinstance(rank, (int, float)) and np.isfinite(rank) else None for rank in column]
-    return ["-" if rank is None else f"{rank}{'=' if ranks.count(rank) > 1 else ''}" for rank in ranks]
 
 
 def environment(data: xr.Dataset, top: float) -> Figure:

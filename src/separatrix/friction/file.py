@@ -18,6 +18,7 @@ from separatrix.errors import InputError, together
 from separatrix.measured_friction import FRICTION_LIMIT, LEAST_FRICTION
 from separatrix.toml_files import (
     Kind,
+    Places,
     Reader,
     build,
     label_of,
@@ -199,7 +200,7 @@ def read_friction(path: Path) -> tuple[FrictionTest, ...]:
         Everything that is wrong with it, a line each: place, rule, value, cure.
     """
     data, lines = read_toml(path, KIND)
-    file = _Places(label_of(path), lines)
+    file = Places(label_of(path), {key: f"{label_of(path)}, line {line}" for key, line in lines.items()})
     items = _items(data, file)
     tests: list[FrictionTest] = []
     problems: list[InputError] = []
@@ -217,23 +218,10 @@ def read_friction(path: Path) -> tuple[FrictionTest, ...]:
     return tuple(tests)
 
 
-@dataclass(frozen=True, slots=True)
-class _Places:
-    """Where the keys of a file are."""
-
-    label: str
-    lines: Mapping[str, int]
-
-    def of(self, *keys: str) -> str:
-        """Label and line of the first of these keys in the file."""
-        line = next((self.lines[key] for key in keys if key in self.lines), None)
-        return self.label if line is None else f"{self.label}, line {line}"
-
-
-def _items(data: Mapping[str, object], file: _Places) -> list[object]:
+def _items(data: Mapping[str, object], file: Places) -> list[object]:
     for key in data:
         if key not in ("title", "test"):
-            where = f"{file.of(key, f'{key}.0')}: {printable(key)}"
+            where = f"{file.of(f'{key}.0')}: {printable(key)}"
             raise InputError(where, "is not a key of a friction file", cure=nearest(key, ("title", "test")))
     if "title" in data:
         text(data["title"], f"{file.of('title')}: title")
@@ -242,42 +230,26 @@ def _items(data: Mapping[str, object], file: _Places) -> list[object]:
         raise InputError(file.label, "holds no test", cure=_EXAMPLE)
     if not isinstance(items, list) or not 0 < len(items) <= MOST_TESTS:
         got = f"{len(items)} tests" if isinstance(items, list) else shown(items)
-        where = f"{file.of('test', 'test.0')}: test"
+        where = f"{file.of('test.0')}: test"
         raise InputError(where, f"must be 1 to {MOST_TESTS} tables", got, _EXAMPLE)
     return items
 
 
-def _test(item: object, number: int, file: _Places) -> FrictionTest:
+def _test(item: object, number: int, file: Places) -> FrictionTest:
     """One test; what its record or its readers refuse has the line of its key."""
-    where = f"{file.of(f'test.{number}', 'test')}: [[test]]"
-    if not isinstance(item, dict):
-        raise InputError(where, "must be a table", shown(item), _EXAMPLE)
-    given: dict[str, object] = {}
-    problems: list[InputError] = []
+    where = f"test.{number}"
     try:
-        for key, value in item.items():
-            try:
-                given |= table({key: value}, where, _READERS, ())
-            except InputError as error:
-                problems.extend(error.problems or (error,))
-        if missing := [key for key in REQUIRED if key not in item]:
-            problems.append(InputError(where, f"lacks: {', '.join(missing)}"))
-        if problems:
-            raise together(problems)
+        given = table(item, where, _READERS, REQUIRED)
         if isinstance(end := given.get("run_in_end"), tuple):
             given["run_in_axis"], given["run_in_end"] = end
         return build(FrictionTest, given, where)
     except InputError as error:
-        found = []
-        for problem in error.problems or (error,):
-            key = problem.path.removeprefix(where).lstrip(".").partition(",")[0]
-            line = file.lines.get(f"test.{number}.{key}")
-            rest = problem.path.partition(": ")[2]
-            found.append(problem if line is None else problem.at(f"{file.label}, line {line}: {rest}"))
-        raise together(found) from None
+        found = error.problems or (error,)
+        parts = [(one, one.path.removeprefix(where)) for one in found]
+        raise together([one.at(f"{file.of(one.path)}: [[test]]{rest}") for one, rest in parts]) from None
 
 
-def _twice(tests: Sequence[FrictionTest], file: _Places) -> Iterator[InputError]:
+def _twice(tests: Sequence[FrictionTest], file: Places) -> Iterator[InputError]:
     """Refuse the same log twice, under whatever name: it would count as a repeated test."""
     known: dict[str, int] = {}
     for number, test in enumerate(tests):
@@ -287,12 +259,12 @@ def _twice(tests: Sequence[FrictionTest], file: _Places) -> Iterator[InputError]
         sources = [tests[first].source or "", test.source or ""]
         of_one_log = sources[0] != sources[1] and len({one.partition(",")[0] for one in sources}) == 1
         if first != number and not of_one_log:
-            where = f"{file.of(f'test.{number}.checksum', f'test.{number}')}: [[test]].checksum"
+            where = f"{file.of(f'test.{number}.checksum')}: [[test]].checksum"
             cure = "Each log counts once; remove one of the two."
             yield InputError(where, f"is that of test {first + 1} once more", cure=cure)
 
 
-def _alike(tests: Sequence[FrictionTest], file: _Places) -> Iterator[InputError]:
+def _alike(tests: Sequence[FrictionTest], file: Places) -> Iterator[InputError]:
     """Refuse one name in two spellings: its tests would be those of two materials, or two environments."""
     known: dict[tuple[str, str], tuple[str, int]] = {}
     for number, test in enumerate(tests):
@@ -300,7 +272,7 @@ def _alike(tests: Sequence[FrictionTest], file: _Places) -> Iterator[InputError]
             name = getattr(test, key)
             spelled, first = known.setdefault((key, " ".join(name.casefold().split())), (name, number))
             if spelled != name:
-                where = f"{file.of(f'test.{number}.{key}', f'test.{number}')}: [[test]].{key}"
+                where = f"{file.of(f'test.{number}.{key}')}: [[test]].{key}"
                 rule = f"differs from that of test {first + 1} only in capitals or spaces"
                 cure = f"Write both alike, for instance {shown(spelled)}."
                 yield InputError(where, rule, shown(name), cure)
@@ -344,12 +316,6 @@ _READERS: dict[str, Reader[object]] = {
 
 _WRITTEN = {"slip_speed": (1.0, "m/s"), "pressure": (1e6, "MPa"), "temperature": (1.0, "K")}
 """Size and name of the unit in which a condition is written."""
-
-
-def exists_already(path: Path) -> InputError:
-    """Refusal to overwrite."""
-    cure = "It may hold numbers that a person wrote: name a new file, or remove it first."
-    return InputError(f"--out {path}", "exists already, and was not touched", cure=cure)
 
 
 def friction_text(tests: Sequence[FrictionTest]) -> str:

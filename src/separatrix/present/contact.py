@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from separatrix.chain.traction.exact.contact import ContactSolution
 from separatrix.chain.traction.profile import Profile
-from separatrix.contact_file.question import ContactAnswer, ContactSetup, Motion, SolvedCase
-from separatrix.present.nodes import Document, plain
+from separatrix.contact_file.question import ContactAnswer, ContactCase, ContactSetup, Motion, SolvedCase
+from separatrix.present.nodes import Document, field_units, plain
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -25,36 +25,25 @@ from separatrix.present.text.tables import (
 )
 from separatrix.units import Array
 
-NUMBERS = {
-    "load": "N",
-    "force": "N",
-    "lateral_force": "N",
-    "spin_moment": "N m",
-    "stick_share": "-",
-    "dissipation": "N",
-    "max_pressure": "Pa",
-    "film_strain": "-",
-}
-"""Numbers of a solution and their units; the dissipation is power per rolling speed, in a shift an energy."""
+NUMBERS = (
+    *("load", "force", "lateral_force", "spin_moment", "stick_share", "dissipation", "max_pressure"),
+    "film_strain",
+)
+"""Numbers of a solution; the dissipation is power per rolling speed, in a shift an energy."""
 
-GIVEN = {
-    "longitudinal_creep": "-",
-    "lateral_creep": "-",
-    "spin": "1/m",
-    "curvature": "1/m2",
-    "longitudinal_shift": "m",
-    "lateral_shift": "m",
-    "turn": "rad",
-    "distance": "m",
-}
-OF_MOTION = {
-    Motion.ROLLING: tuple(GIVEN)[:4],
-    Motion.SHIFT: tuple(GIVEN)[4:7],
-    Motion.TRANSIENT: (*tuple(GIVEN)[:4], "distance"),
-}
+CREEPS, SHIFTS = (
+    ("longitudinal_creep", "lateral_creep", "spin", "curvature"),
+    ("longitudinal_shift", "lateral_shift", "turn"),
+)
+GIVEN = (*CREEPS, *SHIFTS, "distance")
+OF_MOTION = {Motion.ROLLING: CREEPS, Motion.SHIFT: SHIFTS, Motion.TRANSIENT: (*CREEPS, "distance")}
 """What a case is given, or what was found for it, by its motion."""
 
-FIELDS = {"fraction": "-", "pressure": "Pa", "traction": "Pa", "slip": "-", "stick": ""}
+FIELDS = ("fraction", "pressure", "traction", "slip", "stick")
+
+
+UNITS = field_units(ContactSolution) | field_units(ContactCase)
+WHERE = {"long_name": "1 where the surfaces stick"}
 
 
 def document(answer: ContactAnswer, notes: Sequence[str]) -> Document:
@@ -123,8 +112,9 @@ def contact_dataset(answer: ContactAnswer, notes: Sequence[str] = ()) -> xr.Data
         if key in slope
     }
     names = ("force_share", "lateral_force_share", "stick_cells", "slip_cells", "residual")
-    for name, unit in (NUMBERS | GIVEN | dict.fromkeys(names, "-")).items():
-        data[name] = ("case", np.array([row[name] for row in rows], dtype=float), {"units": unit})
+    for name in (*NUMBERS, *GIVEN, *names):
+        values = np.array([row[name] for row in rows], dtype=float)
+        data[name] = ("case", values, {"units": UNITS.get(name, "-")})
     data["contact"] = ("case", np.array([row["contact"] for row in rows]))
     data["turned"] = ("case", np.array([one.case.turned for one in answer.cases]))
     for name in ("motion", "reason"):
@@ -151,12 +141,12 @@ def _fields(solutions: Sequence[ContactSolution | None]) -> dict[str, object]:
         values = np.stack([padded(None if x is None else getattr(x, name), (size[dim],)) for x in solutions])
         long = {"units": "m", "long_name": f"{'x' if name == 'along' else 'y'}, {name}"}
         found[name] = (dim, getattr(known[0], name), long) if is_one else (("case", dim), values, long)
-    for name, unit in FIELDS.items():
+    for name in FIELDS:
         vector = name in ("traction", "slip")
         shape = (2,) * vector + (size["row"], size["column"])
         values = np.stack([padded(None if x is None else getattr(x, name), shape) for x in solutions])
         dims = ("case", *(("direction",) if vector else ()), "row", "column")
-        found[name] = (dims, values, {"units": unit} if unit else {"long_name": "1 where the surfaces stick"})
+        found[name] = (dims, values, {"units": UNITS[name]} if name in UNITS else WHERE)
     return found
 
 

@@ -23,7 +23,7 @@ from separatrix.comparing.shown import (
 from separatrix.errors import InputError
 from separatrix.messages import grouped, noted_warnings
 from separatrix.present import load
-from separatrix.present.text.stability import DECIDES
+from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.questions import Computed, Verb, verb_named
 from separatrix.reporting.evidence import evidence, inputs, outside, provenance, uncertainty
 from separatrix.reporting.first_page import first_page
@@ -37,10 +37,7 @@ from separatrix.reporting.record import (
     Row,
     Section,
     Table,
-    margin,
-    probability,
     quantity,
-    verdict,
 )
 from separatrix.reporting.stages import bearing_and_cage, stages
 
@@ -48,13 +45,6 @@ if TYPE_CHECKING:
     from separatrix.study import Study
 
 MOST_CASES = 40
-TIMES = {
-    "below_margin": "with a margin below 0",
-    "stable": "STABLE",
-    "unstable": "UNSTABLE",
-    "undecided": "UNDECIDED",
-    "refused": "without an answer",
-}
 MOST_ROWS = 40
 """Results of a table of two designs; compare.json has all."""
 
@@ -118,10 +108,9 @@ def _envelope(kept: Kept) -> Iterator[Block]:
         case = next(row for row in cases if row["case"] == worst["case"])
         at = ", ".join(f"{name} {_value(case, one)}" for name, one in names.items())
         words = f"Of {worst['compared']} cases the worst is number {worst['case']}: {at}. "
-        yield Paragraph(f"{words}It has the {DECIDES[worst['quantity']]}: {worst['value']:.3g}.")
+        yield Paragraph(f"{words}It has the {deciding(worst['quantity'], worst['value'])}.")
     if (duty := found["duty"]) is not None:
-        known = {words: duty[key] for key, words in TIMES.items() if duty[key] is not None}
-        yield Facts(tuple((f"Time {words}", f"{100 * share:.3g} %") for words, share in known.items()))
+        yield Facts(tuple((f"Time {words}", share) for words, share in time_shares(duty)))
     words = "Stability and frequencies over the cases; orders are those of shaft, cage and balls."
     shown = (one for name in ("envelope", "sweep") for one in picture(kept, name, words, words))
     yield from islice(shown, 1)

@@ -5,6 +5,15 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping
 
+from separatrix.present.text.sentences import (
+    margin,
+    next_test,
+    probability,
+    rank_texts,
+    threshold,
+    verdict,
+    with_interval,
+)
 from separatrix.present.text.tables import ABSENT, grouped, number, rate
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import (
@@ -16,18 +25,12 @@ from separatrix.reporting.record import (
     Table,
     entry,
     facts,
-    margin,
     own_rows,
-    places,
-    probability,
     quantity,
-    threshold,
-    verdict,
-    with_interval,
 )
+from separatrix.study_file import inputs_of
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
-SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 PROPERTIES = {
     "elastic_modulus": "elastic modulus",
     "poisson_ratio": "Poisson's ratio",
@@ -129,7 +132,7 @@ def _short(name: str, rows: list[Row]) -> Table:
         caption = "Candidates overall: mean friction over the environments in which each was measured."
     cells = (
         (place, str(row["name"]), verdict(row), _friction(row), threshold(row), margin(row), probability(row))
-        for place, row in zip(places(rows), rows, strict=True)
+        for place, row in zip(rank_texts(row["rank"] for row in rows), rows, strict=True)
     )
     head = ("rank", "candidate", "verdict", "friction", "threshold (95 %)", "margin", "P(stable) (95 %)")
     return Table(head, tuple(cells), caption, left=3)
@@ -212,18 +215,7 @@ def _sensitivity(kept: Kept) -> Iterator[Block]:
         largest = sorted(one["shares"], key=lambda share: -share["share"])[:MOST_DRIVERS]
         words = ", ".join(f"{share['name']} {100.0 * share['share']:.0f} %" for share in largest)
         yield Paragraph(f"{one['name']}: the variance of its verdict comes from {words}.")
-    undecided = found["undecided"]
-    if not undecided:
-        yield Paragraph("No case is undecided: no measurement would change a verdict.")
-        return
-    yield Paragraph(f"Undecided: {'; '.join(undecided)}.")
-    for test in found["next_tests"][:MOST_TESTS]:
-        each = zip(test["cases"], test["chances"], strict=True)
-        cases = "; ".join(f"{case} ({100.0 * chance:.0f} %)" for case, chance in each)
-        settled = f"{test['settled']:.1f} of them on average"
-        yield Paragraph(f"Measuring {test['name']} would settle {settled}: {cases}.")
-    if not found["next_tests"]:
-        yield Paragraph("No single measurement would settle any of them.")
+    yield from map(Paragraph, next_test(found, MOST_TESTS))
 
 
 def outside(kept: Mapping[str, Kept]) -> Section:
@@ -243,7 +235,15 @@ def outside(kept: Mapping[str, Kept]) -> Section:
 def inputs(kept: Mapping[str, Kept]) -> Section:
     """Return every input of the study with where it was given, and materials and frictions with sources."""
     study = next(iter(kept.values())).document["study"]
-    rows = [row for section in SECTIONS for row in _rows(section, study.get(section) or {})]
+    rows = [
+        (
+            f"{section}: {key.replace('_', ' ')}",
+            (str(item["name"]) if "name" in item else entry(item))
+            + (f" ({item['distribution']['words']})" if "distribution" in item else ""),
+            str(item["origin"]),
+        )
+        for section, key, item in inputs_of(study)
+    ]
     blocks: list[Block] = [Table(("input", "value", "given in"), tuple(rows), "Inputs of the study.", left=3)]
     materials = tuple(dict.fromkeys(_materials(study)))
     if materials:
@@ -252,16 +252,6 @@ def inputs(kept: Mapping[str, Kept]) -> Section:
     if study.get("ranking"):
         blocks += _frictions(study["ranking"])
     return Section("Inputs and their sources", tuple(blocks))
-
-
-def _rows(section: str, items: Row) -> Iterator[tuple[str, ...]]:
-    for key, item in items.items():
-        if not isinstance(item, dict) or "origin" not in item:
-            continue
-        value = str(item["name"]) if "name" in item else entry(item)
-        if "distribution" in item:
-            value += f" ({item['distribution']['words']})"
-        yield f"{section}: {key.replace('_', ' ')}", value, str(item["origin"])
 
 
 def _materials(study: Row) -> Iterator[tuple[str, ...]]:

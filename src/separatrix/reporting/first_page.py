@@ -4,6 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from separatrix.present.text.sentences import (
+    by_verdict,
+    drift_sentence,
+    margin,
+    probability,
+    rank_texts,
+    verdict,
+    verdict_sentences,
+)
 from separatrix.present.text.tables import ABSENT, grouped, number, significant
 from separatrix.reporting.pictures import own_candidates, picture
 from separatrix.reporting.record import (
@@ -13,13 +22,8 @@ from separatrix.reporting.record import (
     Row,
     Section,
     Table,
-    margin,
     own_rows,
-    places,
-    probability,
     quantity,
-    threshold,
-    verdict,
 )
 
 MOST_CAVEATS = 5
@@ -48,11 +52,11 @@ def first_page(kept: Mapping[str, Kept], about: Sequence[str]) -> Section:
 def _ranking(kept: Kept) -> Iterator[Block]:
     rank = kept.document
     rows = own_rows(rank)
-    for sentence in verdict_sentences(rank):
+    for sentence in verdict_sentences(rows, rank["environment"]):
         yield Paragraph(sentence, "lead")
     cells = [
         (place, row["name"], verdict(row), margin(row), probability(row), *_evidence(row))
-        for place, row in zip(places(rows), rows, strict=True)
+        for place, row in zip(rank_texts(row["rank"] for row in rows), rows, strict=True)
     ]
     yield Table(HEAD, tuple(cells), f"Candidates in {rank['environment']}. {EXPLAINED}", left=3)
     yield from picture(
@@ -74,48 +78,6 @@ def _evidence(row: Row) -> tuple[str, ...]:
         quantity(row["largest_land_force"], "N", 3),
         f"{row['runs']} x {quantity(row['longest_run'], 's', 3)}",
     )
-
-
-def verdict_sentences(rank: Row) -> list[str]:
-    """Return the answer of a ranking: the first, its margin and why it is undecided if it is, the others."""
-    rows, place = own_rows(rank), rank["environment"]
-    first = [row for row in rows if row.get("rank") == 1]
-    if not first:
-        return [f"No candidate was ranked in {place}."]
-    each = grouped((verdict(row), row["name"]) for row in first)
-    word, names = next(iter(each)), ", ".join(row["name"] for row in first)
-    lead = f"{names} ranks first in {place}: {word}."
-    if len(first) > 1:
-        said = f" ({names}): {word}" if len(each) == 1 else f": {_by_verdict(each)}"
-        lead = f"{len(first)} materials tie for first in {place}{said}."
-    limits, etas = (
-        _span([row[key] for row in first]) for key in ("restitution_threshold", "restitution_factor")
-    )
-    if len(first) == 1:
-        limits = threshold(first[0])
-    whose = "The cage" if len(first) == 1 else "Their cages"
-    up_to = f"{whose} remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
-    if not any(row["restitution_threshold"] for row in first):
-        up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
-    elif [*each] != ["STABLE"]:
-        up_to = f"From the reference disturbance the largest stable restitution factor is {limits}"
-    by_it = (
-        f"{up_to}; this bearing and film have {etas}, "
-        f"a margin of {_span([row['margin'] for row in first], '{:+.2f}')}."
-    )
-    if first[0]["verdict"] == "UNDECIDED":
-        by_it += f" {first[0]['name']}: {first[0]['reason']}"
-    others = grouped((verdict(row), row["name"]) for row in rows if row not in first)
-    rest = f"The others: {_by_verdict(others)}." if others else "There is no other candidate."
-    return [lead, by_it, rest]
-
-
-def _by_verdict(each: Mapping[str, Sequence[str]]) -> str:
-    return "; ".join(f"{word} {', '.join(who)}" for word, who in each.items())
-
-
-def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
-    return " to ".join(dict.fromkeys(form.format(one + 0.0) for one in (min(values), max(values))))
 
 
 def _stability(kept: Kept) -> Iterator[Block]:
@@ -145,8 +107,8 @@ def _stability(kept: Kept) -> Iterator[Block]:
         yield Paragraph(
             f"The cage's friction of {significant(friction, 3)} is {side} {band}: {then}.", "lead"
         )
-    if found.get("drifts"):
-        yield Paragraph(_drift(found), "lead")
+    if drift := drift_sentence(bool(found.get("drifts")), found.get("drift_rate_law")):
+        yield Paragraph(drift, "lead")
     why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
     yield Paragraph(f"{why}: no cage materials were compared.", "lead")
     yield from picture(
@@ -155,13 +117,6 @@ def _stability(kept: Kept) -> Iterator[Block]:
         f"Critical friction against restitution factor: {_below(found)}.",
         "Stability curve with its band and limits, and the bearing's own restitution factor.",
     )
-
-
-def _drift(curve: Row) -> str:
-    """Return that a cage without a land is stable at no friction, and how fast it drifts."""
-    rate = curve["drift_rate_law"]
-    pace = f", by the linear law e-fold every {quantity(1.0 / rate, 's', 3)}" if rate else ""
-    return f"The cage has no land and drifts at any friction{pace}: no verdict on it is STABLE."
 
 
 def _below(curve: Row) -> str:
@@ -202,10 +157,9 @@ def _by_the_other_ball(rank: Row) -> Iterator[str]:
     rows = [row for row in own_rows(rank) if row.get("other_ball_verdict") not in (None, row["verdict"])]
     if rows:
         each = grouped((row["other_ball_verdict"], row["name"]) for row in rows)
-        words = "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
         inertial = rank["ball_model"] == "DAMPER"
         model = "a ball with inertia and traction" if inertial else "a ball without mass, held by a damper"
-        yield f"With {model} ({rows[0]['other_ball_runs']} runs), verdicts differ: {words}."
+        yield f"With {model} ({rows[0]['other_ball_runs']} runs), verdicts differ: {by_verdict(each)}."
 
 
 def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:

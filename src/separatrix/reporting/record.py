@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from separatrix.present.text import tables
-from separatrix.present.text.tables import ABSENT, interval
+from separatrix.present.text.sentences import Row as Row
+from separatrix.present.text.tables import ABSENT
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Row = Mapping[str, Any]
-"""A document of an answer, or a part of one."""
 
 MICRO = ("um", "uJ", "uW", "us", "uN")
 """Units that the program writes in ASCII."""
@@ -136,45 +134,10 @@ def quantity(value: float | None, unit: str, digits: int | None = None) -> str:
     return number + space + (symbol.replace("u", "\N{MICRO SIGN}", 1) if symbol in MICRO else symbol)
 
 
-def with_interval(row: Row, name: str, ends: str = "") -> str:
-    """Return a number of a row with its interval, or a dash; `ends` is how the names of its ends begin."""
-    if row.get(name) is None:
-        return ABSENT
-    return interval(row[name], *(row[f"{ends or name}_{end}"] for end in ("low", "high")))
-
-
-def probability(row: Row, by: str = "") -> str:
-    """Return P(stable) with its interval, or a dash; `by` begins the names of another model's."""
-    return with_interval(row, f"{by}probability_stable", f"{by}probability")
-
-
-def threshold(row: Row) -> str:
-    """Return the restitution threshold with its interval, or a dash."""
-    return with_interval(row, "restitution_threshold")
-
-
-def margin(row: Row) -> str:
-    """Return the margin with its sign, or a dash."""
-    return ABSENT if row.get("margin") is None else f"{row['margin']:+.2f}"
-
-
-def verdict(row: Row) -> str:
-    """Return the verdict, or why there is none."""
-    if row.get("verdict"):
-        return str(row["verdict"])
-    return "not measured" if row.get("friction") is None else "not finished"
-
-
 def own_rows(rank: Row) -> list[Row]:
     """Return the rows of the bearing's own environment."""
     found = [one["materials"] for one in rank["environments"] if one["name"] == rank["environment"]]
     return list(found[0]) if found else []
-
-
-def places(rows: Iterable[Row]) -> list[str]:
-    """Return the ranks, = after a shared one, a dash for none."""
-    ranks = [row.get("rank") for row in rows]
-    return [ABSENT if rank is None else f"{rank}{'=' * (ranks.count(rank) > 1)}" for rank in ranks]
 
 
 def entry(item: Row, digits: int | None = None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import degrees
 
+from separatrix.present.text.sentences import strain_facts
 from separatrix.present.text.tables import ABSENT, interval, kick_list, number, significant
 from separatrix.reporting.pictures import drawing, equation, picture
 from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, entry, facts, quantity
@@ -82,17 +83,7 @@ def _clearances(kept: Mapping[str, Kept]) -> Iterator[Block]:
         rows,
         f"Clearances of the cage, which runs at {at}. In a ranking: of the reference cage.",
     )
-    strains = [
-        f"{part} {100.0 * found[f'{key}_strain']:.3g} %"
-        for part, key in (("cage", "cage"), ("balls", "ball"), ("rings", "ring"))
-        if found[f"{key}_strain"] is not None
-    ]
-    grown = [f"cage +{100.0 * found['hoop_strain']:.3g} % at its pitch radius"] + [
-        f"{part} +{quantity(found[f'{key}_land_growth'], 'm', 3)} in radius"
-        for part, key in (("its land", "cage"), ("the ring's land", "ring"))
-        if found[f"{key}_land_growth"]
-    ]
-    yield facts(("Thermal strain", ", ".join(strains)), ("Growth by rotation", ", ".join(grown)))
+    yield facts(*strain_facts(found, quantity))
 
 
 def _guidance(cage: Row) -> str:

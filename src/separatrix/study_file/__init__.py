@@ -13,11 +13,20 @@ from separatrix.library.records import contradictions
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.study import CageDesign, Guidance, Study, chosen_models, with_models
 from separatrix.study_file.document import TEMPLATE, Document, find, load, shipped_studies
-from separatrix.study_file.provenance import asked_by, keep, provenance_of, resolved
+from separatrix.study_file.provenance import asked_by, inputs_of, keep, provenance_of, resolved
 from separatrix.study_file.sections import LEFT_OUT, build_study
 from separatrix.units import Kilogram, format_quantity, printable
 
-__all__ = ["asked_by", "provenance_of", "read_study", "require", "resolved", "shipped_studies", "template"]
+__all__ = [
+    "asked_by",
+    "inputs_of",
+    "provenance_of",
+    "read_study",
+    "require",
+    "resolved",
+    "shipped_studies",
+    "template",
+]
 
 
 def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> Study:

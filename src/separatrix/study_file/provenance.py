@@ -6,7 +6,7 @@ import base64
 import hashlib
 import os
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from functools import cache
@@ -31,6 +31,7 @@ from separatrix.study import (
     Wear,
     with_models,
 )
+from separatrix.study_file.document import SECTIONS as EVERY_SECTION
 from separatrix.study_numbers import study_numbers
 from separatrix.units import unit_of
 
@@ -82,6 +83,14 @@ def resolved(study: Study) -> dict[str, Any]:
         "ranking": None if study.ranking is None else _ranking(study, study.ranking),
         "uncertain_inputs": uncertain,
     }
+
+
+def inputs_of(found: Mapping[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Yield section, key and entry of every input of a resolved study that has an origin."""
+    for section in EVERY_SECTION:
+        for key, entry in (found[section] or {}).items():
+            if isinstance(entry, dict) and "origin" in entry:
+                yield section, key, entry
 
 
 def _section(study: Study, section: str) -> dict[str, object] | None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
 from math import asin, degrees, isclose, pi
+from operator import itemgetter
 
 from separatrix.answers import CheckAnswer
 from separatrix.cage_body import cage_inertia
@@ -19,6 +21,7 @@ from separatrix.present.text.tables import (
     ABSENT,
     facts,
     friction_table,
+    grouped,
     heading,
     paragraph,
     quantity,
@@ -26,10 +29,10 @@ from separatrix.present.text.tables import (
     table,
 )
 from separatrix.study import CageDesign, ClearanceState, Study
-from separatrix.study_file import resolved
+from separatrix.study_file import inputs_of, resolved
+from separatrix.study_file.document import SECTIONS
 from separatrix.units import format_quantity
 
-SECTIONS = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability")
 NAMED = 6
 """Uncertain inputs that a note names."""
 
@@ -61,7 +64,7 @@ def check(answer: CheckAnswer, study: Study) -> list[str]:
 
 
 def _valid(study: Study) -> str:
-    absent = [f"[{name}]" for name in (*SECTIONS, "ranking") if getattr(study, name) is None]
+    absent = [f"[{name}]" for name in SECTIONS if getattr(study, name) is None]
     return "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
 
 
@@ -125,24 +128,18 @@ def clearances(cage: CageDesign) -> list[tuple[str, str]]:
 def _assumed(inputs: Document) -> list[tuple[str, str]]:
     """Defaults of each section, in a line; where the default is an absence, what that means."""
     found = []
-    for name in (*SECTIONS, "ranking"):
-        each = []
-        for key, entry in (inputs[name] or {}).items():
-            origin = str(entry.get("origin", "")) if isinstance(entry, dict) else ""
-            meaning = origin.partition(": ")[2]
-            if origin.startswith("default"):
-                each.append(f"{key}: {meaning}" if meaning else f"{key} = {_entry(entry)}")
-        if each:
-            found.append((f"[{name}]", "; ".join(each)))
-    return found
+    for name, key, entry in inputs_of(inputs):
+        default, _, meaning = str(entry["origin"]).partition(": ")
+        if default.startswith("default"):
+            found.append((f"[{name}]", f"{key}: {meaning}" if meaning else f"{key} = {_entry(entry)}"))
+    return [(name, "; ".join(each)) for name, each in grouped(found).items()]
 
 
 def every_input(answer: CheckAnswer, study: Study) -> list[str]:  # noqa: ARG001
     """Every resolved input, its origin, and the sources of the materials."""
     inputs, blocks = resolved(study), []
-    for name in (name for name in SECTIONS if inputs[name] is not None):
-        entries = [(key, entry) for key, entry in inputs[name].items() if isinstance(entry, dict)]
-        rows = [[key, _entry(entry), entry["origin"]] for key, entry in entries]
+    for name, entries in groupby(inputs_of(inputs), key=itemgetter(0)):
+        rows = [[key, _entry(entry), entry["origin"]] for _, key, entry in entries]
         blocks.append(section(f"[{name}]", table(("", "value", "from"), rows, left=3)))
         if name == "cage" and study.cage is not None:
             blocks.append(section("Clearances of the cage", facts(clearances(study.cage))))

@@ -13,8 +13,9 @@ from separatrix.chain.contacts import BearingState
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.mobility import Impacts, Mobility
 from separatrix.chain.models import ModelSlopes
-from separatrix.present.nodes import Leaf, Node, field_units, fields_of
+from separatrix.present.nodes import Leaf, Node, field_units, fields_of, plain
 from separatrix.present.shapes import shape
+from separatrix.present.text.sentences import strain_facts
 from separatrix.present.text.tables import (
     facts,
     number,
@@ -256,14 +257,7 @@ def running_clearances(found: Clearances | None) -> list[tuple[str, str]]:
     ):
         if rest is not None and runs is not None:
             rows.append((words, f"{quantity(runs, 'm')} {at}, {quantity(rest, 'm')} at 293 K at rest"))
-    thermal = [("cage", found.cage_strain), ("balls", found.ball_strain), ("rings", found.ring_strain)]
-    strains = [f"{part} {100 * strain:.3g} %" for part, strain in thermal if strain is not None]
-    rows.append(("Thermal strain", ", ".join(strains)))
-    turning = f"cage +{found.hoop_strain * 100:.3g} % at its pitch radius"
-    for part, grown in (("its land", found.cage_land_growth), ("the ring's land", found.ring_land_growth)):
-        turning += "" if not grown else f", {part} +{quantity(grown, 'm', 3)} in radius"
-    rows.append(("Growth by rotation", turning))
-    return rows
+    return [*rows, *strain_facts(plain(found), quantity)]
 
 
 SMALL = {

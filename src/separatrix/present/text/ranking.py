@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 from separatrix.answers import RankingAnswer
 from separatrix.cage import Judgement, Verdict
+from separatrix.present.nodes import Document, plain
 from separatrix.present.text.cage import by_the_other_ball, judgement_facts, motion_words
 from separatrix.present.text.chain import basis
+from separatrix.present.text.sentences import (
+    by_verdict,
+    margin,
+    probability,
+    rank_texts,
+    threshold,
+    verdict,
+    verdict_sentences,
+)
 from separatrix.present.text.stability import ensemble_facts
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
     grouped,
-    interval,
     kick_list,
     number,
     paragraph,
@@ -69,7 +78,7 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
     """The answer for the bearing's own environment, on a screen; `every_environment` has the rest."""
     found = answer.ranking
     rows, more = headline(found), "`--full` prints all evidence"
-    undecided = [row for row in rows if verdict_word(row) == "UNDECIDED"]
+    undecided = [row for row in rows if (own := judgement(row)) and own.verdict is Verdict.UNDECIDED]
     leads = []
     for one in found.environments:
         if one.name != found.environment:
@@ -81,7 +90,7 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
     )
     legend = ("", paragraph(LEGEND), *footnotes(rows), *lowest(rows))
     return [
-        paragraph(in_short(found), indent=""),
+        _in_short(found),
         section(_title(found.environment), verdicts(rows), *legend),
         *_over_inputs(rows, study),
         *by_the_other_ball(found, rows),
@@ -113,7 +122,7 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
         title = "Overall: mean friction over the measured environments"
         overall = [_environment(title, found.overall, *blocks)]
     return [
-        paragraph(in_short(found), indent=""),
+        _in_short(found),
         environment(found, own),
         *_over_inputs(own.materials, study),
         *by_the_other_ball(found, own.materials),
@@ -142,6 +151,20 @@ def headline(found: Ranking) -> tuple[Row, ...]:
     return next(one.materials for one in found.environments if one.name == found.environment)
 
 
+def _plain(rows: Iterable[Row]) -> list[Document]:
+    """Return the rows as a document has them."""
+    return [plain(row, left_out=[]) for row in rows]
+
+
+def _in_short(found: Ranking) -> str:
+    """Return the answer in a few sentences, with the reason of the verdict alone."""
+    rows = [
+        plain(row, left_out=[]) | ({"reason": own.reason} if (own := judgement(row)) else {})
+        for row in headline(found)
+    ]
+    return paragraph(" ".join(verdict_sentences(rows, found.environment)), indent="")
+
+
 def _measured(rows: Iterable[Row]) -> list[Ranked | NotFinished]:
     return [row for row in rows if not isinstance(row, NotMeasured)]
 
@@ -151,36 +174,21 @@ def judgement(row: Row) -> Judgement | None:
     return None if isinstance(row, NotMeasured) else row.judgement
 
 
-def verdict_word(row: Row) -> str:
-    """Return the verdict of a candidate, or why it has none."""
-    if (found := judgement(row)) is not None:
-        return found.verdict.name
-    return "not measured" if isinstance(row, NotMeasured) else "not finished"
-
-
 def _title(name: str) -> str:
     return name[:1].upper() + name[1:]
 
 
 def verdicts(rows: Sequence[Row]) -> str:
     """Return the table of verdicts, margins and ranks."""
-    shared = Counter(row.rank for row in rows if isinstance(row, Ranked))
-    cells = []
-    for row in rows:
-        found, friction, margins, place = judgement(row), ABSENT, (ABSENT, ABSENT), ABSENT
-        if not isinstance(row, NotMeasured):
-            friction = number(row.friction) + (MARK if row.extrapolation else "")
-        if isinstance(row, Ranked):
-            ends = row.restitution_threshold_low, row.restitution_threshold_high
-            margins = interval(row.restitution_threshold, *ends), f"{row.margin:+.2f}"
-            place = f"{row.rank}{'=' if shared[row.rank] > 1 else ''}"
-        share = ABSENT if found is None else _probability(found)
-        cells.append([place, row.name, friction, *margins, share, verdict_word(row)])
+    found = _plain(rows)
+    cells = [
+        [
+            *(place, row["name"], number(row["friction"]) + (MARK if row["extrapolation"] else "")),
+            *(threshold(row), margin(row), probability(row), verdict(row)),
+        ]
+        for row, place in zip(found, rank_texts(row["rank"] for row in found), strict=True)
+    ]
     return table(HEADERS, cells, left=2)
-
-
-def _probability(found: Judgement) -> str:
-    return interval(found.probability_stable, found.probability_low, found.probability_high)
 
 
 def lowest(rows: Sequence[Row]) -> list[str]:
@@ -221,52 +229,16 @@ def reasons(rows: Sequence[Row]) -> list[str]:
     ]
 
 
-def in_short(found: Ranking) -> str:
-    """Return the first candidate here, its margin, the reason if undecided, and the other verdicts."""
-    rows, place = headline(found), found.environment
-    first = [row for row in rows if isinstance(row, Ranked) and row.rank == 1]
-    if not first:
-        return f"No candidate was ranked in {place}."
-    each = grouped((verdict_word(row), row.name) for row in first)
-    word = next(iter(each))
-    lead = f"{first[0].name} ranks first in {place}: {word}."
-    it, pocket = "It tolerates", "this bearing with its pocket has"
-    if len(first) > 1:
-        names = ", ".join(row.name for row in first)
-        said = f" ({names}): {word}" if len(each) == 1 else f": {_by_verdict(each)}"
-        lead = f"{len(first)} materials tie for first in {place}{said}."
-        it, pocket = "They tolerate", "this bearing and their pockets have"
-    limits = _span([row.restitution_threshold for row in first])
-    up_to = f"{it} a restitution factor up to {limits}"
-    if "UNSTABLE" in each:
-        up_to = f"From the reference kick the largest stable restitution factor is {limits}"
-    etas = _span([row.restitution_factor for row in first])
-    margins = _span([row.margin for row in first], "{:+.2f}")
-    others = grouped((verdict_word(row), row.name) for row in rows if row not in first)
-    rest = f" The others: {_by_verdict(others)}." if others else ""
-    is_open = first[0].judgement.verdict is Verdict.UNDECIDED
-    why = f" {first[0].name}: {first[0].judgement.reason}" if is_open else ""
-    return f"{lead} {up_to}; {pocket} {etas} (margin {margins}).{why}{rest}"
-
-
-def _span(values: Sequence[float], form: str = "{:.2f}") -> str:
-    return " to ".join(dict.fromkeys(form.format(value + 0.0) for value in (min(values), max(values))))
-
-
-def _by_verdict(each: Mapping[str, Sequence[str]]) -> str:
-    return "; ".join(f"{verdict} {', '.join(who)}" for verdict, who in each.items())
-
-
 def _over_inputs(rows: Sequence[Row], study: Study) -> list[str]:
     """Return the verdicts over the uncertain inputs; empty if the study states none."""
     known = [(row.name, row.over_inputs) for row in _measured(rows) if row.over_inputs]
     if not known:
         return []
-    each = grouped((found.verdict.name, f"{name} {_probability(found)}") for name, found in known)
+    each = grouped((found.verdict.name, f"{name} {probability(plain(found))}") for name, found in known)
     names = ", ".join([*study.distributions][:NAMED]) + (", ..." if len(study.distributions) > NAMED else "")
     text = (
         f"Uncertain inputs ({names}) are at their means above. With a bearing drawn for each of "
-        f"{known[0][1].runs} runs from each kick, P(stable) is: {_by_verdict(each)}."
+        f"{known[0][1].runs} runs from each kick, P(stable) is: {by_verdict(each)}."
     )
     return [paragraph(text, indent="")]
 

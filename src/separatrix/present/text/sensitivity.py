@@ -15,7 +15,9 @@ from separatrix.explore.records import (
     UncertainRow,
     UncertainStudy,
 )
+from separatrix.present.nodes import plain
 from separatrix.present.text.chain import basis
+from separatrix.present.text.sentences import next_test
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -75,6 +77,7 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
         ("Ended early", f"at a risk of {found.stopped_risk:g} of another verdict at each look"),
     ]
     overall = [_environment("over all environments, mean friction", found.overall)] if others else []
+    tests = plain({"undecided": found.undecided, "next_tests": found.next_tests})
     films = section(f"Which film keeps the cage stable in {found.environment}", *_films(found.allowed_films))
     return [
         paragraph(f"With the uncertain inputs drawn, in {own.name}: {short}.", indent=""),
@@ -84,7 +87,7 @@ def sensitivity(answer: SensitivityAnswer, study: Study) -> list[str]:
         *overall,
         section("Uncertain inputs", facts(_inputs(found))),
         section("Main sources of uncertainty", *_sources(found)),
-        section("Which test to run next", *map(paragraph, _next_test(found))),
+        section("Which test to run next", *map(paragraph, next_test(tests, LISTED))),
         section("Which friction a new material may have", *map(paragraph, _friction(found))),
         films,
         section("Basis of this answer", facts(holds_for)),
@@ -204,19 +207,6 @@ def _shares(case: Drivers, columns: Sequence[str]) -> list[str]:
 
 def _per_cent(one: Share) -> str:
     return f"{100.0 * one.share:.0f} ({100.0 * one.share_low:.0f}-{100.0 * one.share_high:.0f})"
-
-
-def _next_test(found: UncertainStudy) -> Iterator[str]:
-    if not found.undecided:
-        yield "No case is undecided: no measurement would change a verdict."
-        return
-    yield f"Undecided: {'; '.join(found.undecided)}."
-    for test in found.next_tests[:LISTED]:
-        pairs = list(zip(test.cases, test.chances, strict=True))[:LISTED]
-        cases = "; ".join(f"{case} ({100.0 * chance:.0f} %)" for case, chance in pairs)
-        yield f"Measuring {test.name} would settle {test.settled:.1f} of them on average: {cases}."
-    if not found.next_tests:
-        yield "No single measurement would settle any of them."
 
 
 def _friction(found: UncertainStudy) -> Iterator[str]:

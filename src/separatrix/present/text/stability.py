@@ -10,9 +10,10 @@ from separatrix.cage_choice import cage_candidate
 from separatrix.explore.sweep import Sweep, SweptCase
 from separatrix.limits.curve import StabilityCurve
 from separatrix.limits.map_records import NOT_RUN, Inference, MapAxis, MapChange, StabilityMap, Stopping
-from separatrix.present.nodes import field_units
+from separatrix.present.nodes import field_units, plain
 from separatrix.present.text.cage import friction_text
 from separatrix.present.text.chain import basis
+from separatrix.present.text.sentences import deciding, drift_sentence, time_shares
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -84,7 +85,10 @@ def curve(found: StabilityCurve) -> list[str]:
             critical = interval(point.critical_friction, point.scatter_low, point.scatter_high, 3)
         others = (point.critical_friction_low, point.critical_friction_high, linear.get(eta), hard.get(eta))
         rows.append([number(eta), critical, *map(number, others)])
-    block = section("Stability curve", table(HEADERS, rows), LEGEND + drift_note(found))
+    drift = drift_sentence(found.drifts, found.drift_rate_law)
+    block = section(
+        "Stability curve", table(HEADERS, rows), LEGEND, *([f"\n{paragraph(drift)}"] if drift else [])
+    )
     here = found.here
     if here is None:
         return [block]
@@ -98,20 +102,6 @@ def curve(found: StabilityCurve) -> list[str]:
     ]
     title = f"Sub-critical band of this bearing, restitution factor {number(here.restitution_factor)}"
     return [block, section(title, facts(lines))]
-
-
-def drift_note(found: StabilityCurve) -> str:
-    """Return that a cage without a land is stable nowhere, and how fast it drifts; empty if it has one."""
-    if not found.drifts:
-        return ""
-    rate = found.drift_rate_law
-    pace = ""
-    if rate:
-        pace = f", by the linear law at {significant(rate, 3)} 1/s (e-fold every {quantity(1.0 / rate, 's')})"
-    return "\n\n" + paragraph(
-        f"This cage has no land and drifts at any friction{pace}. Below the curve disturbances decay, but no "
-        "verdict there is STABLE."
-    )
 
 
 def stability_map(answer: MapAnswer, study: Study) -> list[str]:
@@ -279,13 +269,6 @@ def sweep(found: Sweep, study: Study) -> list[str]:  # noqa: ARG001
     return blocks
 
 
-DECIDES = {
-    "margin": "lowest margin",
-    "probability_stable": "lowest P(stable)",
-    "restitution_factor": "highest restitution factor; --margins or --verdicts compare the stability",
-}
-
-
 def _worst_case(found: Sweep) -> list[tuple[str, str]]:
     """Return the worst case with its values, and the time of a duty cycle that is spent where."""
     lines = []
@@ -293,15 +276,12 @@ def _worst_case(found: Sweep) -> list[tuple[str, str]]:
         values = next(case.values for case in found.cases if case.case == worst.case)
         given = zip(found.parameters, values, strict=True)
         at = ", ".join(f"{one.name} {quantity(value, one.unit or '-')}" for one, value in given)
-        of = f"of {worst.compared} case{'s'[: worst.compared != 1]}"
+        of = f" of {worst.compared} case{'s'[: worst.compared != 1]}"
         others = f" (and {worst.alike - 1} more that are alike)" * (worst.alike > 1)
         lines.append(("Worst case", f"{worst.case}: {at}{others}"))
-        lines.append(("Its evidence", f"{number(worst.value, 3)}, {DECIDES[worst.quantity]} {of}"))
+        more = "; --margins or --verdicts compare the stability" * (worst.quantity == "restitution_factor")
+        lines.append(("Its evidence", deciding(worst.quantity, worst.value, of) + more))
     if (duty := found.duty) is not None:
-        shares = {"with a margin below 0": duty.below_margin} | {
-            name.upper(): getattr(duty, name) for name in ("stable", "unstable", "undecided")
-        }
-        known = [f"{100 * share:.3g} % {words}" for words, share in shares.items() if share is not None]
-        refused = [f"{100 * duty.refused:.3g} % without an answer"] if duty.refused else []
-        lines.append(("Time", "; ".join([*known, *refused]) or "--margins or --verdicts show where"))
+        known = (f"{share} {words}" for words, share in time_shares(plain(duty)))
+        lines.append(("Time", "; ".join(known) or "--margins or --verdicts show where"))
     return lines
