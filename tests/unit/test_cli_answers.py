@@ -277,6 +277,20 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     assert "Sources of the materials" in whole
 
 
+def test_a_cage_without_a_land_has_no_assumed_land(capsys):
+    """What has no effect is not told among what is assumed."""
+    shipped = resources.files("separatrix") / "examples" / "momentum-wheel.toml"
+    lines = shipped.read_text(encoding="utf-8").splitlines()
+    bare = "\n".join(line for line in lines if not line.startswith(("land_stiffness", "land_clearance")))
+    landless = "\n".join(line for line in lines if not line.startswith("land_"))
+    for guidance, text in (("outer", f"{bare}\n"), ("ball", landless)):
+        given = text.replace('guidance = "outer"', f'guidance = "{guidance}"')
+        clearance = '\nland_clearance = "0.3 mm"' if guidance == "outer" else ""
+        Path("wheel.toml").write_text(given.replace("[cage]", f"[cage]{clearance}"))
+        assert main(["check", "wheel.toml"]) == 0
+        assert capsys.readouterr().out.count("land_stiffness = ") == (guidance == "outer")
+
+
 def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(capsys):
     """DN is bore times speed; the pressure at rest is that of `bearing` at 0 rpm."""
     Path("still.toml").write_text('extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "0 rpm"\n')

@@ -160,6 +160,8 @@ def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):
     assert found["complete"] is False
     assert found["allowed_friction"] == []
     assert row(found, "air", "A")["probability_stable"] is not None
+    assert main(["sensitivity", "small.toml", "--samples", "64", "--jobs", "1", "--quiet"]) == 130
+    assert capsys.readouterr().out.startswith("INCOMPLETE: interrupted.")
 
 
 @pytest.mark.parametrize("samples", ["0", "63", "100"])

@@ -231,13 +231,13 @@ def test_candidates_with_one_reason_share_it():
         ),
         (
             [row("A", 1), row("B", 1, Verdict.UNDECIDED, margin=0.2, restitution_factor=0.4)],
-            "2 materials tie for first in air: STABLE A; UNDECIDED B. From the reference disturbance the "
+            "2 materials tie for first in air: STABLE A; UNDECIDED B. From the reference kick the "
             "largest stable restitution factor is 0.60; this bearing and film have 0.30 to 0.40, a margin of "
             "+0.20 to +0.30. There is no other candidate.",
         ),
         (
             [row("A", 1, Verdict.UNDECIDED), row("B", 2)],
-            "A ranks first in air: UNDECIDED. From the reference disturbance the largest stable restitution "
+            "A ranks first in air: UNDECIDED. From the reference kick the largest stable restitution "
             "factor is 0.60 (0.55 to 0.64); this bearing and film have 0.30, a margin of +0.30. A: So it is. "
             "The others: STABLE B.",
         ),

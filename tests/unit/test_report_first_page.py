@@ -75,7 +75,7 @@ def test_each_of_a_tie_has_its_own_verdict():
     lead, limit, _ = sentences("STABLE", "UNSTABLE", "STABLE")
     assert lead == "3 materials tie for first in air: STABLE A, C; UNSTABLE B."
     assert limit == (
-        "From the reference disturbance the largest stable restitution factor is 0.60; this bearing and film "
+        "From the reference kick the largest stable restitution factor is 0.60; this bearing and film "
         "have 0.30, a margin of +0.30."
     )
     lead, limit, _ = sentences("STABLE", "STABLE")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from itertools import groupby
 from math import asin, degrees, isclose, pi
 from operator import itemgetter
@@ -28,10 +29,12 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.study import CageDesign, ClearanceState, Study
+from separatrix.study import CageDesign, ClearanceState, Guidance, Study
 from separatrix.study_file import inputs_of, resolved
 from separatrix.study_file.document import SECTIONS
 from separatrix.units import format_quantity
+
+INCOMPLETE = "INCOMPLETE: interrupted. What was not finished is left out, or has a dash in its place."
 
 NAMED = 6
 """Uncertain inputs that a note names."""
@@ -56,7 +59,8 @@ def check(answer: CheckAnswer, study: Study) -> list[str]:
         each = f"{'; '.join(study.ranking.environments)} (from {inputs['ranking']['origin']})"
         lines += [("Candidates", names), ("Friction known in", each)]
     blocks = [facts(lines)]
-    if assumed := _assumed(inputs):
+    is_landless = study.cage is not None and study.cage.guidance is Guidance.BALL
+    if assumed := _assumed(inputs, is_landless):
         blocks.append(section("Assumed, because the study does not state it", facts(assumed)))
     if study.distributions:
         blocks.append(section("Uncertain inputs", _uncertain(inputs)))
@@ -125,10 +129,15 @@ def clearances(cage: CageDesign) -> list[tuple[str, str]]:
     return [*rows, ("Land clearance", f"{words}, reached {order} the pockets{stated}")]
 
 
-def _assumed(inputs: Document) -> list[tuple[str, str]]:
-    """Defaults of each section, in a line; where the default is an absence, what that means."""
+def _assumed(inputs: Document, is_landless: bool) -> list[tuple[str, str]]:
+    """Defaults of each section, in a line; where the default is an absence, what that means.
+
+    Those of a land only where there is one.
+    """
     found = []
     for name, key, entry in inputs_of(inputs):
+        if is_landless and key.startswith("land_"):
+            continue
         default, _, meaning = str(entry["origin"]).partition(": ")
         if default.startswith("default"):
             found.append((f"[{name}]", f"{key}: {meaning}" if meaning else f"{key} = {_entry(entry)}"))
@@ -237,13 +246,20 @@ def in_words(
 
     `full` prints everything of an answer longer than a screen; `quiet` the answer alone, without notes.
     """
+    missing = [] if _is_complete(answer) else [paragraph(INCOMPLETE, indent="")]
     if quiet and not full and verb in QUIET:
-        return "\n\n".join(QUIET[verb](answer, study)) + "\n"
+        return "\n\n".join([*missing, *QUIET[verb](answer, study)]) + "\n"
     parts = FULL.get(verb, REPORTS[verb]) if full else REPORTS[verb]
-    blocks = [heading(study.title), *parts(answer, study)]
+    blocks = [heading(study.title), *missing, *parts(answer, study)]
     means = [at_their_means([*study.distributions])] if study.distributions and verb not in DRAWS else []
     lines = [paragraph(note, first="Note: ", indent="      ") for note in (*means, *all_notes(answer, notes))]
     return "\n\n".join([*blocks, *(["\n".join(lines)] if lines else [])]) + "\n"
+
+
+def _is_complete(answer: object) -> bool:
+    """Whether no interrupt left anything out of the record of an answer, or of what it holds."""
+    held = (getattr(answer, one.name) for one in fields(answer)) if is_dataclass(answer) else ()
+    return all(getattr(one, "complete", True) for one in (answer, *held))
 
 
 def whereabouts(verb: str, folder: str, *, overview: bool = False) -> str:

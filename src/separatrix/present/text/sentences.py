@@ -70,7 +70,7 @@ def verdict_sentences(rows: Sequence[Row], place: str) -> list[str]:
     if not any(row["restitution_threshold"] for row in first):
         up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
     elif [*each] != ["STABLE"]:
-        up_to = f"From the reference disturbance the largest stable restitution factor is {limits}"
+        up_to = f"From the reference kick the largest stable restitution factor is {limits}"
     by_it = (
         f"{up_to}; this bearing and film have {etas}, "
         f"a margin of {_span([row['margin'] for row in first], '{:+.2f}')}."
