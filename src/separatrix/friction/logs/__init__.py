@@ -85,9 +85,13 @@ class _File:
 
     def understood(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> Understood | None:
         """What the columns mean; None for a table that is not a log, which `raw_log` refuses."""
-        constant = "normal_force" in self.given
+        radius = self.given.get("track_radius")
         try:
-            return understand(headers, units, self.name, self.chosen, layout, constant_force=constant)
+            return understand(
+                *(headers, units, self.name, self.chosen, layout),
+                constant_force="normal_force" in self.given,
+                track_radius=radius if isinstance(radius, float) else None,
+            )
         except InputError:
             return None
 

@@ -41,8 +41,12 @@ def raw_log(
     """Log of one table, with the conditions that the column map states for its file."""
     constant = given.get("normal_force")
     force = constant if isinstance(constant, float) else None
+    of_track = given.get("track_radius")
+    radius = of_track if isinstance(of_track, float) else None
     understood = understand(
-        table.headers, table.units, source, columns, table.layout, constant_force=force is not None
+        *(table.headers, table.units, source, columns, table.layout),
+        constant_force=force is not None,
+        track_radius=radius,
     )
     _check_twins(table, understood, source)
     notes: list[str] = []
@@ -63,8 +67,7 @@ def raw_log(
         arrays = {meaning: column[kept] for meaning, column in arrays.items()}
     rotation = arrays.pop("rotational_speed", None)
     turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
-    radius = given.get("track_radius")
-    if turns and isinstance(radius, float) and "slip_speed" not in arrays:
+    if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
     metadata = _without_stroke_speed(table, arrays, notes)
