@@ -64,7 +64,7 @@ def study(folder, text=SMALL, ranking=""):
 
 
 def sentences():
-    """Every flag, in the longest form of its source: 30 characters for each number, the longer of two words."""
+    """Every flag, in the longest form of its source: 30 characters a number, the longer of two words."""
     for name in ("", ".flags", ".cycles"):
         module = import_module(f"separatrix.friction.reduction{name}")
         for function in ast.walk(ast.parse(inspect.getsource(module))):

@@ -285,7 +285,7 @@ def _forces_line(table: _Table, i: int, *, with_load: bool = True) -> str:
 
 
 def _advised(table: _Table, i: int, meaning: str = "normal_force") -> str:
-    """The unit to write for a column: its own if it fits, the force that a mass means, the SI unit if none."""
+    """The unit to write for a column: its own if it fits, the force that a mass means, or that of SI."""
     written = [one for one in (table.units[i], *(part for _, part in header_parts(table.headers[i]))) if one]
     for unit in written:
         if scale_of(unit, meaning):

@@ -24,22 +24,8 @@ _UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
     + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
     + [unit.casefold() for unit in TORQUES]
-    + [
-        *_OTHER_UNITS.split(),
-        "n m",
-        "n mm",
-        "n\u00b7m",
-        "n\u00b7mm",
-        *NONE,
-        "n.a.",
-        "cycles",
-        "laps",
-        "rev",
-        "revs",
-        "u",
-        "\u00b5m",
-        "\u03bcm",
-    ]
+    + [*_OTHER_UNITS.split(), "n m", "n mm", "n\u00b7m", "n\u00b7mm", *NONE]
+    + ["n.a.", "cycles", "laps", "rev", "revs", "u", "\u00b5m", "\u03bcm"]
 )
 
 

@@ -20,7 +20,7 @@ from separatrix.friction.logs.columns import Understood, understand
 from separatrix.friction.logs.dialect import is_number
 from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain, ranks
-from separatrix.units import Array, format_quantity, printable
+from separatrix.units import Array, format_number, format_quantity, printable
 
 HIGHEST = 5.0
 """Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""
@@ -249,6 +249,7 @@ RAMP = 0.9  # share of the speed behind a ramp at which the ramp ends
 BEHIND = 0.05  # share of the rows, 20 at least, behind which as many show to which speed a ramp leads
 LONGEST_RAMP = 0.2  # share of the rows that a ramp has at most
 REST = 0.2  # share of the usual friction below which a log begins at rest
+STROKE = 4  # rows of a stroke, on average, below which a position does not show where it reverses
 STRETCH = 8  # rows of one direction, in the middle, from which strokes can be detected
 SMOOTH = 0.3  # step between rows, over the usual one, below which friction does not fluctuate: nothing slides
 WINDOW = 7  # rows of the running median of such steps
@@ -277,7 +278,9 @@ def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Row
 
     Friction has its sign if the log has one, shape (row,); time is in s, shape (row,).
     """
-    rows, words = next(_signals(table, friction, time, kept), (kept, ""))
+    rows, words = next(_signals(table, friction, time, kept), (None, ""))
+    if rows is None:
+        return kept, _coarse(table, kept)
     out = int(kept.sum() - (kept & rows).sum())
     if not out:
         return kept, ""
@@ -292,7 +295,7 @@ def _signals(table: RawTable, friction: Array, time: Array | None, kept: Rows) -
         for kind, column, header in zip(kinds, table.columns, table.headers, strict=True):
             if kind != wanted or not np.isfinite(column[kept]).all() or not kept.any():
                 continue
-            speed = np.abs(column) if wanted == "speed" else _slope(column, time, kept)
+            speed = column if wanted == "speed" else _slope(column, time, kept)
             if speed is not None and (rows := _by_speed(speed, kept)) is not None:
                 yield rows, f'the {wanted} in column "{printable(header.strip())}"'
     signed = [column for kind, column in zip(kinds, table.columns, strict=True) if kind == "force"]
@@ -301,31 +304,54 @@ def _signals(table: RawTable, friction: Array, time: Array | None, kept: Rows) -
             yield rows, "the sign and the fluctuation of the friction"
 
 
+def _coarse(table: RawTable, kept: Rows) -> str:
+    """Sentence on a position that reverses too often for its rows; empty where there is none."""
+    for header, unit, column in zip(table.headers, table.units, table.columns, strict=True):
+        if _kind(header, unit) != "position":
+            continue
+        steps = np.diff(column[kept])
+        turns = int((np.diff(np.sign(steps[steps != 0.0])) != 0.0).sum())
+        if turns * STROKE > steps.size:
+            rows = format_number(steps.size / turns, 2)
+            return (
+                f'the position in column "{printable(header.strip())}" reverses once in {rows} rows, fewer '
+                f"than {STROKE}: reversals cannot be found, and none are left out"
+            )
+    return ""
+
+
 def _slope(position: Array, time: Array | None, kept: Rows) -> Array | None:
-    """Speed along a position; None where it does not move, or too fast for the rows to follow."""
+    """Speed along a position, with its sign; None where it does not move, or too fast for the rows to follow.
+
+    It is the mean of the slopes on both sides of a row, so that it is near zero in the row of a reversal
+    however few rows a stroke has. The running median leaves out where an angle begins anew.
+    """
     along = position[kept]
     steps = np.diff(along)
-    moving = np.abs(steps) > 1e-9 * max(float(np.ptp(along)), 1e-300)
-    turns = int((np.diff(np.sign(steps[moving])) != 0).sum())
-    if not moving.any() or turns * STRETCH > along.size:
-        return None
     spans = np.ones(steps.size) if time is None else np.diff(time[kept])
-    rates = np.abs(np.divide(steps, spans, out=np.zeros(steps.size), where=spans > 0.0))
+    slopes = np.divide(steps, spans, out=np.zeros(steps.size), where=spans > 0.0)
+    slopes = median_filter(slopes, 3, mode="nearest")
+    moving = np.abs(steps) > 1e-9 * max(float(np.ptp(along)), 1e-300)
+    turns = int((np.diff(np.sign(slopes[moving])) != 0).sum())
+    if not moving.any() or turns * STROKE > along.size:
+        return None
     speed = np.full(position.size, np.nan)
-    speed[kept] = median_filter(np.append(rates, rates[-1]), 3, mode="nearest")
+    speed[kept] = 0.5 * (np.append(slopes[0], slopes) + np.append(slopes, slopes[-1]))
     return speed
 
 
 def _by_speed(speed: Array, kept: Rows) -> Rows | None:
     """Rows that slide, by a speed in any unit; None where it does not show it."""
-    v = speed[kept]
+    signed = speed[kept]
+    v = np.abs(signed)
     fastest = float(v.max(initial=0.0))
     if fastest <= 0.0:
         return None
     usual = float(np.median(v[v > STILL * fastest]))
     moves = v >= STILL * usual
     stops = int((np.diff(moves.astype(np.int8)) == -1).sum())
-    rows = v >= SLOW * usual if stops > 3 else moves
+    turns = int((np.diff(np.sign(signed[moves])) != 0.0).sum())
+    rows = v >= SLOW * usual if max(stops, turns) > 3 else moves
     for one in (slice(None), slice(None, None, -1)):
         rows[one][: _ramp(v[one], rows[one])] = False
     if rows.sum() < FEWEST * rows.size:
