@@ -65,7 +65,7 @@ def study(folder, text=SMALL, ranking=""):
 
 def sentences():
     """Every flag, in the longest form of its source: 30 characters a number, the longer of two words."""
-    for name in ("", ".flags", ".cycles"):
+    for name in ("", ".flags", ".cycles", ".conditions"):
         module = import_module(f"separatrix.friction.reduction{name}")
         for function in ast.walk(ast.parse(inspect.getsource(module))):
             if not isinstance(function, ast.FunctionDef):

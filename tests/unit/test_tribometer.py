@@ -50,6 +50,14 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
     assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
 
 
+def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
+    """60 rpm, then 120 rpm behind the end of running-in, on a radius that the head states: 0.251 m/s."""
+    rows = "".join(f"{i},{0.1 + 0.001 * (i % 3)},{60 if i < 150 else 120}\n" for i in range(300))
+    (tmp_path / "a.csv").write_text(f"Track radius: 20 mm\ntime [s],COF,Speed [rpm]\n{rows}")
+    (test,) = separatrix.tribometer(tmp_path / "a.csv", run_in="150 s").tests
+    assert test.conditions.slip_speed == pytest.approx(4 * np.pi * 0.02, rel=1e-12)  # rounding
+
+
 def test_its_tables_and_pages_are_those_of_a_test(folder):
     """One row for each test; the series and the page of a test by its source; another source is refused."""
     found = separatrix.tribometer(folder)

@@ -16,11 +16,11 @@ from scipy.ndimage import median_filter
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.columns import Understood, understand
+from separatrix.friction.logs.columns import Meant, Understood, understand
 from separatrix.friction.logs.dialect import is_number
 from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain, ranks
-from separatrix.units import Array, format_number, format_quantity, printable
+from separatrix.units import Array, format_number, format_quantity, printable, shown
 
 HIGHEST = 5.0
 """Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""
@@ -71,7 +71,10 @@ def raw_log(
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
     metadata = _without_stroke_speed(table, arrays, notes)
-    conditions, sentences = conditions_of(given, metadata, arrays | turns, source)
+    conditions, measured, sentences = conditions_of(given, metadata, arrays | turns, source)
+    if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
+        turning = turns["rotational_speed"]  # the radius of the track is in the head of the file
+        arrays["slip_speed"] = turning * (conditions.slip_speed / float(np.nanmedian(turning)))
     return RawLog(
         source=source,
         checksum=checksum,
@@ -80,6 +83,7 @@ def raw_log(
         columns=understood.columns,
         metadata=dict(table.metadata),
         conditions=conditions,
+        measured=measured,
         notes=(*notes, *sentences),
         friction=arrays["friction"],
         time=arrays.get("time"),
@@ -124,6 +128,8 @@ def _in_si(
             column = one.scale.of(column)
         if one.sign < 0:
             column = -column
+        if meaning == "temperature":
+            _check_absolute_zero(column, table, one, source)
         arrays[meaning] = (
             column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
         )
@@ -135,6 +141,20 @@ def _in_si(
         del arrays[meaning]
         notes.append(f"the column of {meaning} is empty and not used")
     return arrays
+
+
+def _check_absolute_zero(column: Array, table: RawTable, one: Meant, source: str) -> None:
+    """Refuse temperatures below absolute zero: the unit is another, or they mean a missing value."""
+    below = np.flatnonzero(column < -1e-9)
+    if below.size:
+        name = shown(table.headers[one.index].strip())
+        line = f'temperature = {{ name = {name}, unit = "..." }}'
+        got = f"{float(table.columns[one.index][below[0]]):g} {one.unit}"
+        cure = (
+            f"State its true unit below [columns] in a column map: {line}; if this is a code for a missing "
+            f'value, write missing = ["{got.split()[0]}"] below [format].'
+        )
+        raise InputError(f"{source}: column {name}", "has temperatures below absolute zero", got, cure)
 
 
 def _mend_sign(arrays: Arrays, understood: Understood, source: str, notes: list[str]) -> None:
