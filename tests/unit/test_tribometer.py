@@ -71,6 +71,26 @@ def test_its_tables_and_pages_are_those_of_a_test(folder):
 
 
 @pytest.mark.parametrize(
+    ("friction", "medium", "words"),
+    [
+        (0.0, "air", "friction must be > 0; got 0. Its friction is zero in every row used: check"),
+        (3.0, "air", "friction must be <= 2; got 3. If a force was read as friction, map it as tangential"),
+        (0.1, "air, dry", 'medium must not hold a comma; got "air, dry". An environment is named'),
+    ],
+)
+def test_a_test_that_a_friction_file_cannot_keep_is_refused_by_its_log(tmp_path, friction, medium, words):
+    """One line with the log's name, the rule, the value and the cure; no name of a class."""
+    rows = "".join(f"{i},{friction}\n" for i in range(100))
+    (tmp_path / "a.csv").write_text(f"time [s],COF\n{rows}")
+    stated = column_map({"test": MAP["test"] | {"medium": medium}})
+    with pytest.raises(InputError) as caught:
+        separatrix.tribometer(tmp_path / "a.csv", column_map=stated, complete=True)
+    line = str(caught.value)
+    assert line.startswith(f"a.csv: {words}")
+    assert "\n" not in line
+
+
+@pytest.mark.parametrize(
     ("arguments", "words"),
     [
         ({"complete": True}, "a2.csv does not state: material, counterface, medium."),

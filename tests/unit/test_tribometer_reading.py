@@ -370,6 +370,12 @@ MADE = {
         as_written(FRICTION * 10.0) / 10.0,
         "friction is |tangential force| / 10 N, the constant given",
     ),
+    "a constant load of the map and a column without load": (
+        TEN | {"Fn [N]": 0.0 * ONE},
+        {"test": {"normal_force": "10 N"}},
+        as_written(FRICTION * 10.0) / 10.0,
+        "the column of normal force has no load in any row and is not used",
+    ),
     "compression that counts negative": (
         TEN | {"Fn [N]": -10.0 * ONE},
         None,

@@ -87,6 +87,7 @@ WRONG = {
     "a torque by its unit": (csv(columns={"time [s]": TIME, "M1": FORCE, "Fz": FORCE}, units=("s", "N mm", "N")), 'column "M1" is a torque, not a force'),
     "a torque by its name": (csv(columns={"time [s]": TIME, "Reibmoment": FORCE, "Fz [N]": FORCE}), 'tangential_force = { name = "Reibmoment", unit = "N m" }, below [test]'),
     "a normal force of both signs": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}), "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below"),
+    "no normal force in any row": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": 0.0 * FORCE}), 'has a normal force that is zero in every row. If the load is a dead weight, write normal_force = "... N" below [test]'),
     "temperatures below 0 K": (csv(columns={"time [s]": TIME, "COF": FRICTION, "T [K]": 0.0 * TIME - 20.0}), 'column "T [K]" has temperatures below absolute zero; got -20 K. State its true unit below [columns] in a column map: temperature = { name = "T [K]", unit = "..." }'),
     "no abscissa": (csv(columns={"a": TIME, "COF": FRICTION}), "has no column that is known to be time, distance or cycles"),
     "time without unit": (csv(columns={"time": TIME, "COF": FRICTION}), 'column "time" has no unit, so that its meaning is not certain. Below [columns] in a column map, with the true unit: time = { name = "time", unit = "s" }.'),

@@ -54,7 +54,7 @@ def raw_log(
     if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
         notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
     arrays = _in_si(table, understood, columns, source, notes)
-    _mend_sign(arrays, understood, source, notes)
+    _mend_sign(arrays, understood, source, notes, is_given=force is not None)
     signed = _friction(arrays, force, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
     kept = _complete(arrays, table, source)
@@ -157,9 +157,22 @@ def _check_absolute_zero(column: Array, table: RawTable, one: Meant, source: str
         raise InputError(f"{source}: column {name}", "has temperatures below absolute zero", got, cure)
 
 
-def _mend_sign(arrays: Arrays, understood: Understood, source: str, notes: list[str]) -> None:
-    """Make compression positive: the sign of nearly all rows, or that of the column map."""
+def _mend_sign(
+    arrays: Arrays, understood: Understood, source: str, notes: list[str], *, is_given: bool
+) -> None:
+    """Make compression positive: the sign of nearly all rows, or that of the column map.
+
+    A column without any force gives way to the constant force of the column map, if there is one.
+    """
     column = arrays.get("normal_force")
+    if column is not None and not (np.abs(column) > 0.0).any() and "friction" not in arrays:
+        if not is_given:
+            rule = f"has a normal force that is {'zero' if (column == 0.0).any() else 'missing'} in every row"
+            cure = 'If the load is a dead weight, write normal_force = "... N" below [test] of a column map.'
+            raise InputError(source, rule, cure=cure)
+        del arrays["normal_force"]
+        notes.append("the column of normal force has no load in any row and is not used")
+        return
     if column is None or understood.used["normal_force"].sign < 0:
         return
     negative, positive = int((column < 0.0).sum()), int((column > 0.0).sum())
