@@ -17,7 +17,8 @@ from separatrix.friction.logs.dialect import CLOCK, text_of
 from separatrix.friction.logs.header import Layout, layout_of
 from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
-from separatrix.friction.logs.raw import motion_columns, raw_log
+from separatrix.friction.logs.raw import raw_log
+from separatrix.friction.logs.sliding import motion_columns
 from separatrix.input_files import size_of, unreadable
 from separatrix.units import format_quantity, printable, shown, unit_of
 
