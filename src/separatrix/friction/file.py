@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 
 from separatrix import _check, units
@@ -330,10 +331,6 @@ def _interval(unit: str) -> Reader[tuple[float, float]]:
     return read
 
 
-def _flag(value: object, where: str) -> str:
-    return text(value, where, LONGEST_FLAG)
-
-
 _READERS: dict[str, Reader[object]] = {
     "material": text,
     "counterface": text,
@@ -348,7 +345,7 @@ _READERS: dict[str, Reader[object]] = {
     "sample": text,
     "test": text,
     "run_in_end": place,
-    "flags": list_of(_flag),
+    "flags": list_of(partial(text, longest=LONGEST_FLAG)),
     "source": text,
     "checksum": text,
     "reduced_by": text,
