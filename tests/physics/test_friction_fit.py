@@ -293,6 +293,16 @@ def test_a_material_with_few_tests_borrows_scatter_from_the_others():
     assert not beside.of("B", ENVIRONMENT).at().assumed_scatter
 
 
+@pytest.mark.parametrize(
+    ("count", "source"), [(60, "its own tests, drawn towards the assumed 12 %"), (61, "its own tests")]
+)
+def test_many_tests_outweigh_the_assumed_scatter(count, source):
+    """Sixty beyond the mean."""
+    rng = np.random.default_rng(3)
+    tests = [measured(0.1 * exp(0.3 * rng.standard_normal())) for _ in range(count)]
+    assert fit_friction(tests, 0.12).of("A", ENVIRONMENT).scatter_source == source
+
+
 def test_repeats_on_one_sample_do_not_tell_how_samples_scatter():
     """However well they agree the next cage scatters by a guess, and that is said; a second sample tells."""
     one = [measured(x, sample="s1") for x in (0.1000, 0.1001, 0.1002)]
@@ -301,7 +311,7 @@ def test_repeats_on_one_sample_do_not_tell_how_samples_scatter():
     assert alone.at().assumed_scatter
     assert alone.scatter > 0.05  # 9 %, less what repeats on the sample tell
     two = fit_friction([*one, measured(0.11, sample="s2")]).of("A", ENVIRONMENT)
-    assert two.scatter_source == "its own tests"
+    assert two.scatter_source == "its own tests, drawn towards the assumed 9 %"
     assert not two.at().assumed_scatter
 
 

@@ -101,7 +101,7 @@ def test_json_is_one_document_and_writes_nothing(logs, capsys):
     document = json.loads(capsys.readouterr().out)
     assert [file["source"] for file in document["files"]] == ["a.csv", "b.csv"]
     assert document["tests"][0]["friction_low"] < 0.08 < document["tests"][0]["friction_high"]
-    assert document["fits"][0]["scatter_source"] == "its own tests"
+    assert document["fits"][0]["scatter_source"] == "its own tests, drawn towards the assumed 9 %"
     assert document["friction_file"] is None
     assert names(logs) == before
 

@@ -1,9 +1,12 @@
 """Friction files written and read back, and studies that rank by them."""
 
+import ast
+import inspect
 import json
 import sys
 import tomllib
 from dataclasses import replace
+from importlib import import_module
 from subprocess import run
 
 import pytest
@@ -11,6 +14,7 @@ import pytest
 from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
+from separatrix.errors import InputError
 from separatrix.friction.file import FrictionTest, friction_text, read_friction
 from separatrix.friction.fit import TestedFriction
 from separatrix.study import Friction, Operation
@@ -57,6 +61,51 @@ def study(folder, text=SMALL, ranking=""):
     path = folder / "study.toml"
     path.write_text(f'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n{ranking}\n')
     return path
+
+
+def sentences():
+    """Every flag, in the longest form of its source: 30 characters a number, the longer of two words."""
+    for name in ("", ".flags", ".cycles", ".conditions"):
+        module = import_module(f"separatrix.friction.reduction{name}")
+        for function in ast.walk(ast.parse(inspect.getsource(module))):
+            if not isinstance(function, ast.FunctionDef):
+                continue
+            nodes = list(ast.walk(function))
+            words = {}
+            for node in nodes:
+                if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+                    words.setdefault(node.targets[0].id, []).append(node.value)
+            for node in nodes:
+                if isinstance(node, (ast.JoinedStr, ast.Constant)):
+                    yield _longest(node, words)
+
+
+def _longest(node, words):
+    """Text of a node with every name in it replaced by its longest value."""
+    match node:
+        case ast.Constant(value=str(text)):
+            return text
+        case ast.JoinedStr(values=parts):
+            return "".join(_longest(part, words) for part in parts)
+        case ast.FormattedValue(value=inner):
+            return _longest(inner, words)
+        case ast.IfExp(body=one, orelse=other):
+            return max(_longest(one, words), _longest(other, words), key=len)
+        case ast.Name(id=name) if name in words:
+            others = {key: values for key, values in words.items() if key != name}
+            return max((_longest(value, others) for value in words[name]), key=len)
+    return "9" * 30
+
+
+def test_the_longest_flag_is_written_and_read_back(tmp_path):
+    """No sentence of the reduction is too long for its own file, whatever its numbers."""
+    found = [text for text in sentences() if text.rstrip().endswith(".") and "\n" not in text]
+    assert sum(text.startswith(("Friction", "The ", "Running-in")) for text in found) >= 18
+    tests = (whole(flags=(max(found, key=len),)),)
+    (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
+    assert read_friction(tmp_path / "friction.toml") == tests
+    with pytest.raises(InputError, match="flags must be printable texts of 1 to 500"):
+        whole(flags=("a" * 501,))
 
 
 @pytest.mark.parametrize("axis", ["time", "distance", "cycles"])

@@ -50,6 +50,14 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
     assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
 
 
+def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
+    """60 rpm, then 120 rpm behind the end of running-in, on a radius that the head states: 0.251 m/s."""
+    rows = "".join(f"{i},{0.1 + 0.001 * (i % 3)},{60 if i < 150 else 120}\n" for i in range(300))
+    (tmp_path / "a.csv").write_text(f"Track radius: 20 mm\ntime [s],COF,Speed [rpm]\n{rows}")
+    (test,) = separatrix.tribometer(tmp_path / "a.csv", run_in="150 s").tests
+    assert test.conditions.slip_speed == pytest.approx(4 * np.pi * 0.02, rel=1e-12)  # rounding
+
+
 def test_its_tables_and_pages_are_those_of_a_test(folder):
     """One row for each test; the series and the page of a test by its source; another source is refused."""
     found = separatrix.tribometer(folder)
@@ -60,6 +68,26 @@ def test_its_tables_and_pages_are_those_of_a_test(folder):
     assert "a10.csv" in "".join(text.get_text() for text in found.plot("a10.csv").texts)
     with pytest.raises(InputError, match="is not a test of these logs"):
         found.plot("a3.csv")
+
+
+@pytest.mark.parametrize(
+    ("friction", "medium", "words"),
+    [
+        (0.0, "air", "friction must be > 0; got 0. Its friction is zero in every row used: check"),
+        (3.0, "air", "friction must be <= 2; got 3. If a force was read as friction, map it as tangential"),
+        (0.1, "air, dry", 'medium must not hold a comma; got "air, dry". An environment is named'),
+    ],
+)
+def test_a_test_that_a_friction_file_cannot_keep_is_refused_by_its_log(tmp_path, friction, medium, words):
+    """One line with the log's name, the rule, the value and the cure; no name of a class."""
+    rows = "".join(f"{i},{friction}\n" for i in range(100))
+    (tmp_path / "a.csv").write_text(f"time [s],COF\n{rows}")
+    stated = column_map({"test": MAP["test"] | {"medium": medium}})
+    with pytest.raises(InputError) as caught:
+        separatrix.tribometer(tmp_path / "a.csv", column_map=stated, complete=True)
+    line = str(caught.value)
+    assert line.startswith(f"a.csv: {words}")
+    assert "\n" not in line
 
 
 @pytest.mark.parametrize(

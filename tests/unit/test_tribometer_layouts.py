@@ -191,6 +191,36 @@ def test_standstill_and_reversal_of_a_stroke_are_not_sliding(tmp_path):
     assert all(55 <= log.rows <= 64 for log in logs)  # of 90; 60 slide
 
 
+def reciprocating(rows_of_a_cycle, *, is_sine):
+    """A log of 150 cycles of 2 s: friction 0.15 with the sign of the stroke, and the position."""
+    time = (np.arange(150 * rows_of_a_cycle) + 0.13) * 2.0 / rows_of_a_cycle
+    speed = np.sin(np.pi * time)
+    if is_sine:
+        position, friction = 5.0 - 5.0 * np.cos(np.pi * time), 0.15 * np.tanh(10.0 * speed)
+    else:
+        position, friction = 10.0 * np.abs(time % 2.0 - 1.0), -0.15 * np.sign(speed)
+    rows = zip(time, 20.0 * friction, position, strict=True)
+    table = "\n".join(f"{t:.4f},{f:.4f},20,{x:.4f}" for t, f, x in rows)
+    return f"Time [s],Friction Force [N],Load [N],Position [mm]\n{table}\n"
+
+
+@pytest.mark.parametrize("is_sine", [True, False])
+@pytest.mark.parametrize("rows_of_a_cycle", [8, 10, 16, 20, 33, 50, 100])
+def test_reversals_are_left_out_by_the_position_however_few_rows_a_stroke_has(
+    tmp_path, rows_of_a_cycle, is_sine
+):
+    """At half of the usual speed tanh(10 sin) is 0.998, so the mean is that of sliding to 0.2 %."""
+    (log,) = read(tmp_path, reciprocating(rows_of_a_cycle, is_sine=is_sine))
+    assert log.friction.mean() == pytest.approx(0.15, rel=0.002)
+    assert any('by the position in column "Position [mm]"' in note for note in log.notes)
+
+
+def test_a_position_with_too_few_rows_for_reversals_is_reported(tmp_path):
+    """Three rows a stroke."""
+    (log,) = read(tmp_path, reciprocating(6, is_sine=True))
+    assert any('"Position [mm]" reverses once in 3 rows, fewer than 4' in note for note in log.notes)
+
+
 @pytest.fixture
 def strokes(tmp_path, monkeypatch):
     """A folder of six files of strokes."""

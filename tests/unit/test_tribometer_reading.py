@@ -97,6 +97,20 @@ def test_a_stroke_s_greatest_speed_is_not_its_sliding_speed(tmp_path):
 ENCODINGS = ["utf-8", "utf-8-sig", "utf-16-le-mark", "utf-16-be-mark", "utf-16-le", "utf-16-be", "cp1252"]
 
 
+@pytest.mark.parametrize(
+    ("header", "unit"), [("Torque [Nm]", None), ("Drehmoment", "N mm"), ("Moment", "mNm")]
+)
+def test_a_torque_that_the_map_names_is_divided_by_the_radius(tmp_path, header, unit):
+    """0.012 N m at 20 mm are 0.6 N, a friction of 0.06 under 10 N."""
+    size = {"N mm": 1e3, "mNm": 1e3}.get(unit, 1.0)
+    rows = "".join(f"{i},{size * 0.012:.6g},10\n" for i in range(20))
+    named = {"name": header} | ({"unit": unit} if unit else {})
+    chosen = column_map({"columns": {"tangential_force": named}, "test": {"track_radius": "20 mm"}})
+    log = read(tmp_path, f"time [s],{header},Fz [N]\n{rows}".encode(), chosen)
+    np.testing.assert_allclose(log.friction, 0.06, rtol=1e-14)  # rounding
+    assert "divided by the radius of the track" in "\n".join(described(log))
+
+
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
 def test_every_encoding_gives_the_same_log(tmp_path, encoding, newline):
@@ -355,6 +369,12 @@ MADE = {
         {"test": {"normal_force": "10 N"}},
         as_written(FRICTION * 10.0) / 10.0,
         "friction is |tangential force| / 10 N, the constant given",
+    ),
+    "a constant load of the map and a column without load": (
+        TEN | {"Fn [N]": 0.0 * ONE},
+        {"test": {"normal_force": "10 N"}},
+        as_written(FRICTION * 10.0) / 10.0,
+        "the column of normal force has no load in any row and is not used",
     ),
     "compression that counts negative": (
         TEN | {"Fn [N]": -10.0 * ONE},

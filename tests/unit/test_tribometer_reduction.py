@@ -16,6 +16,7 @@ from separatrix.friction.reduction.cycles import oscillation
 from separatrix.present import load, save
 from separatrix.present.tribometer import page_data
 
+MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}
 QUIET = Recipe(rows=4000, noise=0.004)
 
 
@@ -301,6 +302,37 @@ def test_friction_that_no_contact_has_is_told():
     """A mean of -0.1 is a wrong zero or sign."""
     test = reduce_log(log(friction=lambda t: -0.1 + 0.004 * _noise(t.size)))
     assert "check zero, sign and units" in told(test, "Friction is outside 0 to 2")
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "words"),
+    [
+        ("slip_speed", lambda t: np.where(t < 250.0, 1.0, 1.2), "between 1 m/s and 1.2 m/s"),
+        ("normal_force", lambda t: 10.0 + 10.0 * (t > 380.0), "between 10 N and 20 N"),
+        ("temperature", lambda t: 295.0 + 0.1 * t, "between 29"),
+        ("slip_speed", lambda t: np.abs(np.sin(1.7 * t)) + 0.05, ""),  # strokes
+        ("slip_speed", lambda t: 10.0 + 2.0 * np.random.default_rng(5).standard_normal(t.size), ""),
+        ("normal_force", lambda t: 1.0 + 0.00022 * t, ""),  # 8.1 % between the middles of the first and last
+        ("temperature", lambda t: 295.0 + 0.045 * t, ""),  # 16.5 K
+    ],
+    ids=["step", "late step", "warming", "strokes", "noise", "slow rise", "less warming"],
+)
+def test_a_condition_that_changes_in_the_steady_part_is_reported(name, column, words):
+    """More than a tenth, or 20 K; neither strokes nor noise nor a little less."""
+    flag = told(reduce_log(log(**{name: column})), f"The {name.replace('_', ' ')} changes")
+    assert words in flag
+    assert bool(flag) == bool(words)
+
+
+def test_measured_conditions_are_those_of_the_steady_part():
+    """Before 100 s another speed, load and temperature; the pressure goes with the load, and words stay."""
+    step = {name: lambda t, a=a: np.where(t < 300.0, a, 2 * a) for name, a in MEASURED.items()}
+    whole = Conditions(slip_speed=1.0, normal_force=10.0, temperature=150.0, pressure=1e6, medium="air")
+    one = log(conditions=whole, measured=frozenset({*MEASURED, "pressure"}), **step)
+    test = reduce_log(one, ReductionOptions(run_in_end="300 s"))
+    doubled = Conditions(slip_speed=2.0, normal_force=20.0, temperature=300.0, pressure=2e6, medium="air")
+    assert test.conditions == doubled
+    assert reduce_log(replace(one, measured=frozenset())).conditions == whole  # stated, not measured
 
 
 def test_a_gap_is_told():

@@ -80,8 +80,15 @@ WRONG = {
     "a tangential force alone": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE}), 'has a tangential force but no normal force. Below [columns] in a column map: normal_force = "..."'),
     "two tangential forces": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Reibkraft [N]": FORCE, "Fz [N]": FORCE}), 'has 2 columns that could be the tangential force; got columns "Ff [N]", "Reibkraft [N]"'),
     "a normal force without unit": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz": FORCE}), 'column "Fz" has no unit'),
-    "a normal force in grams": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [g]": FORCE}), 'column "Fz [g]" has a unit that is not one of the normal force (N, mN, daN, kN, ...); got "g"'),
+    "a normal force in grams": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [g]": FORCE}), 'column "Fz [g]" has a unit that is not one of the normal force (N, mN, daN, kN, ...); got "g". Below [columns] in a column map, with the true unit: normal_force = { name = "Fz [g]", unit = "gf" }'),
+    "forces in kilograms": (csv(columns={"time [s]": TIME, "Ff [kg]": FORCE, "Fz [kg]": FORCE}), 'tangential_force = { name = "Ff [kg]", unit = "kgf" }.'),
+    "a force in volts": (csv(columns={"time [s]": TIME, "Ff [V]": FORCE, "Fz [N]": FORCE}), 'tangential_force = { name = "Ff [V]", unit = "..." }.'),
+    "a torque": (csv(columns={"time [s]": TIME, "Torque [Nm]": FORCE, "Fz [N]": FORCE, "Radius [mm]": FORCE}), 'column "Torque [Nm]" is a torque, not a force. Divide it by the radius of the track, or in a column map: below [columns] tangential_force = { name = "Torque [Nm]", unit = "Nm" }, below [test] track_radius = "... mm".'),
+    "a torque by its unit": (csv(columns={"time [s]": TIME, "M1": FORCE, "Fz": FORCE}, units=("s", "N mm", "N")), 'column "M1" is a torque, not a force'),
+    "a torque by its name": (csv(columns={"time [s]": TIME, "Reibmoment": FORCE, "Fz [N]": FORCE}), 'tangential_force = { name = "Reibmoment", unit = "N m" }, below [test]'),
     "a normal force of both signs": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}), "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below"),
+    "no normal force in any row": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": 0.0 * FORCE}), 'has a normal force that is zero in every row. If the load is a dead weight, write normal_force = "... N" below [test]'),
+    "temperatures below 0 K": (csv(columns={"time [s]": TIME, "COF": FRICTION, "T [K]": 0.0 * TIME - 20.0}), 'column "T [K]" has temperatures below absolute zero; got -20 K. State its true unit below [columns] in a column map: temperature = { name = "T [K]", unit = "..." }'),
     "no abscissa": (csv(columns={"a": TIME, "COF": FRICTION}), "has no column that is known to be time, distance or cycles"),
     "time without unit": (csv(columns={"time": TIME, "COF": FRICTION}), 'column "time" has no unit, so that its meaning is not certain. Below [columns] in a column map, with the true unit: time = { name = "time", unit = "s" }.'),
     "time in an unknown unit": (csv(columns={"time [ticks]": TIME, "COF": FRICTION}), 'has a unit that is not one of the time (s, ms, us, min, ...); got "ticks"'),
@@ -126,6 +133,8 @@ WRONG_MAPS = {
     "a number beyond the columns": ({"columns": {"friction": 7}}, "has 2 columns, not 7"),
     "one column for two meanings": ({"columns": {"time": "time [s]", "cycles": 1}}, 'column "time [s]" is both time and cycles in the column map'),
     "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time unit must be a unit such as s, ms"),
+    "a torque as a force in N": ({"columns": {"tangential_force": {"name": "M [Nm]", "unit": "N"}}, "test": {"track_radius": "20 mm"}}, 'column "M [Nm]" is a torque, not a force'),
+    "a torque without the radius": ({"columns": {"tangential_force": "M [Nm]"}}, 'column "M [Nm]" is a torque, not a force'),
     "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
     "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be one of "tab", ";", ",", "|", "blanks"'),
     "comma for both": ({"format": {"separator": ",", "decimal": ","}}, "cannot have a comma both as separator and as decimal"),
@@ -161,7 +170,10 @@ def test_a_wrong_column_map_is_refused_in_one_line(tmp_path, what):
     """When it is read, or when it does not fit the file."""
     document, words = WRONG_MAPS[what]
     path = tmp_path / "log.txt"
-    path.write_bytes(csv())
+    columns = {"time [s]": TIME, "COF": FRICTION}
+    if "M [Nm]" in str(document):
+        columns = {"time [s]": TIME, "M [Nm]": FORCE, "Fz [N]": FORCE}
+    path.write_bytes(csv(columns=columns))
     with pytest.raises(InputError) as refusal:
         read_log(path, column_map(document, "map.toml"))
     assert words in str(refusal.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,13 +17,14 @@ from separatrix.app.plotly import Spec, upright
 from separatrix.errors import InputError
 from separatrix.figures.style import BLUE, GREY, VERMILION
 from separatrix.friction.file import friction_text
-from separatrix.friction.logs.column_map import ColumnMap
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.column_map import RUN_IN_END, ColumnMap
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
 from separatrix.input_files import is_inside
 from separatrix.messages import noted_warnings
 from separatrix.present.tribometer import in_words, page_data
-from separatrix.units import format_number
+from separatrix.units import format_number, shown
 
 UNITS = {"time": "s", "distance": "m", "cycles": ""}
 """Axis along which running-in is cut -> its unit."""
@@ -35,6 +37,7 @@ def routes(page: Page) -> APIRouter:
     """Return the routes of the logs."""
     router = APIRouter()
     place = page.folder.root / LOGS
+    ends: dict[str, str] = {}  # where running-in ends in a log, if the user moved it
 
     def uploads() -> Folder:
         if not is_inside(place, page.folder.root):
@@ -56,8 +59,10 @@ def routes(page: Page) -> APIRouter:
         return page.html("log_list.html", names=names())
 
     @router.get("/log/{name}", response_class=HTMLResponse)
-    def log(name: str, run_in: str = "") -> Response:
+    def log(name: str, run_in: str | None = None) -> Response:
+        run_in = ends.get(name, "") if run_in is None else run_in.strip()
         found = _reduced(uploads().inside(name), run_in)
+        ends[name] = run_in
         words = in_words(found, written=None, plots=None)
         tests = [_test(one) for one in found.reductions]
         return page.html("log.html", name=name, tests=tests, words=words, run_in=run_in)
@@ -73,14 +78,16 @@ def routes(page: Page) -> APIRouter:
     def friction(sent: Form) -> Response:
         path = page.folder.new(f"{sent.get('name', '').strip().removesuffix('.toml')}.toml")
         stated = {key: words for key in STATED if (words := sent.get(key, "").strip())}
-        given = ColumnMap(test=stated)
         files = [uploads().inside(name) for name in names()]
-        found = _reduced(files, "", complete=True, column_map=given)
+        _check_conflicts(files, stated)
+        moved = {file.name: end for file in files if (end := ends.get(file.name))}
+        by_file = {glob.escape(name): {RUN_IN_END: end} for name, end in moved.items()}
+        found = _reduced(files, "", complete=True, column_map=ColumnMap(test=stated, files=by_file))
         if found.friction_tests is None:
             cure = "State material, counterface and medium beside the name."
             raise InputError("The logs", "do not all state their materials", cure=cure)
         path.write_text(friction_text(found.friction_tests), encoding="utf-8")
-        return page.html("written.html", name=path.name)
+        return page.html("written.html", name=path.name, moved=moved)
 
     return router
 
@@ -100,12 +107,34 @@ def _keep(folder: Folder, name: str, content: bytes) -> None:
     folder.new(name).write_bytes(content)
 
 
+def _check_conflicts(files: list[Path], stated: dict[str, str]) -> None:
+    """Refuse words of the form that a log contradicts: they are for the logs that state nothing."""
+    if not stated:
+        return
+    with draft.ONE_AT_A_TIME, noted_warnings():
+        logs = [log for file in files for log in read_log(file)]
+    for log in logs:
+        for key, words in stated.items():
+            own = getattr(log.conditions, key)
+            if own not in (None, words):
+                rule = f"states another {key} than the form, {shown(words)}"
+                cure = (
+                    "Leave this field empty, or write the friction files of different materials one by one."
+                )
+                raise InputError(log.source, rule, shown(own), cure)
+
+
 def _reduced(
     paths: Path | list[Path], run_in: str, *, complete: bool = False, column_map: ColumnMap | None = None
 ) -> ReducedLogs:
     """Return what logs show; `run_in` is where running-in ends, or empty to find it."""
     with draft.ONE_AT_A_TIME, noted_warnings():
-        return tribometer(paths, run_in=run_in or None, complete=complete, column_map=column_map)
+        try:
+            return tribometer(paths, run_in=run_in or None, complete=complete, column_map=column_map)
+        except InputError as error:
+            if not error.path.startswith("ReductionOptions.") or isinstance(paths, list):
+                raise
+            raise error.at(f"{paths.name}: the end of running-in") from None
 
 
 def _test(one: Reduction) -> dict[str, object]:

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 
 from separatrix import _check, units
@@ -89,6 +90,7 @@ WORDS = {"temperature": "temperature", "slip_speed": "slip speed", "pressure": "
 _LIMITS = {"temperature": (0.1, 3000.0), "slip_speed": (1e-9, 1e3), "pressure": (1e-3, 1e12)}
 NAMES = ("material", "counterface", "medium")  # what a test must state: what slid on what, in what
 _TEXTS = (*NAMES, "sample", "test", "source", "checksum", "reduced_by")
+LONGEST_FLAG = 500  # characters of a flag, for the reduction, the writer and the reader
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +130,7 @@ class FrictionTest:
             _check.not_negative(self, "standard_deviation", FRICTION_LIMIT),
             _check.positive(self, "effective_count", 1e-3, 1e12),
             *(_range(self, name, *limits) for name, limits in _LIMITS.items()),
+            _short_flags(self),
         )
 
     @property
@@ -152,6 +155,13 @@ def _plain_names(test: FrictionTest) -> Iterator[InputError]:
     if isinstance(test.medium, str) and "," in test.medium:
         cure = 'An environment is named "medium, counterface".'
         yield InputError("FrictionTest.medium", "must not hold a comma", shown(test.medium), cure)
+
+
+def _short_flags(test: FrictionTest) -> Iterator[InputError]:
+    for flag in test.flags:
+        if not 0 < len(flag.strip()) <= LONGEST_FLAG or not flag.isprintable():
+            rule = f"must be printable texts of 1 to {LONGEST_FLAG} characters"
+            yield InputError("FrictionTest.flags", rule, shown(flag))
 
 
 def _range(test: FrictionTest, name: str, low: float, high: float) -> Iterator[InputError]:
@@ -307,7 +317,7 @@ _READERS: dict[str, Reader[object]] = {
     "sample": text,
     "test": text,
     "run_in_end": place,
-    "flags": list_of(text),
+    "flags": list_of(partial(text, longest=LONGEST_FLAG)),
     "source": text,
     "checksum": text,
     "reduced_by": text,

@@ -14,8 +14,9 @@ from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.log import RawLog, in_order, joined
+from separatrix.friction.logs.log import RawLog, in_order, joined, of_log
 from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
+from separatrix.measured_friction import FRICTION_LIMIT
 from separatrix.units import printable
 
 _T = TypeVar("_T")
@@ -218,4 +219,16 @@ def friction_test(test: TestFriction) -> FrictionTest:
     own = {f.name for f in fields(FrictionTest)}
     given = {f.name: getattr(one, f.name) for one in (known, test) for f in fields(one) if f.name in own}
     given |= {name: (given[name], given[name]) for name in CONDITIONS if given[name] is not None}
-    return FrictionTest(reduced_by=f"separatrix {__version__}", **given)
+    try:
+        return FrictionTest(reduced_by=f"separatrix {__version__}", **given)
+    except InputError as error:
+        refused = of_log(error, test.source)
+        if test.friction <= 0.0:
+            cure = "Its friction is zero in every row used: check its column, or leave the log out."
+        elif test.friction > FRICTION_LIMIT:
+            cure = (
+                "If a force was read as friction, map it as tangential_force below [columns] of a column map."
+            )
+        else:
+            cure = refused.cure
+        raise refused.at(refused.path, cure=cure) from None

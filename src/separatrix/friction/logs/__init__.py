@@ -17,7 +17,8 @@ from separatrix.friction.logs.dialect import CLOCK, text_of
 from separatrix.friction.logs.header import Layout, layout_of
 from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
-from separatrix.friction.logs.raw import motion_columns, raw_log
+from separatrix.friction.logs.raw import raw_log
+from separatrix.friction.logs.sliding import motion_columns
 from separatrix.input_files import size_of, unreadable
 from separatrix.units import format_quantity, printable, shown, unit_of
 
@@ -85,9 +86,13 @@ class _File:
 
     def understood(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> Understood | None:
         """What the columns mean; None for a table that is not a log, which `raw_log` refuses."""
-        constant = "normal_force" in self.given
+        radius = self.given.get("track_radius")
         try:
-            return understand(headers, units, self.name, self.chosen, layout, constant_force=constant)
+            return understand(
+                *(headers, units, self.name, self.chosen, layout),
+                constant_force="normal_force" in self.given,
+                track_radius=radius if isinstance(radius, float) else None,
+            )
         except InputError:
             return None
 

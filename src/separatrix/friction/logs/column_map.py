@@ -11,7 +11,7 @@ from separatrix import units
 from separatrix.errors import InputError
 from separatrix.friction.file import place
 from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
-from separatrix.friction.logs.names import MEANINGS, known_units, scale_of
+from separatrix.friction.logs.names import MEANINGS, known_units, scale_of, torque_scale
 from separatrix.toml_files import Kind, build, quantity, read_toml
 from separatrix.units import printable, shown
 
@@ -162,6 +162,12 @@ def _table(value: object, where: str) -> Mapping[str, object]:
     return value
 
 
+def _fits_meaning(unit: str, meaning: str) -> bool:
+    """Whether a column of that meaning may have the unit; a torque becomes a tangential force."""
+    is_torque = meaning == "tangential_force" and torque_scale(unit) is not None
+    return is_torque or scale_of(unit, meaning) is not None
+
+
 def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     table = value if isinstance(value, dict) else {"name": value}
     _known(table, ("name", "unit", "sign"), where, "key")
@@ -174,7 +180,7 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
         raise InputError(where, "must be the number of a column, counted from 1", shown(name))
     if sign not in (1, -1) or isinstance(sign, bool):
         raise InputError(f"{where} sign", "must be 1 or -1", shown(sign))
-    if unit is not None and (not isinstance(unit, str) or scale_of(unit, meaning) is None):
+    if unit is not None and not (isinstance(unit, str) and _fits_meaning(unit, meaning)):
         raise InputError(f"{where} unit", f"must be a unit such as {known_units(meaning)}", shown(unit))
     if isinstance(name, str):
         return ColumnChoice(name=name, unit=unit, sign=sign)

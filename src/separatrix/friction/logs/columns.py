@@ -13,6 +13,7 @@ from separatrix.friction.logs.log import ColumnRead
 from separatrix.friction.logs.names import (
     ABSCISSAE,
     CLOCKS,
+    MASSES,
     MEANINGS,
     Scale,
     header_parts,
@@ -20,14 +21,17 @@ from separatrix.friction.logs.names import (
     looks_extreme,
     looks_like_force,
     looks_like_friction,
+    looks_like_torque,
     plain,
     ranks,
     scale_of,
+    torque_scale,
 )
-from separatrix.units import printable, shown
+from separatrix.units import Metre, printable, shown
 
 LAST = 9  # rank of times as text: a column of seconds is finer
 NO_UNIT = "has no unit, so that its meaning is not certain"
+DIVIDED = "divided by the radius of the track"
 IN_MAP = "Below [columns] in a column map"
 
 
@@ -64,12 +68,14 @@ def understand(
     layout: Layout = PLAIN,
     *,
     constant_force: bool = False,
+    track_radius: Metre | None = None,
 ) -> Understood:
     """Meaning of each column; `[columns]` of the column map goes first.
 
-    With a constant normal force the tangential force alone determines the friction.
+    With a constant normal force the tangential force alone determines the friction. A torque that the map
+    names is divided by the radius of the track.
     """
-    table = _Table(headers, units, source, layout)
+    table = _Table(headers, units, source, layout, track_radius)
     given: dict[str, Meant] = {}
     for meaning, choice in columns.columns.items():
         chosen = table.given(meaning, choice)
@@ -108,6 +114,7 @@ class _Table:
     units: Sequence[str]
     source: str
     layout: Layout
+    track_radius: Metre | None
 
     def column(self, i: int) -> str:
         """Place of a column for a refusal."""
@@ -142,6 +149,8 @@ class _Table:
             rule = "is a force by its name, not a coefficient of friction"
             cure = f'{_forces_line(self, i)} If it is a coefficient all the same, add unit = "-" here.'
             raise InputError(self.column(i), rule, cure=cure)
+        if meaning == "tangential_force" and looks_like_torque(header, unit):
+            return self._torque(i, choice)
         ways = header_parts(self.layout.rename(header))
         beside = [part for _, part in ways if part and self.scale(meaning, part)]
         written = [choice.unit or unit, ways[0][1], self.layout.units.get(ways[0][0], "")]
@@ -153,6 +162,18 @@ class _Table:
             if scale is not None:
                 return Meant(i, meaning, one, scale, sign=choice.sign, why="column map")
         raise _unit_wanted(self, i, meaning, written[0])
+
+    def _torque(self, i: int, choice: ColumnChoice) -> Meant:
+        """Column of torque that the map names as the tangential force."""
+        if self.track_radius is None:
+            raise _torque_refused(self, i)
+        written = [choice.unit or "", self.units[i], *(part for _, part in header_parts(self.headers[i]))]
+        unit = next((one for one in written if one), "")
+        scale = torque_scale(unit)
+        if scale is None:
+            raise _torque_refused(self, i)
+        force = Scale(factor=scale.factor / self.track_radius)
+        return Meant(i, "tangential_force", unit, force, sign=choice.sign, why=f"column map, {DIVIDED}")
 
     def _place(self, meaning: str, choice: ColumnChoice) -> int:
         if choice.number is not None:
@@ -223,6 +244,9 @@ def _require_friction(
     if "friction" in result.used or (forces and (chosen_forces or not result.unsettled["friction"])):
         return
     every = range(len(table.headers))
+    torques = [i for i in every if looks_like_torque(table.headers[i], table.units[i])]
+    if torques and "tangential_force" not in result.used and not result.unsettled["tangential_force"]:
+        raise _torque_refused(table, torques[0])
     near = [i for i in every if looks_like_friction(table.headers[i])]
     for meaning in ("tangential_force", "normal_force") if chosen_forces else ("friction",):
         _refuse_unsettled(meaning, result, table, options)
@@ -243,21 +267,44 @@ def _require_friction(
         raise InputError(table.source, rule, table.listed(tangential), line)
     name = table.name(near[0]) if near else '"..."'
     cure = f"State which below [columns] in a column map: friction = {name}."
-    cure += "" if near else " A log without friction is of no use here: leave it out."
     raise InputError(table.source, rule, table.listed(near or every), cure)
 
 
 def _forces_line(table: _Table, i: int, *, with_load: bool = True) -> str:
     """The lines of a column map that make friction from a force whose unit is not known."""
-    line = f'tangential_force = {{ name = {table.name(i)}, unit = "N" }}'
+    line = f'tangential_force = {{ name = {table.name(i)}, unit = "{_advised(table, i)}" }}'
     if not with_load:
         return f"{IN_MAP}, with the true unit: {line}."
     normal = [k for k, header in enumerate(table.headers) if k != i and "normal_force" in ranks(header)]
     if normal:
-        line += f' and normal_force = {{ name = {table.name(normal[0])}, unit = "N" }}'
+        unit = _advised(table, normal[0])
+        line += f' and normal_force = {{ name = {table.name(normal[0])}, unit = "{unit}" }}'
         return f"{IN_MAP}, with the true units: {line}."
     load = 'below [test] normal_force = "... N"'
     return f"In a column map, with the true unit and load: below [columns] {line}, {load}."
+
+
+def _advised(table: _Table, i: int, meaning: str = "normal_force") -> str:
+    """The unit to write for a column: its own if it fits, the force that a mass means, or that of SI."""
+    written = [one for one in (table.units[i], *(part for _, part in header_parts(table.headers[i]))) if one]
+    for unit in written:
+        if scale_of(unit, meaning):
+            return unit
+        if MEANINGS[meaning] == "N" and unit in MASSES:
+            return MASSES[unit]
+    stated = table.units[i] or header_parts(table.headers[i])[0][1]
+    return "..." if stated else MEANINGS[meaning]
+
+
+def _torque_refused(table: _Table, i: int) -> InputError:
+    unit = table.units[i] or header_parts(table.headers[i])[0][1]
+    unit = unit if torque_scale(unit) else "N m"
+    line = f'tangential_force = {{ name = {table.name(i)}, unit = "{unit}" }}'
+    cure = (
+        f"Divide it by the radius of the track, or in a column map: below [columns] {line}, "
+        'below [test] track_radius = "... mm".'
+    )
+    return InputError(table.column(i), "is a torque, not a force", cure=cure)
 
 
 def _refuse_unsettled(meaning: str, result: Understood, table: _Table, options: Options) -> None:
@@ -280,7 +327,8 @@ def _refuse_unsettled(meaning: str, result: Understood, table: _Table, options: 
 
 
 def _unit_wanted(table: _Table, i: int, meaning: str, unit: str, others: Sequence[str] = ()) -> InputError:
-    line = f'{meaning} = {{ name = {table.name(i)}, unit = "{MEANINGS[meaning]}" }}'
+    advised = _advised(table, i, meaning) if unit else MEANINGS[meaning]
+    line = f'{meaning} = {{ name = {table.name(i)}, unit = "{advised}" }}'
     cure = f"{IN_MAP}, with the true unit: {line}"
     if unit:
         rule = f"has a unit that is not one of the {_words(meaning)} ({known_units(meaning)})"

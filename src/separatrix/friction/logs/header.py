@@ -13,7 +13,7 @@ from separatrix import units
 from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.dialect import Dialect, is_number
-from separatrix.friction.logs.names import ALIASES, NONE, ranks
+from separatrix.friction.logs.names import ALIASES, NONE, TORQUES, ranks
 from separatrix.units import printable
 
 _OTHER_UNITS = (
@@ -23,7 +23,9 @@ _OTHER_UNITS = (
 _UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
     + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
-    + [*_OTHER_UNITS.split(), *NONE, "n.a.", "cycles", "laps", "rev", "revs", "u", "\u00b5m", "\u03bcm"]
+    + [unit.casefold() for unit in TORQUES]
+    + [*_OTHER_UNITS.split(), "n m", "n mm", "n\u00b7m", "n\u00b7mm", *NONE]
+    + ["n.a.", "cycles", "laps", "rev", "revs", "u", "\u00b5m", "\u03bcm"]
 )
 
 

@@ -107,6 +107,8 @@ class RawLog:
     columns: tuple[ColumnRead, ...] = ()  # how each was understood
     metadata: Mapping[str, str] = field(default_factory=dict)  # what the header states, by its name there
     conditions: Conditions = field(default_factory=Conditions)  # from header, column map and columns
+    measured: frozenset[str] = frozenset()
+    """Conditions that are the median of a column, or follow from one; the others are stated."""
     series: str = ""  # what the header states about the test that this is a part of; empty if nothing
     notes: tuple[str, ...] = ()  # what the reading did that a user should know, a sentence each
 
@@ -164,6 +166,7 @@ AGREE = 0.01
 """Share by which two values of one condition may differ: set points are written with two or three digits."""
 
 MAP, MEDIAN = "column map", "median of its column"  # where a condition comes from
+TURNED, OVER_AREA = "rotational speed times radius of the track", "normal force over the area of the pin"
 _VALUE = re.compile(
     r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*[\[(]?\s*([^\d\s\[\]()][^\[\]()]*?)?\s*[\])]?"
 )
@@ -172,8 +175,8 @@ Found = dict[str, tuple[str | float, str]]  # value of each condition, and where
 
 def conditions_of(
     given: Mapping[str, str | float], metadata: Mapping[str, str], columns: Mapping[str, Array], source: str
-) -> tuple[Conditions, tuple[str, ...]]:
-    """Conditions of a log, and a sentence on each that the column map does not state.
+) -> tuple[Conditions, frozenset[str], tuple[str, ...]]:
+    """Conditions of a log, which of them are measured, and a sentence on each that the map does not state.
 
     The slip speed is the rotational speed times the radius of the track, the time of a cycle that of one
     turn, and the pressure the normal force over the area of the pin, where these are known.
@@ -182,7 +185,7 @@ def conditions_of(
     notes = [note for key, text in metadata.items() if text and (note := _from_metadata(key, text, found))]
     for key, column in columns.items():  # the median, which a ramp at the start does not move
         if key in QUANTITIES and np.isfinite(column).any():
-            middle = float(np.nanmedian(np.abs(column)))
+            middle = float(np.nanmedian(column if key == "temperature" else np.abs(column)))
             if middle > 0.0:
                 found.setdefault(key, (middle, MEDIAN))
     _derive(found, source)
@@ -192,8 +195,20 @@ def conditions_of(
         text = printable(value, 200) if isinstance(value, str) else format_quantity(value, QUANTITIES[key])
         if reason != MAP:
             sentences.append(f"{key.replace('_', ' ')} {text}: {reason}")
-    conditions = Conditions(**{key: value for key, (value, _) in known.items()})  # type: ignore[arg-type]
-    return conditions, (*sentences, *notes)
+    try:
+        conditions = Conditions(**{key: value for key, (value, _) in known.items()})  # type: ignore[arg-type]
+    except InputError as error:
+        raise of_log(error, source) from None
+    measured = {key for key, (_, reason) in found.items() if reason == MEDIAN}
+    follows = (("slip_speed", "rotational_speed", TURNED), ("pressure", "normal_force", OVER_AREA))
+    measured |= {key for key, base, way in follows if base in measured and found.get(key, ("", ""))[1] == way}
+    return conditions, frozenset(measured & known.keys()), (*sentences, *notes)
+
+
+def of_log(error: InputError, source: str) -> InputError:
+    """The first refusal of a record as one of its log: its field in words in place of its class."""
+    first = (error.problems or (error,))[0]
+    return first.at(f"{source}: {first.path.rpartition('.')[2].replace('_', ' ')}")
 
 
 def _from_metadata(key: str, text: str, found: Found) -> str:
@@ -244,7 +259,7 @@ def _derive(found: Found, source: str) -> None:
 
     rotation, radius = number("rotational_speed"), number("track_radius")
     if rotation is not None and radius is not None:
-        settle("slip_speed", rotation * radius, "rotational speed times radius of the track")
+        settle("slip_speed", rotation * radius, TURNED)
     if rotation is None and radius is not None and (speed := number("slip_speed")) is not None:
         settle("cycle_time", 2.0 * math.pi * radius / speed, "2 pi radius / slip speed")
     if rotation is not None:
@@ -256,7 +271,7 @@ def _derive(found: Found, source: str) -> None:
     if diameter is not None:
         area = math.pi / 4.0 * diameter**2
     if area is not None and force is not None:
-        settle("pressure", force / area, "normal force over the area of the pin")
+        settle("pressure", force / area, OVER_AREA)
 
 
 ALIKE = 0.1  # share by which measured conditions of parts may differ; beyond it they are of different tests
@@ -303,6 +318,7 @@ def joined(parts: Sequence[RawLog]) -> RawLog:
         checksum=hashlib.sha256("".join(part.checksum for part in parts).encode()).hexdigest(),
         missing=sum(part.missing for part in parts),
         conditions=_common_conditions(parts, source),
+        measured=frozenset.intersection(*(part.measured for part in parts)),
         notes=(note, *parts[0].notes),
         series="",
         **columns,

@@ -125,6 +125,12 @@ SYMBOLS = {
 }
 """Signs that may follow a name of their meaning: ``Reibkraft FR``, ``Reibwert µ``."""
 
+TORQUES = {"Nm": 1.0, "mNm": 1e-3, "uNm": 1e-6, "kNm": 1e3, "Ncm": 1e-2, "Nmm": 1e-3, "mNmm": 1e-6}
+"""Units of torque without the signs between their parts, and their size in N m."""
+
+MASSES = {"g": "gf", "kg": "kgf"}
+"""Units of mass in which programs write forces, and the force that each means."""
+
 CLOCKS = frozenset({CLOCK, *SHORT_CLOCKS, "hh:mm:ss", "h:mm:ss", "h:m:s", "hms"})
 """Units of a column of times as text, which the reader converts to seconds."""
 
@@ -219,6 +225,21 @@ def scale_in(unit: str, si: str) -> Scale | None:
     if factor < 1.0 and abs(inverse * factor - 1.0) < 1e-12:
         return Scale(divisor=float(inverse), offset=offset)
     return Scale(factor=factor, offset=offset)
+
+
+def torque_scale(unit: str) -> Scale | None:
+    """How to bring a torque in that unit to N m; None where the unit is not one of torque."""
+    text = re.sub(r"[\s.*\u00b7\u22c5-]+", "", unit.replace("\u00b5", "u").replace("\u03bc", "u"))
+    size = TORQUES.get(text)
+    return None if size is None else Scale(factor=size)
+
+
+def looks_like_torque(header: str, unit: str = "") -> bool:
+    """True for a column of torque, by its unit or by its name."""
+    written = (unit, *(part for _, part in header_parts(header)))
+    named = any(word == "couple" or word.endswith(("torque", "moment")) for word in plain(header).split())
+    force = any(scale_in(one, "N") is not None for one in written if one)
+    return any(torque_scale(one) is not None for one in written) or (named and not force)
 
 
 def known_units(meaning: str) -> str:

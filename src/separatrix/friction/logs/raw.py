@@ -1,26 +1,19 @@
-"""From a table of a file to a log in SI units: complete rows of steady sliding, friction as magnitude.
-
-Steady sliding is free of standstill, reversals of a stroke and ramps of the speed. A column of speed shows
-it, in whatever unit; else the slope of a column of position; else, where friction changes its sign with the
-stroke or begins near zero, friction itself: it passes through zero at a reversal, and does not fluctuate
-where nothing slides.
-"""
+"""From a table of a file to a log in SI units: complete rows of steady sliding, friction as magnitude."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.columns import Understood, understand
+from separatrix.friction.logs.columns import Meant, Understood, understand
 from separatrix.friction.logs.dialect import is_number
 from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
-from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain, ranks
-from separatrix.units import Array, format_quantity, printable
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain
+from separatrix.friction.logs.sliding import Rows, sliding_rows
+from separatrix.units import Array, format_quantity, printable, shown
 
 HIGHEST = 5.0
 """Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""
@@ -41,8 +34,12 @@ def raw_log(
     """Log of one table, with the conditions that the column map states for its file."""
     constant = given.get("normal_force")
     force = constant if isinstance(constant, float) else None
+    of_track = given.get("track_radius")
+    radius = of_track if isinstance(of_track, float) else None
     understood = understand(
-        table.headers, table.units, source, columns, table.layout, constant_force=force is not None
+        *(table.headers, table.units, source, columns, table.layout),
+        constant_force=force is not None,
+        track_radius=radius,
     )
     _check_twins(table, understood, source)
     notes: list[str] = []
@@ -50,7 +47,7 @@ def raw_log(
     if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
         notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
     arrays = _in_si(table, understood, columns, source, notes)
-    _mend_sign(arrays, understood, source, notes)
+    _mend_sign(arrays, understood, source, notes, is_given=force is not None)
     signed = _friction(arrays, force, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
     kept = _complete(arrays, table, source)
@@ -63,12 +60,14 @@ def raw_log(
         arrays = {meaning: column[kept] for meaning, column in arrays.items()}
     rotation = arrays.pop("rotational_speed", None)
     turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
-    radius = given.get("track_radius")
-    if turns and isinstance(radius, float) and "slip_speed" not in arrays:
+    if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
     metadata = _without_stroke_speed(table, arrays, notes)
-    conditions, sentences = conditions_of(given, metadata, arrays | turns, source)
+    conditions, measured, sentences = conditions_of(given, metadata, arrays | turns, source)
+    if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
+        turning = turns["rotational_speed"]  # the radius of the track is in the head of the file
+        arrays["slip_speed"] = turning * (conditions.slip_speed / float(np.nanmedian(turning)))
     return RawLog(
         source=source,
         checksum=checksum,
@@ -77,6 +76,7 @@ def raw_log(
         columns=understood.columns,
         metadata=dict(table.metadata),
         conditions=conditions,
+        measured=measured,
         notes=(*notes, *sentences),
         friction=arrays["friction"],
         time=arrays.get("time"),
@@ -121,6 +121,8 @@ def _in_si(
             column = one.scale.of(column)
         if one.sign < 0:
             column = -column
+        if meaning == "temperature":
+            _check_absolute_zero(column, table, one, source)
         arrays[meaning] = (
             column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
         )
@@ -134,9 +136,36 @@ def _in_si(
     return arrays
 
 
-def _mend_sign(arrays: Arrays, understood: Understood, source: str, notes: list[str]) -> None:
-    """Make compression positive: the sign of nearly all rows, or that of the column map."""
+def _check_absolute_zero(column: Array, table: RawTable, one: Meant, source: str) -> None:
+    """Refuse temperatures below absolute zero: the unit is another, or they mean a missing value."""
+    below = np.flatnonzero(column < -1e-9)
+    if below.size:
+        name = shown(table.headers[one.index].strip())
+        line = f'temperature = {{ name = {name}, unit = "..." }}'
+        got = f"{float(table.columns[one.index][below[0]]):g} {one.unit}"
+        cure = (
+            f"State its true unit below [columns] in a column map: {line}; if this is a code for a missing "
+            f'value, write missing = ["{got.split()[0]}"] below [format].'
+        )
+        raise InputError(f"{source}: column {name}", "has temperatures below absolute zero", got, cure)
+
+
+def _mend_sign(
+    arrays: Arrays, understood: Understood, source: str, notes: list[str], *, is_given: bool
+) -> None:
+    """Make compression positive: the sign of nearly all rows, or that of the column map.
+
+    A column without any force gives way to the constant force of the column map, if there is one.
+    """
     column = arrays.get("normal_force")
+    if column is not None and not (np.abs(column) > 0.0).any() and "friction" not in arrays:
+        if not is_given:
+            rule = f"has a normal force that is {'zero' if (column == 0.0).any() else 'missing'} in every row"
+            cure = 'If the load is a dead weight, write normal_force = "... N" below [test] of a column map.'
+            raise InputError(source, rule, cure=cure)
+        del arrays["normal_force"]
+        notes.append("the column of normal force has no load in any row and is not used")
+        return
     if column is None or understood.used["normal_force"].sign < 0:
         return
     negative, positive = int((column < 0.0).sum()), int((column > 0.0).sum())
@@ -227,153 +256,3 @@ def _without_stroke_speed(table: RawTable, arrays: Arrays, notes: list[str]) -> 
         "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
     )
     return {key: value for key, value in table.metadata.items() if key not in speeds}
-
-
-Rows = NDArray[np.bool_]
-SPEEDS = ("slip_speed", "rotational_speed")  # meanings of a column of speed; its unit does not matter here
-POSITIONS = frozenset(
-    {"position", "linear position", "lin position", "rotary position", "angular position", "x position"}
-    | {"y position", "lateral position", "slide position", "stroke position", "stroke", "angle"}
-    | {"pos", "x pos", "y pos", "lin pos", "linear pos", "travel", "carriage position"}
-    | {"rotation angle", "winkel", "drehwinkel", "hubposition", "position lineaire", "angle de rotation"}
-)
-"""Names of a column of position along the track."""
-
-STILL = 0.1  # share of the usual speed below which nothing slides
-SLOW = 0.5  # share of the usual speed below which a stroke reverses
-TURNING = 0.8  # share of the usual friction below which it still turns, from where its sign changes
-RAMP = 0.9  # share of the speed behind a ramp at which the ramp ends
-BEHIND = 0.05  # share of the rows, 20 at least, behind which as many show to which speed a ramp leads
-LONGEST_RAMP = 0.2  # share of the rows that a ramp has at most
-REST = 0.2  # share of the usual friction below which a log begins at rest
-STRETCH = 8  # rows of one direction, in the middle, from which strokes can be detected
-SMOOTH = 0.3  # step between rows, over the usual one, below which friction does not fluctuate: nothing slides
-WINDOW = 7  # rows of the running median of such steps
-FEWEST = 0.2  # share of the rows that must slide, or the column does not show it
-
-
-def _kind(header: str, unit: str) -> str:
-    """What a column shows of the motion by its name: speed, position or force; empty for nothing."""
-    name = header.strip().rpartition(".")[2] or header  # without what loggers put before it: Rotary.Position
-    names = {plain(part) for part, _ in header_parts(name)}
-    meanings = {meaning for part in names for meaning in ranks(part)}
-    if unit.casefold() in ("v", "a"):
-        return ""
-    if names & POSITIONS:
-        return "position"
-    return "speed" if meanings & {*SPEEDS} else "force" if "tangential_force" in meanings else ""
-
-
-def motion_columns(headers: Sequence[str], units: Sequence[str]) -> list[int]:
-    """Numbers of the columns that may show which rows slide: speeds, positions, forces with a sign."""
-    return [i for i, one in enumerate(zip(headers, units, strict=True)) if _kind(*one)]
-
-
-def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> tuple[Rows, str]:
-    """Rows of steady sliding of those kept, and a sentence on the others; empty where all rows slide.
-
-    Friction has its sign if the log has one, shape (row,); time is in s, shape (row,).
-    """
-    rows, words = next(_signals(table, friction, time, kept), (kept, ""))
-    out = int(kept.sum() - (kept & rows).sum())
-    if not out:
-        return kept, ""
-    share = f"{out} of {int(kept.sum())} rows"
-    return kept & rows, f"{share} are left out: standstill, reversals or ramps by {words}"
-
-
-def _signals(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> Iterator[tuple[Rows, str]]:
-    """Yield which rows slide, and by what; the most reliable first."""
-    kinds = [_kind(*one) for one in zip(table.headers, table.units, strict=True)]
-    for wanted in ("speed", "position"):
-        for kind, column, header in zip(kinds, table.columns, table.headers, strict=True):
-            if kind != wanted or not np.isfinite(column[kept]).all() or not kept.any():
-                continue
-            speed = np.abs(column) if wanted == "speed" else _slope(column, time, kept)
-            if speed is not None and (rows := _by_speed(speed, kept)) is not None:
-                yield rows, f'the {wanted} in column "{printable(header.strip())}"'
-    signed = [column for kind, column in zip(kinds, table.columns, strict=True) if kind == "force"]
-    for column in (friction, *signed):
-        if (rows := _by_force(column, np.abs(friction), kept)) is not None:
-            yield rows, "the sign and the fluctuation of the friction"
-
-
-def _slope(position: Array, time: Array | None, kept: Rows) -> Array | None:
-    """Speed along a position; None where it does not move, or too fast for the rows to follow."""
-    along = position[kept]
-    steps = np.diff(along)
-    moving = np.abs(steps) > 1e-9 * max(float(np.ptp(along)), 1e-300)
-    turns = int((np.diff(np.sign(steps[moving])) != 0).sum())
-    if not moving.any() or turns * STRETCH > along.size:
-        return None
-    spans = np.ones(steps.size) if time is None else np.diff(time[kept])
-    rates = np.abs(np.divide(steps, spans, out=np.zeros(steps.size), where=spans > 0.0))
-    speed = np.full(position.size, np.nan)
-    speed[kept] = median_filter(np.append(rates, rates[-1]), 3, mode="nearest")
-    return speed
-
-
-def _by_speed(speed: Array, kept: Rows) -> Rows | None:
-    """Rows that slide, by a speed in any unit; None where it does not show it."""
-    v = speed[kept]
-    fastest = float(v.max(initial=0.0))
-    if fastest <= 0.0:
-        return None
-    usual = float(np.median(v[v > STILL * fastest]))
-    moves = v >= STILL * usual
-    stops = int((np.diff(moves.astype(np.int8)) == -1).sum())
-    rows = v >= SLOW * usual if stops > 3 else moves
-    for one in (slice(None), slice(None, None, -1)):
-        rows[one][: _ramp(v[one], rows[one])] = False
-    if rows.sum() < FEWEST * rows.size:
-        return None
-    found = np.zeros(kept.size, dtype=bool)
-    found[kept] = rows
-    return found
-
-
-def _ramp(speed: Array, slides: Rows) -> int:
-    """Rows at the start in which the speed has not reached that behind them."""
-    first = int(np.argmax(slides))
-    reach = max(20, int(BEHIND * speed.size))
-    behind = float(np.median(speed[first + reach : first + 2 * reach])) if speed.size > first + reach else 0.0
-    end = first + int(np.argmax(speed[first:] >= RAMP * behind))
-    return end if end <= first + LONGEST_RAMP * speed.size else first
-
-
-def _by_force(signed: Array, friction: Array, kept: Rows) -> Rows | None:
-    """Rows that slide in a log of strokes, by its friction alone; None where it is not one."""
-    f, size = signed[kept], friction[kept]
-    if f.size < 4 * STRETCH or not np.isfinite(f).all():
-        return None
-    usual, usual_size = float(np.median(np.abs(f))), float(np.median(size))
-    clear = np.sign(np.where(np.abs(f) > STILL * usual, f, 0.0))
-    turns = np.flatnonzero(np.diff(clear[clear != 0.0]) != 0.0)
-    lengths = np.diff(np.concatenate([[0], turns + 1, [int((clear != 0.0).sum())]]))
-    strokes = turns.size > 0 and np.median(lengths) >= STRETCH
-    if not strokes and size[:3].max() >= REST * usual_size:
-        return None
-    crossings = np.flatnonzero(np.diff(np.sign(f)) != 0.0) if strokes or turns.size == 0 else turns
-    rows = ~_around(np.abs(f) < TURNING * usual, np.append(crossings, 0))
-    for one in (slice(None), slice(None, None, -1)):
-        rows[one][: _still_rows(size[one])] = False
-    found = np.zeros(kept.size, dtype=bool)
-    found[kept] = rows
-    return found if rows.sum() >= FEWEST * rows.size else None
-
-
-def _around(low: Rows, places: NDArray[np.int64]) -> Rows:
-    """Rows of the stretches of low friction with one of the places in them."""
-    stretch = np.cumsum(np.diff(low, prepend=not low[0]))
-    held = np.zeros(stretch[-1] + 1, dtype=bool)
-    held[stretch[places]] = True
-    return np.asarray(low & held[stretch])
-
-
-def _still_rows(friction: Array) -> int:
-    """Rows at the start in which friction does not fluctuate as it does while sliding."""
-    steps = np.abs(np.diff(friction))
-    usual = float(np.percentile(steps, 60.0))
-    smooth = median_filter(steps, WINDOW, mode="nearest") < SMOOTH * usual
-    end = int(np.argmin(smooth)) if not smooth.all() else 0
-    return end + WINDOW // 2 if end >= WINDOW // 2 and usual > 0.0 else 0

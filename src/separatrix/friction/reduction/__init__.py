@@ -12,6 +12,7 @@ from separatrix.errors import InputError
 from separatrix.friction.file import UNITS, in_words, place
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import cycles, steady
+from separatrix.friction.reduction.conditions import steady_conditions
 from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
 from separatrix.friction.reduction.steady import METHOD, RunIn, run_in
 from separatrix.units import Array, Ratio, format_number
@@ -76,7 +77,7 @@ class TestFriction:
 
     source: str  # name of the file, and of the part of it
     checksum: str  # SHA-256 of the file
-    conditions: Conditions  # under which it was run
+    conditions: Conditions  # under which it was run; measured ones over the steady part
     friction: Ratio  # mean over the steady part
     standard_error: Ratio
     """Of that mean: neighbouring values are alike, some running-in may be left, digits are few."""
@@ -118,6 +119,7 @@ class Reduction:
     test: TestFriction
     options: ReductionOptions
     rows: slice  # rows between loading and the end of the test
+    steady_rows: slice  # rows of the steady part
     along: Array  # abscissa of every row of the log, shape (row,)
     stretch: cycles.Stretch  # rows in which the contact slid under its load
     cycle: float | None  # length of a cycle in the unit of the abscissa; None if unknown
@@ -174,12 +176,14 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
     spans = stretch.spans(cut)
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
+    steady_rows = slice(kept.start + first, kept.start + first + friction.size)
     strongest = cycles.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
-        test=_test(log, axis, stretch, spans, mean, found, strongest),
+        test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found, strongest),
         options=options,
         rows=kept,
+        steady_rows=steady_rows,
         along=along,
         stretch=stretch,
         cycle=cycle,
@@ -197,6 +201,7 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
 
 def _test(
     log: RawLog,
+    conditions: Conditions,
     axis: str,
     stretch: cycles.Stretch,
     spans: cycles.Spans,
@@ -216,7 +221,7 @@ def _test(
     return TestFriction(
         source=log.source,
         checksum=log.checksum,
-        conditions=log.conditions,
+        conditions=conditions,
         friction=mean.mean,
         standard_error=float(np.linalg.norm((error, rest, steady.last_digit(friction)[1]))),
         degrees_of_freedom=mean.degrees_of_freedom,

@@ -12,6 +12,7 @@ from scipy.ndimage import median_filter
 
 from separatrix.friction.file import in_words
 from separatrix.friction.logs.log import RawLog
+from separatrix.friction.reduction.conditions import changes
 from separatrix.friction.reduction.cycles import FEWEST, Spans, means
 from separatrix.friction.reduction.steady import LONG
 from separatrix.units import Ratio, format_number, format_quantity
@@ -175,6 +176,7 @@ def flags(one: Reduction) -> Iterator[str]:
     """Yield what a reader has to consider about a test."""
     for part in (_ends, _run_in, _drift, _oscillation, _changes, _length, _size, _rows):
         yield from part(one)
+    yield from changes(one.log, one.steady_rows)
 
 
 def _at_row(one: Reduction, row: int) -> str:
