@@ -1,15 +1,18 @@
 """Cages, bearings and ensembles from which the tests of several files start; short ways to run a cage."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from separatrix.cage import Cause, Ensemble, History, PlanarCage, RunOutcome, follow
+from separatrix.distribution import Distribution
 from separatrix.limits.curve import Tracer, rising, threshold_factors
 from separatrix.limits.response import GrowthCounter
 from separatrix.runner import Runner
-from separatrix.study import BallBearing, Guidance, Material, PocketShape
+from separatrix.study import BallBearing, Guidance, Material, PocketShape, Study
+from separatrix.study_numbers import settled_in, with_values
 
 AT_REST = PlanarCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,
@@ -53,6 +56,13 @@ BEARING_218 = BallBearing(
     inner_conformity=0.523167, outer_conformity=0.523167, ball_material=STEEL_218, ring_material=STEEL_218,
 )  # fmt: skip
 """The bearing of the rolling-bearing books."""
+
+
+def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
+    """Study with these numbers uncertain; its values are their means."""
+    central = with_values(study, {key: one.mean for key, one in given.items()})
+    settled = {key: settled_in(central, key, one) for key, one in given.items()}
+    return replace(central, distributions={**central.distributions, **settled})
 
 
 def damping_of(eta: float) -> float:
