@@ -13,7 +13,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Sequence
-from math import exp, log, sqrt
+from math import exp, hypot, log, sqrt
 
 import numpy as np
 from scipy.special import ndtri
@@ -86,16 +86,18 @@ def hits(fit: FrictionFit, slopes: dict[str, float], scatter: float, seed: int) 
     one = fit.of("A", NAME)
     middle = dict(zip(one.covariates.names, one.covariates.centres, strict=True))
     at = truth(slopes, exp(middle.get("slip_speed", log(2.0))), exp(middle.get("pressure", log(1e6))))
-    found = {"intercept": one.intercept.low <= at <= one.intercept.high}
+    centre = np.eye(1 + len(one.covariates.names))[0]
+    low, high = (one.posterior.quantile(centre, p) for p in (0.025, 0.975))
+    found = {"intercept": low <= at <= high}
     found |= {name: s.low <= slopes[name] <= s.high for name, s in one.slopes.items()}
     new = at + scatter * np.random.Generator(np.random.Philox(key=[seed, 1])).standard_normal()
-    return found | {"next cage": abs(new - one.intercept.value) <= reach(one)}
+    return found | {"next cage": abs(new - log(one.at().mean)) <= reach(one)}
 
 
 def reach(one: MaterialFit) -> float:
     """Half the 95 % interval of ln f of a next cage."""
     at = one.at()
-    return float(ndtri(0.975)) * at.next_cage / at.mean
+    return float(ndtri(0.975)) * hypot(at.standard_error, at.standard_deviation) / at.mean
 
 
 def report(name: str, sets: int) -> None:

@@ -33,7 +33,7 @@ from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log
+from separatrix.friction.reduction import TestFriction, reduce_log
 
 SEED = 20260
 MOST_ROWS = 4000
@@ -118,8 +118,8 @@ CYCLES = {"compend": 0.5}
 SAID = ("umt", "tsv")
 """Formats that do not hold the time of a cycle."""
 
-UNKNOWN, FOUND = "unknown_cycle", "found_cycle"
-"""Logs as made, but without the time of a cycle; and with the option to find it."""
+UNKNOWN = "unknown_cycle"
+"""Logs as made, but without the time of a cycle."""
 
 
 def groups(recipe: Recipe) -> Iterator[str]:
@@ -196,10 +196,10 @@ def answers(count: int, seed: int, name: str = "") -> Iterator[Answer]:
     rng = np.random.default_rng(seed)
     with tempfile.TemporaryDirectory() as folder:
         for recipe in recipes(count, rng):
-            known = made(_for_format(recipe, name), rng, knows_cycle=name not in (UNKNOWN, FOUND))
+            known = made(_for_format(recipe, name), rng, knows_cycle=name != UNKNOWN)
             log = _through(name, known, Path(folder)) if name in FORMATS else known.log
             try:
-                yield reduce_log(log, ReductionOptions(find_cycle=name == FOUND)), known, log
+                yield reduce_log(log), known, log
             except InputError as error:
                 print(f"  refused: {error}")
 
@@ -225,7 +225,7 @@ def main() -> None:
     parser.add_argument("formats", nargs="*", help="names of FORMATS, unknown_cycle, found_cycle or all")
     parser.add_argument("--seed", type=int, default=SEED)
     given = parser.parse_args()
-    names = [*FORMATS, UNKNOWN, FOUND] if given.formats == ["all"] else given.formats
+    names = [*FORMATS, UNKNOWN] if given.formats == ["all"] else given.formats
     if not names:
         report("as made", answers(given.logs, given.seed))
     for i, name in enumerate(names, start=1):

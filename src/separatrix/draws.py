@@ -60,14 +60,13 @@ class Draws:
     """Draws of the uncertain inputs of a study, which has their means.
 
     `values` are in the SI units of the inputs, shape (sample, input); `probabilities` are the points behind
-    them, the share of each distribution below a value, same shape [-]. `seed` is that of the scrambling.
+    them, the share of each distribution below a value, same shape [-].
     """
 
     study: Study
     inputs: tuple[UncertainInput, ...]
     values: Array
     probabilities: Array
-    seed: int
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -182,21 +181,20 @@ def sample(
     if not inputs:
         cure = 'Write one like "0.5 um +- 20 %".'
         raise InputError(study.name, "has no uncertain number to draw", cure=cure)
-    chosen = study.stability.seed if seed is None else seed
-    points = sobol_points(samples, len(inputs), chosen)
+    points = sobol_points(samples, len(inputs), STREAM, study.stability.seed if seed is None else seed)
     columns = [one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)]
     values = np.stack(columns, axis=1)
-    return Draws(study=study, inputs=inputs, values=values, probabilities=points, seed=chosen)
+    return Draws(study=study, inputs=inputs, values=values, probabilities=points)
 
 
-def sobol_points(samples: int, dimensions: int, seed: int) -> Array:
+def sobol_points(samples: int, dimensions: int, *seed: int) -> Array:
     """Scrambled Sobol' points inside the unit cube, shape (sample, dimension) [-].
 
     Each is in the middle of its cell of 2**-`BITS`, so that none is on a face.
     """
     from scipy.stats import qmc
 
-    generator = np.random.default_rng(np.random.SeedSequence([STREAM, seed]))
+    generator = np.random.default_rng(seed)
     engine = qmc.Sobol(dimensions, scramble=True, bits=BITS, rng=generator)
     points: Array = engine.random_base2(max(samples - 1, 0).bit_length())[:samples]
     return points + 2.0 ** -(BITS + 1)

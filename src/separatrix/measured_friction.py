@@ -26,12 +26,6 @@ class Prediction:
     widening: Ratio = 0.0  # what these add to the standard deviation, in quadrature
     assumed_scatter: bool = False  # whether no repeated test shows the scatter
 
-    @property
-    def next_cage(self) -> Ratio:
-        """Standard deviation of the friction of the next cage: of the mean and of a new sample together."""
-        total: Ratio = (self.standard_error**2 + self.standard_deviation**2) ** 0.5
-        return total
-
 
 class FrictionLaw(Protocol):
     """Friction as a function of the conditions, from tests, as `separatrix.friction.fit.TestedFriction`."""

@@ -195,24 +195,6 @@ def radial_clearance(bearing: BallBearing) -> Metre:
     return 2.0 * room * math.sin(0.5 * bearing.contact_angle) ** 2
 
 
-def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
-    """Return the study with these numbers uncertain; its values are their means.
-
-    A normal distribution becomes log-normal where the study takes no number down to its low end.
-
-    Raises
-    ------
-    InputError
-        A name is unknown, a distribution leaves the range that the study takes, or there are too many.
-    """
-    central = with_values(study, {key: one.mean for key, one in given.items()})
-    settled = {**central.distributions, **{key: settled_in(central, key, one) for key, one in given.items()}}
-    if len(settled) > MOST_DISTRIBUTIONS:
-        rule = f"has more uncertain numbers than {MOST_DISTRIBUTIONS}"
-        raise InputError(study.name, rule, str(len(settled)), "Make those certain that matter least.")
-    return replace(central, distributions=settled)
-
-
 def settled_in(study: Study, key: str, distribution: Distribution) -> Distribution:
     """The distribution, or the log-normal one in its place, whose both ends the study takes."""
     number = _known(study_numbers(study), key)

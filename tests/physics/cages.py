@@ -1,15 +1,19 @@
 """Cages, bearings and ensembles from which the tests of several files start; short ways to run a cage."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from separatrix.cage import Cause, Ensemble, History, PlanarCage, RunOutcome, follow
+from separatrix.cage.closed_forms import whirl_rate
+from separatrix.distribution import Distribution
 from separatrix.limits.curve import Tracer, rising, threshold_factors
 from separatrix.limits.response import GrowthCounter
 from separatrix.runner import Runner
-from separatrix.study import BallBearing, Guidance, Material, PocketShape
+from separatrix.study import BallBearing, Guidance, Material, PocketShape, Study
+from separatrix.study_numbers import settled_in, with_values
 
 AT_REST = PlanarCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,
@@ -55,10 +59,37 @@ BEARING_218 = BallBearing(
 """The bearing of the rolling-bearing books."""
 
 
+def with_distributions(study: Study, given: Mapping[str, Distribution]) -> Study:
+    """Study with these numbers uncertain; its values are their means."""
+    central = with_values(study, {key: one.mean for key, one in given.items()})
+    settled = {key: settled_in(central, key, one) for key, one in given.items()}
+    return replace(central, distributions={**central.distributions, **settled})
+
+
 def damping_of(eta: float) -> float:
     """C_mu at which `AT_REST` has this nominal restitution factor (physics of Eq. 17 as modelled)."""
     zeta = -math.log(eta) / math.hypot(math.pi, math.log(eta))
     return math.sqrt(AT_REST.ball_cage_stiffness * AT_REST.mass) / (2 * zeta)
+
+
+def linear_roots(cage: PlanarCage) -> np.ndarray:
+    """Exact rates of small motions without clearance, fastest growing first, shape (3,) or (4,) [rad/s].
+
+    (lambda + i Omega)^2 (lambda D + k) + (1 - i sigma f) omega_0^2 lambda D = 0, D = m_e lambda + C.
+    """
+    law, w0 = cage.traction, whirl_rate(cage)
+    mass, slope = (0.0, cage.race_damping) if law is None else (law.mass, law.slope)
+    yields = np.array([mass * w0 * w0, slope * w0, 0.0])
+    turned = np.poly([-1j * cage.cage_speed / w0] * 2)
+    driven = (1.0 - 1j * cage.friction_sense * cage.ball_cage_friction) * yields
+    held = np.polymul(turned, yields + np.array([0.0, 0.0, cage.ball_cage_stiffness]))
+    roots = np.roots(np.polyadd(held, driven)) * w0
+    return roots[np.argsort(-roots.real)]
+
+
+def whirl_probability(found: Ensemble) -> np.ndarray:
+    """Share of the runs that whirl from each kick, shape (kick,) [-]."""
+    return found.count(RunOutcome.WHIRLS) / found.outcome.shape[1]
 
 
 def followed(

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import AT_REST, damping_of
+from cages import AT_REST, damping_of, whirl_probability
 
-from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble, whirl_probability
+from separatrix.cage import Cause, PlanarCage, RunOutcome, Verdict, judge, run_ensemble
 from separatrix.study import Guidance, StabilitySettings
 
 KICK = 0.5 * AT_REST.mass * 0.5**2

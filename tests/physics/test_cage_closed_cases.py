@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from cages import linear_roots
 from scipy.special import ellipk
 
-from separatrix.cage import PlanarCage, follow, linear_roots
+from separatrix.cage import PlanarCage, follow
 from separatrix.study import Guidance
 
 M, R, C_G, G = 0.025, 0.036, 0.5e-3, 9.80665

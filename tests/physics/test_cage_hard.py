@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cages import AT_REST as CAGE
-from cages import damping_of
+from cages import damping_of, whirl_probability
 
 from separatrix.cage import (
     Cause,
@@ -15,7 +15,6 @@ from separatrix.cage import (
     impact_restitution,
     run_ensemble,
     run_hard_ensemble,
-    whirl_probability,
 )
 from separatrix.cage.hard import next_impact
 from separatrix.cage.records import records

@@ -9,7 +9,7 @@ from dataclasses import fields, replace
 import inertial_balls
 import numpy as np
 import pytest
-from cages import AT_REST, EVERYTHING, RAMP, TURNING, WAVES, followed
+from cages import AT_REST, EVERYTHING, RAMP, TURNING, WAVES, followed, linear_roots
 from scipy.integrate import quad, solve_ivp
 
 from separatrix.ball_traction import BallTraction
@@ -18,11 +18,10 @@ from separatrix.cage import (
     RunOutcome,
     ensemble,
     linear_critical_friction,
-    linear_roots,
     run_ensemble,
     simulate,
-    turning_critical_friction,
 )
+from separatrix.cage.closed_forms import whirl_rate
 from separatrix.cage.planar import turned_forward
 from separatrix.study import Guidance, PocketShape, StabilitySettings
 
@@ -218,18 +217,28 @@ def test_without_play_it_moves_on_the_roots_of_small_motions():
     np.testing.assert_allclose(run.position @ [1, 1j], exact, rtol=0, atol=1e-9 * np.abs(exact).max())
 
 
-@pytest.mark.parametrize("speed", [0.0, 669.0, -300.0])
-def test_critical_friction_of_small_motions_is_a_root_that_neither_grows_nor_dies(speed):
+def test_critical_friction_of_small_motions_is_a_root_that_neither_grows_nor_dies():
     """And that of balls without mass as these become light."""
-    grip = replace(PLAIN, pocket_clearance=0.0, cage_speed=speed, traction=dampers(900.0, 6.567e-3))
-    found = turning_critical_friction(grip)
+    grip = replace(PLAIN, pocket_clearance=0.0, cage_speed=0.0, traction=dampers(900.0, 6.567e-3))
+    found = linear_critical_friction(grip)
     whirl = [r for r in linear_roots(replace(grip, ball_cage_friction=found)) if abs(r.imag) > 3000.0]
     assert min(abs(r.real) for r in whirl) < 1e-8 * max(abs(r) for r in whirl)
     light = replace(grip, traction=dampers(900.0, 1e-9))
     heavy_free = replace(grip, traction=None, race_damping=900.0)
-    assert turning_critical_friction(light) == pytest.approx(turning_critical_friction(heavy_free), rel=1e-6)
-    if speed == 0.0:
-        assert linear_critical_friction(grip) == pytest.approx(found, rel=1e-12)
+    assert linear_critical_friction(light) == pytest.approx(linear_critical_friction(heavy_free), rel=1e-6)
+
+
+@pytest.mark.parametrize("whirl", [2.7e4, 2.9e4])
+def test_a_turning_ball_set_whirls_at_the_friction_of_its_formula(whirl):
+    """(omega + Omega)^2 (G - k m) = omega_0^2 G, f = k C/omega (G - k m), G = (m omega)^2 + C^2; rounding."""
+    C, m, k, w0 = 900.0, 6.567e-3, PLAIN.ball_cage_stiffness, whirl_rate(PLAIN)
+    G = (m * whirl) ** 2 + C * C
+    turning = {
+        "cage_speed": w0 * math.sqrt(G / (G - k * m)) - whirl,
+        "ball_cage_friction": k * C / (whirl * (G - k * m)),
+    }
+    roots = linear_roots(replace(PLAIN, pocket_clearance=0.0, traction=dampers(C, m), **turning))
+    assert np.abs(roots - 1j * whirl).min() < 1e-9 * whirl
 
 
 def drawn(number: int):

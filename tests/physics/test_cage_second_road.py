@@ -12,9 +12,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
-from cages import ON_A_LAND, followed
+from cages import ON_A_LAND, followed, linear_roots
 
-from separatrix.cage import linear_roots
 from separatrix.study import Guidance, PocketShape
 
 M, R, K = 0.025, 0.0325, 3e6

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cages import with_distributions
 from scipy.integrate import solve_bvp
 
 from separatrix.bearing_design import Expansion
@@ -17,7 +18,7 @@ from separatrix.errors import InputError, ValidityWarning
 from separatrix.ranking.reason import pocket_of, with_other_ball
 from separatrix.study import CageDesign, ClearanceState, Guidance, Material
 from separatrix.study_file import read_study
-from separatrix.study_numbers import with_distributions, with_values
+from separatrix.study_numbers import with_values
 
 STUDY = read_study("cryogenic-turbopump")
 BEARING = STUDY.bearing

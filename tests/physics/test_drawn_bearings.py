@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cages import with_distributions
 
 from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
 from separatrix.chain.solution import solve
@@ -14,7 +15,6 @@ from separatrix.ranking.rank import rank
 from separatrix.runner import Runner
 from separatrix.study import Candidate, Friction
 from separatrix.study_file import read_study
-from separatrix.study_numbers import with_distributions
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
 

@@ -15,7 +15,6 @@ from separatrix.chain.restitution import (
     damping_ratio,
     damping_ratio_for,
     equal_energy_stiffness,
-    free_ring_restitution_factor,
     hertz_coefficient,
     hertz_coefficient_for,
     hertzian_restitution_factor,
@@ -68,18 +67,6 @@ def test_nothing_returns_from_the_critical_damping_down():
     assert damping_for(0.0, STIFFNESS, MASS) == pytest.approx(193.65, abs=5e-3)
     assert restitution_factor(damping_ratio(STIFFNESS, MASS, 193.64)) == 0.0
     assert restitution_factor(damping_ratio(STIFFNESS, MASS, 210.0)) > 0.0
-
-
-@pytest.mark.parametrize(("nominal", "free"), [(0.90, 0.928), (0.60, 0.698)])
-def test_a_ring_free_to_turn_feels_half_its_mass(nominal, free):
-    """Three digits computed independently, and the same by integrating the impact on M/2."""
-    found = free_ring_restitution_factor(nominal)
-    assert found == pytest.approx(free, abs=5e-4)
-    assert impact(MASS / 2.0, STIFFNESS, damping_for(nominal, STIFFNESS, MASS)) == pytest.approx(
-        found, abs=1e-6
-    )
-    # one that cannot turn, with a very large moment of inertia, feels its whole mass
-    assert free_ring_restitution_factor(nominal, 1e12) == pytest.approx(nominal, rel=1e-9)
 
 
 def test_free_spin_from_the_balance_of_the_ball():

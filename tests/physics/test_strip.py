@@ -4,13 +4,11 @@ from math import atan, pi
 
 import numpy as np
 import pytest
-from cages import STEEL
 from scipy.optimize import brentq
 
-from separatrix.chain.traction import dundurs_coupling, solve_strip
+from separatrix.chain.traction import solve_strip
 from separatrix.chain.traction.master import film_tables, master_traction, matched_knots, nested_sticks
 from separatrix.chain.traction.strip import node_positions, node_pressure, strip_influence
-from separatrix.study import Material
 
 
 def toeplitz(nodes, lam):
@@ -135,9 +133,7 @@ def test_clipping_the_stuck_traction_is_not_carter():
 
 def test_unlike_bodies_hardly_change_the_slope():
     """Pressure strains unlike surfaces like a creep (beta/mu) sqrt(1-x^2); Si3N4 on 440C: 1 % of slope."""
-    beta = dundurs_coupling(Material(name="Si3N4", elastic_modulus=310e9, poisson_ratio=0.27), STEEL)
-    assert beta == pytest.approx(-0.0543, abs=5e-5)  # by hand from the shear moduli
-    assert dundurs_coupling(STEEL, STEEL) == 0.0
+    beta = -0.0543  # Dundurs' constant, by hand from the shear moduli
     pressure, mu, h = node_pressure(100), 0.1, 0.02
 
     def traction(creep, coupling):

@@ -7,7 +7,10 @@ import pytest
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction import direct_traction, shear_field, traction_curve, traction_slope
+from separatrix.chain.traction import shear_field, solve_strip, traction_curve, traction_slope
+from separatrix.chain.traction.curve import reach
+from separatrix.chain.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges, strip_places
+from separatrix.chain.traction.master import film_tables
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 A, B, P0, E, N = ELLIPSE.semi_major, ELLIPSE.semi_minor, ELLIPSE.max_pressure, ELLIPSE.contact_modulus, 500.0
@@ -106,13 +109,24 @@ def test_no_zero_creep_line_is_full_slip():
 )
 def test_strips_solved_one_by_one_agree(friction, lam, spin, curvature, shift):
     """Master curve against direct active sets of 100 and 200 elements, extrapolated: traction, slope."""
-    creep, delta = Creep(spin=spin, curvature=curvature), shift * 2.0 * friction * P0 / E
+    saturation = 2.0 * friction * P0 / E
+    delta = shift * saturation
     found = curve(spin, curvature, friction=friction, compliance=lam * B / E, increments=[0.0, delta])
+    sigma, eta = spin * A / saturation, curvature * A * A / saturation
+    levels = LEVELS * reach(film_tables(200)[0], lam)
 
     def directly(nodes):
-        how = {"race_friction": friction, "film_compliance": lam * B / E, "nodes": nodes}
-        at = (found.free_rolling_offset, found.free_rolling_offset + delta)
-        return np.array([direct_traction(ELLIPSE, creep, centre_creep=xi, **how) for xi in at])
+        sums = []
+        for xi in (found.free_rolling_offset, found.free_rolling_offset + delta):
+            d = xi / saturation
+            edges = panel_edges(d, sigma, eta, levels, 1)
+            theta, share = strip_places(edges, GAUSS_NODES, GAUSS_WEIGHTS)
+            y, half = np.sin(theta), np.cos(theta)
+            each = zip((d + (sigma + eta * y) * y) / half, lam / half, strict=True)
+            strips = [solve_strip(creep, film, nodes=nodes) for creep, film in each]
+            slope = 0.5 * E / P0 * (share / half) @ [one.slope for one in strips]
+            sums.append((friction * share @ [one.traction_ratio for one in strips], slope))
+        return np.array(sums)
 
     direct = 2.0 * directly(200) - directly(100)
     assert found.traction_coefficient == pytest.approx(direct[:, 0], abs=3e-4 * friction)  # measured 1e-4

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from cages import linear_roots
 
 from separatrix.cage import (
     CageMotion,
@@ -18,7 +19,7 @@ from separatrix.cage import (
     run_ensemble,
     simulate,
 )
-from separatrix.cage.closed_forms import drive_energy, linear_roots
+from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.ending import LONGEST
 from separatrix.cage.reason import largest_room
 from separatrix.cage.verdict import kick_counts

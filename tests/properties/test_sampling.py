@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cages import with_distributions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
@@ -14,7 +15,6 @@ from separatrix.errors import InputError
 from separatrix.friction.fit import TestedFriction
 from separatrix.study import Candidate, Friction, RankingQuestion
 from separatrix.study_file import read_study
-from separatrix.study_numbers import with_distributions
 
 BASE = read_study("cryogenic-turbopump")
 LAWS = {

@@ -51,5 +51,5 @@ def test_a_wrong_end_of_running_in_is_refused_by_the_log(page, end):
     refused = page.get(f"/log/b.csv?run_in={end}")
     assert refused.status_code == 422
     assert "b.csv: the end of running-in must" in refused.text
-    assert "ReductionOptions" not in refused.text
+    assert "run_in" not in refused.text
     assert 'value="200 s"' in page.get("/log/b.csv").text

@@ -18,11 +18,9 @@ from separatrix.present import in_words
 from separatrix.ranking.records import measured
 from separatrix.study_file import read_study, resolved
 from separatrix.study_numbers import (
-    MOST_DISTRIBUTIONS,
     radial_clearance,
     study_numbers,
     value_of,
-    with_distributions,
     with_values,
 )
 
@@ -236,16 +234,6 @@ def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     assert "uncertain" not in told
 
 
-def test_distributions_are_given_in_python_too():
-    """The study takes the mean, and the log-normal form where the normal one would reach zero."""
-    base = read_study("cryogenic-turbopump")
-    study = with_distributions(base, {"film.thickness": Normal(mean=4e-7, standard_deviation=2e-7)})
-    assert study.film.thickness == 4e-7
-    assert isinstance(study.distributions["film.thickness"], LogNormal)
-    with pytest.raises(InputError, match="is not a numeric input of this study"):
-        with_distributions(base, {"film.colour": Uniform(low=0.0, high=1.0)})
-
-
 @pytest.mark.parametrize("text", ['"0.5 +- 180 %"', "{ mean = 0.5, standard_deviation = 0.45 }"])
 def test_a_friction_that_scatters_widely_is_read_and_drawn(study_of, text):
     """Only a stated friction ends at 2: what is read is drawn, and the tail of its scatter as it is."""
@@ -258,20 +246,6 @@ def test_a_friction_that_scatters_widely_is_read_and_drawn(study_of, text):
     above = lognorm.sf(2.0, shape, scale=0.5 * math.exp(-0.5 * shape**2))
     # the cut at 5 standard deviations takes 3e-7, and the points leave one part in 4096
     assert (sample(study, 4096).values > 2.0).mean() == pytest.approx(above, abs=1 / 4096)
-
-
-def test_more_distributions_than_can_be_told_apart_are_refused():
-    """Fifty are taken, one more is refused with the count."""
-    base = read_study("cryogenic-turbopump")
-    known = study_numbers(base)
-    sections = ("bearing.", "operation.axial", "operation.inner", "film.", "ranking.")
-    held = {key: value_of(base, one) for key, one in known.items() if key.startswith(sections) and one.unit}
-    held.pop("bearing.radial_clearance")  # the angle's other name
-    laws = {k: Normal(mean=value, standard_deviation=1e-6 * value) for k, value in held.items() if value}
-    fifty, more = (dict(list(laws.items())[:n]) for n in (MOST_DISTRIBUTIONS, MOST_DISTRIBUTIONS + 1))
-    assert len(with_distributions(base, fifty).distributions) == MOST_DISTRIBUTIONS
-    with pytest.raises(InputError, match="has more uncertain numbers than 50; got 51"):
-        with_distributions(base, more)
 
 
 def test_two_frictions_of_one_name_cannot_be_uncertain(study_of):

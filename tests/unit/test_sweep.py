@@ -78,14 +78,6 @@ def test_a_bearing_without_a_cage_can_be_swept():
     assert (one.restitution_factor, one.reason) == (None, "")
 
 
-def test_a_table_of_rows():
-    """A row a case, indexed by its number, with the values in front."""
-    table = sweep(STUDY, CASES).to_dataframe()
-    assert list(table.columns[:3]) == ["bearing.contact_angle", "cage.mass", "cage_speed"]
-    assert table["cage.mass"].tolist() == [0.003, 0.004, 0.003, 0.004]
-    assert table.index.tolist() == [0, 1, 2, 3]
-
-
 @pytest.mark.parametrize(
     ("cases", "rule"),
     [

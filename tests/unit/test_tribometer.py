@@ -94,7 +94,7 @@ def test_a_test_that_a_friction_file_cannot_keep_is_refused_by_its_log(tmp_path,
     ("arguments", "words"),
     [
         ({"complete": True}, "a2.csv does not state: material, counterface, medium."),
-        ({"run_in": "5 N"}, "ReductionOptions.run_in_end must be a time"),
+        ({"run_in": "5 N"}, "run_in must be a time"),
     ],
 )
 def test_a_wrong_call_is_refused(folder, arguments, words):

@@ -10,8 +10,9 @@ from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
+from separatrix.friction.file import place
 from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.reduction import ReductionOptions, TestFriction, reduce_log, reduction, steady
+from separatrix.friction.reduction import TestFriction, reduce_log, reduction, steady
 from separatrix.friction.reduction.cycles import oscillation
 from separatrix.present import load, save
 from separatrix.present.tribometer import page_data
@@ -55,7 +56,7 @@ def test_the_cut_can_be_given_in_time_distance_or_cycles():
     one = replace(one, distance=0.5 * one.time, cycles=one.time / one.conditions.cycle_time)
     cycle = one.conditions.cycle_time
     texts = (f"{30 * cycle:.6f} s", f"{15 * cycle:.6f} m", "30 cycles")
-    found = [reduce_log(one, ReductionOptions(run_in_end=text)) for text in texts]
+    found = [reduce_log(one, place(text, "")) for text in texts]
     assert {test.run_in_method for test in found} == {"given"}
     assert [test.run_in_axis for test in found] == ["time", "distance", "cycles"]
     assert found[0].friction == found[1].friction == found[2].friction
@@ -64,7 +65,7 @@ def test_the_cut_can_be_given_in_time_distance_or_cycles():
 
 def test_a_given_cut_is_kept_to_the_row():
     """Without cycles the steady part begins with the first row behind the cut."""
-    test = reduce_log(log(knows_cycle=False), ReductionOptions(run_in_end="100 s"))
+    test = reduce_log(log(knows_cycle=False), ("time", 100.0))
     assert 100.0 <= test.run_in_end < 100.11  # the first row behind it; rows are 0.1 s apart
     assert test.steady_rows == pytest.approx(3000, abs=1)
 
@@ -114,16 +115,14 @@ def test_a_film_that_fails_after_a_fall_is_told_with_the_level_before_it():
 
 def test_a_given_end_behind_a_failed_film_is_told_without_the_advice_to_give_one():
     """An end given for a whole folder hides no failed film; whoever gave it needs no word of how."""
-    flag = told(
-        reduce_log(failed(0.1, 3.125), ReductionOptions(run_in_end="60 s")), "Friction rises from 0.0"
-    )
+    flag = told(reduce_log(failed(0.1, 3.125), ("time", 60.0)), "Friction rises from 0.0")
     assert flag.endswith("Look at the plot; if the film failed, use the log only up to the rise.")
     assert "run_in_end" not in flag
 
 
 def test_a_film_that_fails_behind_the_cut_is_told_as_a_step_where_it_fails():
     """A rise in the steady part is none in running-in, and is not told at the cut."""
-    test = reduce_log(failed(0.3, 2.5), ReductionOptions(run_in_end="60 s"))
+    test = reduce_log(failed(0.3, 2.5), ("time", 60.0))
     assert "at 119." in told(test, "Friction rises in one step by 0.12")  # at 120 s, in spans of 2.03 s
     assert told(test, "Friction rises from") == ""
 
@@ -144,24 +143,8 @@ def test_modulation_within_a_cycle_does_not_shift_the_mean():
     one = log(recipe, friction=friction)
     assert reduce_log(one).cycles == 12
     assert abs(reduce_log(one).friction - 0.12) < 1e-15  # sines over whole turns cancel to rounding
-    rows = reduce_log(one, ReductionOptions(whole_cycles=False)).friction
+    rows = reduce_log(replace(one, conditions=replace(one.conditions, cycle_time=None))).friction
     assert rows - 0.12 == pytest.approx(0.05 * 2 / np.pi * 0.5 / 12.5, rel=0.05)  # 20 rows a turn: 1 %
-
-
-def test_the_cycle_can_be_found_if_asked():
-    """Nobody's cycle is guessed; with the option the line of the spectrum gives it, and that is told."""
-    one = log(replace(QUIET, modulation=0.03), knows_cycle=False)
-    assert reduce_log(one).cycles == 0
-    found = reduce_log(one, ReductionOptions(find_cycle=True))
-    assert told(found, "The cycle was found in the spectrum")
-    assert found.cycles == pytest.approx(197, abs=2)
-
-
-def test_no_cycle_is_found_in_noise():
-    """White noise has no line: that is told, and means are over rows."""
-    test = reduce_log(log(knows_cycle=False), ReductionOptions(find_cycle=True))
-    assert test.cycles == 0
-    assert told(test, "No line exceeds the noise")
 
 
 def test_too_slow_sampling_of_cycles_is_told():
@@ -262,7 +245,7 @@ def test_steps_of_friction_and_wear_are_told():
         friction=lambda t: np.where(t > 240.0, 0.15, 0.12) + 0.004 * _noise(t.size),
         wear_depth=lambda t: 1e-8 * t + 1e-5 * (t > 120.0) + 1e-8 * _noise(t.size),
     )
-    test = reduce_log(one, ReductionOptions(run_in_end="10 s"))
+    test = reduce_log(one, ("time", 10.0))
     assert "at 3.99" in told(test, "Friction rises in one step by 0.03")  # at 240 s, in spans of 1.5 s
     assert told(test, "Wear depth jumps by 10 um at 120.")  # to a span of 2.03 s
     assert not told(reduce_log(log(friction=np.zeros_like(one.time))), "Friction falls")  # nothing but 0
@@ -292,10 +275,9 @@ def test_white_noise_of_few_spans_seldom_passes_for_a_long_correlation():
 
 
 def test_a_test_short_for_its_scatter_is_told():
-    """With fewer effective values than asked for, their number is told."""
-    one = log(replace(QUIET, correlation=0.01), knows_cycle=False)
-    flag = told(reduce_log(one, ReductionOptions(fewest_effective=1e4)), "The steady part holds")
-    assert "fewer than 10000" in flag
+    """With fewer effective values than twenty, their number is told."""
+    one = log(replace(QUIET, correlation=0.03), knows_cycle=False)
+    assert "fewer than 20" in told(reduce_log(one), "The steady part holds 12 independent values")
 
 
 def test_friction_that_no_contact_has_is_told():
@@ -329,7 +311,7 @@ def test_measured_conditions_are_those_of_the_steady_part():
     step = {name: lambda t, a=a: np.where(t < 300.0, a, 2 * a) for name, a in MEASURED.items()}
     whole = Conditions(slip_speed=1.0, normal_force=10.0, temperature=150.0, pressure=1e6, medium="air")
     one = log(conditions=whole, measured=frozenset({*MEASURED, "pressure"}), **step)
-    test = reduce_log(one, ReductionOptions(run_in_end="300 s"))
+    test = reduce_log(one, ("time", 300.0))
     doubled = Conditions(slip_speed=2.0, normal_force=20.0, temperature=300.0, pressure=2e6, medium="air")
     assert test.conditions == doubled
     assert reduce_log(replace(one, measured=frozenset())).conditions == whole  # stated, not measured

@@ -15,7 +15,6 @@ from separatrix.cage import (
     RunOutcome,
     Verdict,
     judge,
-    whirl_probability,
     wilson_interval,
 )
 from separatrix.cage.closed_forms import axial_drive_energy, drive_energy, room
@@ -178,12 +177,6 @@ def test_the_drift_is_that_of_the_runs_that_do_not_whirl():
     mostly = ensemble([[SETTLES] * 3 + [WHIRLS] * 4], drift_rate=rates)
     assert judge(CAGE, mostly).drift_rate == 2.0
     assert judge(CAGE, ensemble([[WHIRLS] * 7], drift_rate=rates)).drift_rate == 0.0
-
-
-def test_whirl_probability_is_the_share_at_each_kick():
-    """One of four, and four of four."""
-    runs = ensemble([[WHIRLS, SETTLES, UNRESOLVED, DRIFTS], [WHIRLS] * 4])
-    assert whirl_probability(runs).tolist() == [0.25, 1.0]
 
 
 def test_the_growth_rate_is_the_mean_at_the_worst_kick_with_students_interval():

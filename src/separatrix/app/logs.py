@@ -19,6 +19,7 @@ from separatrix.figures.style import BLUE, GREY, VERMILION
 from separatrix.friction.file import friction_text
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import RUN_IN_END, ColumnMap
+from separatrix.friction.reduction import RUN_IN_END as WHERE
 from separatrix.friction.reduction import Reduction
 from separatrix.friction.tribometer import OTHERS, ReducedLogs, tribometer
 from separatrix.input_files import is_inside
@@ -132,7 +133,7 @@ def _reduced(
         try:
             return tribometer(paths, run_in=run_in or None, complete=complete, column_map=column_map)
         except InputError as error:
-            if not error.path.startswith("ReductionOptions.") or isinstance(paths, list):
+            if error.path != WHERE or isinstance(paths, list):
                 raise
             raise error.at(f"{paths.name}: the end of running-in") from None
 

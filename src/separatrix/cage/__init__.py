@@ -4,9 +4,7 @@ from separatrix.cage.closed_forms import (
     drift_law,
     impact_restitution,
     linear_critical_friction,
-    linear_roots,
     linear_whirl_frequency,
-    turning_critical_friction,
 )
 from separatrix.cage.ensemble import Ensemble, settings_for
 from separatrix.cage.hard import run_hard_ensemble
@@ -18,7 +16,7 @@ from separatrix.cage.space.analysis import SpaceAnalysis, analyse
 from separatrix.cage.space.ensemble import SpaceEnsemble
 from separatrix.cage.space.history import SpaceHistory, simulate_in_space
 from separatrix.cage.space_body import SpaceBody
-from separatrix.cage.verdict import Judgement, KickCount, judge, whirl_probability, wilson_interval
+from separatrix.cage.verdict import Judgement, KickCount, judge, wilson_interval
 
 __all__ = [
     "CageMotion",
@@ -40,7 +38,6 @@ __all__ = [
     "impact_restitution",
     "judge",
     "linear_critical_friction",
-    "linear_roots",
     "linear_whirl_frequency",
     "longest_duration",
     "run_ensemble",
@@ -48,7 +45,5 @@ __all__ = [
     "settings_for",
     "simulate",
     "simulate_in_space",
-    "turning_critical_friction",
-    "whirl_probability",
     "wilson_interval",
 ]

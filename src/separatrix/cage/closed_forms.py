@@ -20,8 +20,6 @@ from separatrix.study import Guidance
 from separatrix.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from separatrix.ball_traction import BallTraction
     from separatrix.cage.planar import PlanarCage
 
@@ -46,37 +44,20 @@ def linear_critical_friction(cage: PlanarCage) -> Ratio:
     With balls of inertia that of small motions, from the roots of their polynomial.
     """
     if cage.traction is not None:
-        return _inertial_critical_friction(cage, cage.traction, 0.0)
+        return _inertial_critical_friction(cage, cage.traction)
     return math.sqrt(2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count) / cage.race_damping
 
 
-def turning_critical_friction(cage: PlanarCage) -> Ratio:
-    r"""The same with the ball set turning: :math:`f_c/(1 - \sigma\Omega/\omega_0)`, exact [-].
-
-    The root :math:`\lambda = i\omega` of the polynomial above has :math:`\omega = \sigma\omega_0 - \Omega`,
-    whence :math:`f = \kappa/|\omega|`: about :math:`1 + \Omega/\omega_0` times the limit at rest for forward
-    whirl. Infinite where the ball set turns faster than the whirl, or where the balls do not spin (sigma =
-    0).
-    """
-    if cage.traction is not None and cage.friction_sense != 0:
-        return _inertial_critical_friction(cage, cage.traction, cage.friction_sense * cage.cage_speed)
-    apparent = whirl_rate(cage) - cage.friction_sense * cage.cage_speed
-    if apparent <= 0.0 or cage.friction_sense == 0:
-        return math.inf
-    return cage.ball_cage_stiffness / (cage.race_damping * apparent)
-
-
-def _inertial_critical_friction(cage: PlanarCage, law: BallTraction, turning: float) -> Ratio:
-    r"""Friction at which a whirl of small motions lasts among balls of inertia; turning :math:`\sigma\Omega`.
+def _inertial_critical_friction(cage: PlanarCage, law: BallTraction) -> Ratio:
+    r"""Friction at which a whirl of small motions lasts among balls of inertia, ball set at rest.
 
     With :math:`\lambda = i\omega`, :math:`G = m_e^2\omega^2 + C^2`: the real part of the polynomial is
-    :math:`(\omega + \Omega)^2 (G - k m_e) = \omega_0^2 G`, and :math:`f = kC/\omega (G - k m_e)`.
+    :math:`\omega^2 (G - k m_e) = \omega_0^2 G`, and :math:`f = kC/\omega (G - k m_e)`.
     """
     k, C, m, w0 = cage.ball_cage_stiffness, law.slope, law.mass, whirl_rate(cage)
     # in units of omega_0
     mass, inert, held = (m * w0) ** 2, C * C, C * C - k * m
-    whole = np.polymul(np.array([1.0, 2.0 * turning / w0, (turning / w0) ** 2]), np.array([mass, 0.0, held]))
-    rates = np.roots(np.polysub(whole, np.array([mass, 0.0, inert])))
+    rates = np.roots([mass, 0.0, held - mass, 0.0, -inert])
     real = rates[np.abs(rates.imag) < REAL * np.abs(rates)].real
     frictions = k * C / (w0 * real * (mass * real**2 + held))
     return float(min((f for f in frictions if f > 0.0), default=math.inf))
@@ -88,32 +69,6 @@ def drift_law(cage: PlanarCage) -> float:
     The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction.
     """
     return 2.0 * cage.mass * cage.cage_speed**2 / (cage.ball_count * cage.slow_damping)
-
-
-def linear_roots(cage: PlanarCage) -> NDArray[np.complex128]:
-    """Exact rates of the translation without clearance, fastest growing first, shape (3,) [rad/s].
-
-    Four of them with balls of inertia, for motions slow beside the speeds of their law. The real part is the
-    growth, the imaginary part the whirl in the turning frame, positive in the positive sense.
-    """
-    W, w0 = cage.cage_speed, whirl_rate(cage)
-    if cage.traction is not None:
-        # (lambda + i Omega)^2 (lambda D + k) + (1 - i sigma f) omega_0^2 lambda D, D = m_e lambda + C
-        yields = np.array([cage.traction.mass * w0 * w0, cage.traction.slope * w0, 0.0])
-        turned = np.array([1.0, 2.0j * W / w0, -((W / w0) ** 2)])
-        driven = (1.0 - 1j * cage.friction_sense * cage.ball_cage_friction) * yields
-        held = np.polymul(turned, yields + np.array([0.0, 0.0, cage.ball_cage_stiffness]))
-        inertial = np.roots(np.polyadd(held, driven)) * w0
-        return np.asarray(inertial[np.argsort(-inertial.real)], dtype=np.complex128)
-    kappa = cage.ball_cage_stiffness / cage.race_damping
-    drive = (1.0 - 1j * cage.friction_sense * cage.ball_cage_friction) * w0 * w0
-    scale = w0
-    iw = 1j * W / scale
-    square = np.array([1.0, 2.0 * iw, iw * iw])
-    cubic = np.polymul(square, np.array([1.0, kappa / scale]))
-    cubic = np.polyadd(cubic, np.array([drive / scale**2, 0.0]))
-    roots = np.roots(cubic) * scale
-    return np.asarray(roots[np.argsort(-roots.real)], dtype=np.complex128)
 
 
 def room(cage: PlanarCage) -> Metre:

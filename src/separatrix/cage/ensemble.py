@@ -276,11 +276,6 @@ def with_kicks(settings: StabilitySettings, speed: MetrePerSecond) -> StabilityS
     return replace(settings, kicks=settings.kicks or spanned, reference_kick=reference)
 
 
-def with_reference(settings: StabilitySettings) -> StabilitySettings:
-    """Return the settings with the reference kick among the kicks; they must have numbers."""
-    return replace(settings, kicks=tuple(sorted({*settings.kicks, settings.middle_kick})))
-
-
 def _rounded(speed: MetrePerSecond) -> MetrePerSecond:
     return float(f"{speed:.{DIGITS}g}")
 

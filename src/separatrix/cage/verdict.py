@@ -180,11 +180,6 @@ class Judgement:
     impact_rate: PerSecond | None = None
 
 
-def whirl_probability(ensemble: Ensemble) -> Array:
-    """Share of the runs that whirl at each kick, shape (kick,) [-]."""
-    return np.asarray(ensemble.count(RunOutcome.WHIRLS) / ensemble.outcome.shape[1], dtype=np.float64)
-
-
 def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
     """Where the runs from each kick end."""
     runs, found = ensemble.outcome.shape[1], []

@@ -4,38 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Protocol
+from typing import Annotated
 
 import numpy as np
 
-from separatrix.chain.creep import Creep
-from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.contacts import RaceContact
 from separatrix.chain.restitution import Restitution, contact_damping, restitution
 from separatrix.chain.traction import film_compliance, traction_slope
 from separatrix.study import Film, Material
-from separatrix.units import Array, Kilogram, Metre, MetrePerSecond, NewtonPerMetre, Ratio
+from separatrix.units import Array, Kilogram, Metre, NewtonPerMetre, Ratio
 
 FILM_THICKNESSES: tuple[Metre, ...] = (0.0, *(float(h) for h in np.geomspace(1e-9, 1e-5, 41)))
 """Bare, then 1 nm to 10 um, ten to a decade."""
 
 RACE_FRICTIONS: tuple[Ratio, ...] = (0.02, 0.05, 0.1, 0.2, 0.4)
 """From burnished MoS2 in vacuum to nearly unlubricated steel."""
-
-
-class RollingContact(Protocol):
-    """Contact of a ball with a race, as `chain.RaceContact` has it."""
-
-    @property
-    def ellipse(self) -> ContactEllipse:
-        """Hertz contact."""
-
-    @property
-    def creep(self) -> Creep:
-        """Spin and Heathcote creep."""
-
-    @property
-    def rolling_speed(self) -> MetrePerSecond:
-        """V_roul."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,28 +37,14 @@ class LubricationCurve:
 
     film_thickness: Annotated[Array, "m", ("film_thickness",)]
     race_friction: Annotated[Array, "-", ("race_friction",)]
-    restitution_factor: Annotated[
-        Array,
-        "-",
-        (
-            "race_friction",
-            "film_thickness",
-        ),
-    ]
-    restitution_factor_free_spin: Annotated[
-        Array,
-        "-",
-        (
-            "race_friction",
-            "film_thickness",
-        ),
-    ]
+    restitution_factor: Annotated[Array, "-", ("race_friction", "film_thickness")]
+    restitution_factor_free_spin: Annotated[Array, "-", ("race_friction", "film_thickness")]
     film_material: str
 
 
 def lubrication_curve(
-    inner: RollingContact,
-    outer: RollingContact,
+    inner: RaceContact,
+    outer: RaceContact,
     film_material: Material,
     *,
     ball_cage_stiffness: NewtonPerMetre,
@@ -87,7 +56,7 @@ def lubrication_curve(
 
     Parameters
     ----------
-    inner, outer : RollingContact
+    inner, outer : RaceContact
         Contacts of the ball.
     film_material : Material
         Gives the film its shear modulus.
@@ -102,13 +71,17 @@ def lubrication_curve(
     departs from a bonded layer (docs/theory/traction.md). Without race control the ball's spin depends on the
     race friction too; here it is that of the contacts given.
     """
-    found = [
-        [
-            _restitution(inner, outer, _film(film_material, h, f), k=ball_cage_stiffness, mass=cage_mass)
-            for h in film_thicknesses
-        ]
-        for f in race_frictions
-    ]
+
+    def under(h: Metre, f: Ratio) -> Restitution:
+        film = Film(race_friction=f, material=film_material, thickness=h) if h else Film(race_friction=f)
+        compliance = film_compliance(film)
+        dampings = []
+        for at in (inner, outer):
+            slope, _ = traction_slope(at.ellipse, at.creep, race_friction=f, film_compliance=compliance)
+            dampings.append(contact_damping(slope, at.ellipse.load, at.rolling_speed))
+        return restitution(*dampings, ball_cage_stiffness=ball_cage_stiffness, cage_mass=cage_mass)
+
+    found = [[under(h, f) for h in film_thicknesses] for f in race_frictions]
     return LubricationCurve(
         film_thickness=np.array(film_thicknesses),
         race_friction=np.array(race_frictions),
@@ -118,26 +91,3 @@ def lubrication_curve(
         ),
         film_material=film_material.name,
     )
-
-
-def _film(material: Material, thickness: Metre, friction: Ratio) -> Film:
-    if thickness == 0.0:
-        return Film(race_friction=friction)
-    return Film(race_friction=friction, material=material, thickness=thickness)
-
-
-def _restitution(
-    inner: RollingContact, outer: RollingContact, film: Film, *, k: NewtonPerMetre, mass: Kilogram
-) -> Restitution:
-    compliance = film_compliance(film)
-    dampings = [
-        contact_damping(
-            traction_slope(
-                at.ellipse, at.creep, race_friction=film.race_friction, film_compliance=compliance
-            )[0],
-            at.ellipse.load,
-            at.rolling_speed,
-        )
-        for at in (inner, outer)
-    ]
-    return restitution(dampings[0], dampings[1], ball_cage_stiffness=k, cage_mass=mass)

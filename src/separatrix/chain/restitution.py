@@ -122,23 +122,6 @@ def damping_for(restitution_factor: Ratio, stiffness: NewtonPerMetre, mass: Kilo
     return sqrt(stiffness * mass) / (2.0 * damping_ratio_for(restitution_factor))
 
 
-def free_ring_restitution_factor(nominal: Ratio, inertia_ratio: Ratio = 1.0) -> Ratio:
-    r"""Restitution factor felt by a ring that is free to turn, from the nominal one of the whole mass.
-
-    An impact at the pitch radius R moves the ring and turns it: it feels the mass
-    :math:`M / (1 + M R^2/I)`, half of M for a thin ring.
-
-    Parameters
-    ----------
-    nominal : float
-        Restitution factor of the whole cage mass; 0 stays 0, for its damping ratio is not known [-].
-    inertia_ratio : float
-        :math:`I / (M R^2)`, 1 for a thin ring at the pitch radius [-].
-    """
-    share = inertia_ratio / (1.0 + inertia_ratio)
-    return restitution_factor(damping_ratio_for(nominal) * sqrt(share)) if nominal > 0.0 else 0.0
-
-
 def ball_pocket_stiffness(
     ball_diameter: Metre,
     ball_material: Material,

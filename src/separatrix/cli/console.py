@@ -126,11 +126,11 @@ def answer_json(document: Mapping[str, object]) -> None:
 class Life:
     """How far a verb is; called with (done, total) by the work. Its title is verb and study."""
 
-    def __init__(self, title: str) -> None:
-        self.title, self.begun = title, time.monotonic()
+    def __init__(self, title: str, *, quiet: bool = False) -> None:
+        self.title, self.begun, self.quiet = title, time.monotonic(), quiet
         self.started = self.begun
         self.done = self.total = 0
-        self.expected = False
+        self.expected = quiet  # which prints nothing, as `--quiet` requires
 
     def __call__(self, done: int, total: int) -> None:
         """Take in how far the work is; without an estimate beforehand its first part gives one."""
@@ -142,6 +142,8 @@ class Life:
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Print what the work will take, unless that is too short to matter."""
+        if self.quiet:
+            return
         seconds, self.expected = estimate(), True
         self.started = time.monotonic()  # what was compiled for the estimate is not part of a step
         if seconds >= WORTH_PRINTING:
@@ -158,21 +160,11 @@ class Life:
         return f"{self.title}: {steps}, about {in_words(left)} left"
 
 
-class Silent(Life):
-    """Prints nothing, as `--quiet` requires."""
-
-    def __call__(self, done: int, total: int) -> None:
-        """Print nothing."""
-
-    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
-        """Estimate nothing."""
-
-
 @contextlib.contextmanager
 def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
     """Yield what shows how far the work is: on a terminal a bar that disappears at the end, else lines."""
     if quiet or sys.stderr is None:
-        yield Silent(title)
+        yield Life(title, quiet=True)
         return
     if not sys.stderr.isatty():
         with _lines(title) as life:

@@ -32,7 +32,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from scipy.special import expit, ndtri, stdtrit, xlogy
 
-from separatrix.draws import Case, UncertainInput
+from separatrix.draws import Case, UncertainInput, sobol_points
 from separatrix.explore.records import Drivers, Share, TestGain
 from separatrix.study import Friction, Study
 from separatrix.units import Array, Ratio
@@ -223,7 +223,6 @@ def _reducible(friction: Friction, known: UncertainInput, scatter: Ratio) -> Rat
 
 
 BLOCKS, EACH = 8, 32  # independent scramblings, and draws in each
-HALF_STEP = 2.0**-31  # half the step of the points: keeps them off 0 and 1
 
 Model = Callable[[Array], Array]  # from points in the unit cube, (draw, input), to (draw, quantity)
 
@@ -233,18 +232,11 @@ def sobol_shares(
 ) -> list[tuple[tuple[Share, ...], tuple[Share, ...]]]:
     """First-order and total indices of each quantity of a model, by its inputs, largest total first."""
     count = len(names)
-    points = np.concatenate([_points(2 * count, (seed, block)) for block in range(BLOCKS)])
+    points = np.concatenate([sobol_points(EACH, 2 * count, seed, block) for block in range(BLOCKS)])
     a, b = points[:, :count], points[:, count:]
     mixed = [np.where(np.arange(count) == i, b, a) for i in range(count)]
     answers = np.array([model(rows) for rows in (a, b, *mixed)])  # shape (matrix, draw, quantity)
     return [_indices(names, answers[:, :, q]) for q in range(answers.shape[2])]
-
-
-def _points(dimensions: int, seed: tuple[int, int]) -> Array:
-    from scipy.stats import qmc  # dear to import, and only this needs it
-
-    engine = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
-    return np.asarray(engine.random(EACH)) + HALF_STEP
 
 
 def _indices(names: Sequence[str], values: Array) -> tuple[tuple[Share, ...], tuple[Share, ...]]:

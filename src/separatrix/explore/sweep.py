@@ -6,7 +6,6 @@ import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING
 
 from separatrix.cage import CageMotion, Judgement, judge, linear_whirl_frequency
 from separatrix.cage_choice import require_friction
@@ -29,10 +28,6 @@ from separatrix.units import (
     RadianPerSecond,
     Ratio,
 )
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 ROUNDING = 1e-9  # share of their value by which cases that are alike may differ
 
@@ -193,23 +188,6 @@ class Sweep:
     worst: WorstCase | None  # least margin, P(stable), or largest eta; null without an answer
     duty: Duty | None  # time in each verdict; null without shares of time
     complete: bool  # false if an interrupt left cases out
-
-    def to_dataframe(self) -> pd.DataFrame:
-        """One row a case: its values and what came out, in SI units."""
-        import pandas as pd
-
-        return pd.DataFrame(self.rows()).set_index("case")
-
-    def rows(self) -> list[dict[str, object]]:
-        """Cases with the same keys: number, values by the parameters' names, what came out."""
-        names = [one.name for one in self.parameters]
-        out = [f.name for f in fields(SweptCase) if f.name not in ("case", "values")]
-        return [
-            {"case": one.case}
-            | dict(zip(names, one.values, strict=True))
-            | {name: getattr(one, name) for name in out}
-            for one in self.cases
-        ]
 
 
 def sweep(

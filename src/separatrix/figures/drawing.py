@@ -46,7 +46,6 @@ class Shape:
     pocket_clearance: float = 0.0
     land_clearance: float | None = None
     guidance: str = ""
-    round_pocket: bool = False
     pocket_angles: tuple[Radian, ...] = ()
     guessed: frozenset[str] = frozenset()
 
@@ -92,7 +91,6 @@ def shape_of(study: Json) -> Shape:
         pocket_clearance=known("cage", "pocket_clearance") or 0.0,
         land_clearance=gap,
         guidance=guidance,
-        round_pocket=stated(study, "cage", "pocket_shape") == "round",
         pocket_angles=tuple(float(one) for one in angles),
         guessed=frozenset(guessed),
     )

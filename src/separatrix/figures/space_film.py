@@ -43,7 +43,7 @@ TAIL = 40
 """Frames for which the paths stay."""
 
 DISC = ring(1.0, np.linspace(0.0, 2.0 * np.pi, 29)[:-1])
-HOLE, LIGHT = 0.35, np.array([0.3, -0.5, 0.8])
+LIGHT = np.array([0.3, -0.5, 0.8])
 
 MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 """Most frames of a page, and most numbers in all: they keep it under 1 MB."""

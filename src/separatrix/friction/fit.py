@@ -57,14 +57,13 @@ class Estimate:
 class MaterialFit:
     """Friction of one material in one environment.
 
-    `intercept` is ln f at the centre of the tested conditions; `slopes` are exponents, by the name of their
-    condition; `scatter` is the relative standard deviation of a new sample [-].
+    `slopes` are exponents, by the name of their condition; `scatter` is the relative standard deviation of a
+    new sample [-].
     """
 
     tests: tuple[FrictionTest, ...]
     covariates: Covariates
     posterior: Posterior
-    intercept: Estimate
     slopes: Mapping[str, Estimate]
     ranges: Mapping[str, Range | None]
     scatter: Ratio
@@ -175,7 +174,7 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
     groups = {}
     for (key, model), posterior in zip(models.items(), found, strict=True):
         estimates = []
-        for contrast in np.eye(1 + len(chosen[key].names)):
+        for contrast in np.eye(1 + len(chosen[key].names))[1:]:
             value, error = posterior.moments(contrast)
             low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
             estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
@@ -183,8 +182,7 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
             tests=tuple(grouped[key]),
             covariates=chosen[key],
             posterior=posterior,
-            intercept=estimates[0],
-            slopes=dict(zip(chosen[key].names, estimates[1:], strict=True)),
+            slopes=dict(zip(chosen[key].names, estimates, strict=True)),
             ranges={name: tested_range(grouped[key], name) for name in (*CONDITIONS, PRODUCT)},
             scatter=posterior.scatter,
             scatter_source=(OWN if model.freedom >= MANY else few) if model.shows_scatter else others,

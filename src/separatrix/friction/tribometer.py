@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TypeVar
 
 from separatrix.errors import InputError, together
-from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest
+from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest, place
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
 from separatrix.friction.logs.log import RawLog, in_order, joined, of_log
-from separatrix.friction.reduction import Reduction, ReductionOptions, TestFriction, reduction, with_outliers
+from separatrix.friction.reduction import RUN_IN_END, Cut, Reduction, TestFriction, reduction, with_outliers
 from separatrix.measured_friction import FRICTION_LIMIT
 from separatrix.units import printable
 
@@ -69,12 +69,12 @@ def tribometer(
     idle = chosen.unused(files)
     if idle and complete:
         raise together(idle)
-    options = ReductionOptions(run_in_end=run_in)
+    cut = None if run_in is None else place(run_in, RUN_IN_END)
     pool = ThreadPoolExecutor(jobs)
     try:
         read = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
         tests = _tests_of(list(zip(files, read, strict=True)), join=join, complete=complete)
-        reduced = _each(pool, lambda test: _reduced(*test, chosen, options), tests, progress, 500)
+        reduced = _each(pool, lambda test: _reduced(*test, chosen, cut), tests, progress, 500)
     finally:  # nothing new is begun once the work is interrupted
         pool.shutdown(wait=True, cancel_futures=True)
     reductions = with_outliers(reduced)
@@ -193,11 +193,13 @@ def _tests_of(
     return found
 
 
-def _reduced(path: Path, log: RawLog, chosen: ColumnMap, options: ReductionOptions) -> Reduction:
+def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Cut | None) -> Reduction:
     try:
-        return reduction(log, replace(options, run_in_end=options.run_in_end or chosen.run_in_end(path)))
+        if cut is None and (text := chosen.run_in_end(path)) is not None:
+            cut = place(text, RUN_IN_END)
+        return reduction(log, cut)
     except InputError as error:
-        if not error.path.startswith("ReductionOptions."):
+        if error.path != RUN_IN_END:
             raise
         raise error.at(f"{printable(path.name, 150)}: the end of running-in") from None
 

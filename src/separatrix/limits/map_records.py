@@ -176,14 +176,6 @@ class MapQuestion:
     runs: int = 16  # most runs of a point
     adaptive: bool = False  # only points near a change of the answer are run, and a sample of the others
 
-    def __post_init__(self) -> None:
-        if self.x.parameter == self.y.parameter:
-            raise InputError("The map", "needs two different parameters", got=f"{self.x.parameter} twice")
-        if not 0.0 < self.kick < 1e4:
-            raise InputError("The kick of a map", "must be > 0 and < 10000 [m/s]", f"{self.kick:g}")
-        if not 1 <= self.runs <= 1_000_000:
-            raise InputError("The runs of a map", "must lie between 1 and 1000000", got=str(self.runs))
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StabilityMap:

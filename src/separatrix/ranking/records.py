@@ -25,34 +25,8 @@ class NotMeasured:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NotFinished:
-    """A candidate that has no rank, because of an interrupt or a number that is not finite.
-
-    `judgement` is None if it has no verdict either; `reason` states what is missing. The other fields are
-    those of `Ranked`.
-    """
-
-    name: str  # of the candidate
-    friction: Ratio  # mean, as the cage sees it
-    friction_error: Ratio | None  # standard error of the mean
-    friction_deviation: Ratio | None  # standard deviation of a new sample about the mean
-    probability_lowest_friction: Ratio | None = None  # that no other candidate's mean friction is lower
-    friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
-    extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
-    cage_mass: Kilogram  # of a shape that of its material
-    ball_cage_stiffness: NewtonPerMetre  # of its own pocket
-    pocket_clearance: Metre  # running, along the circumference
-    land_clearance: Metre | None  # running, diametral; null without a land
-    restitution_factor: Ratio  # of the chain with its pocket
-    judgement: Judgement | None = None  # null if it has no verdict either
-    over_inputs: Judgement | None = None  # with uncertain inputs drawn; null without
-    other_ball: Judgement | None = None  # by the other model of a ball; null without
-    reason: str  # what is missing
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ranked:
-    """One candidate in one environment, or for its mean friction over all of them."""
+class MeasuredCandidate:
+    """A candidate with a friction, in one environment or over all of them."""
 
     name: str  # of the candidate
     friction: Ratio  # mean, as the cage sees it
@@ -68,6 +42,22 @@ class Ranked:
     pocket_clearance: Metre  # running, along the circumference
     land_clearance: Metre | None  # running, diametral; null without a land
     restitution_factor: Ratio  # of the chain with its pocket
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NotFinished(MeasuredCandidate):
+    """A candidate that has no rank, because of an interrupt or a number that is not finite."""
+
+    judgement: Judgement | None = None  # null if it has no verdict either
+    over_inputs: Judgement | None = None  # with uncertain inputs drawn; null without
+    other_ball: Judgement | None = None  # by the other model of a ball; null without
+    reason: str  # what is missing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ranked(MeasuredCandidate):
+    """A candidate with its threshold and rank."""
+
     restitution_threshold: Ratio  # largest restitution factor at which it is stable
     restitution_threshold_low: Ratio  # lower end of its 95 % interval
     restitution_threshold_high: Ratio  # upper end of its 95 % interval

@@ -226,8 +226,6 @@ class SpaceLook(Look):
     axial_low: float  # extremes
     axial_high: float
     strikes: float  # number
-    pocket_heat: float
-    land_heat: float
 
 
 class SpaceEvidence(Evidence):

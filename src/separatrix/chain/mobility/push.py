@@ -34,15 +34,15 @@ DEEPEST = 8
 """Halvings of the way from one point to the next."""
 
 
-def pushed(ball: HeldBall, found: Modes, speeds: Array, *, is_held: bool = True) -> Array:
+def pushed(ball: HeldBall, found: Modes, speeds: Array) -> Array:
     """F(u) at speeds beyond the free orbit that grow in size from 0, as far as friction balances [N].
 
-    With `is_held` the slowest mode stays; without it the spin relaxes for good.
+    The slowest mode stays; without its pattern the spin relaxes for good.
     """
     unknown, at, forces = np.zeros(6), 0.0, []
     for speed in speeds:
         try:
-            force, unknown = _follow(ball, found, unknown, at, float(speed), is_held)
+            force, unknown = _follow(ball, found, unknown, at, float(speed))
         except ConvergenceError:
             break
         forces.append(force)
@@ -50,14 +50,12 @@ def pushed(ball: HeldBall, found: Modes, speeds: Array, *, is_held: bool = True)
     return np.array(forces)
 
 
-def _follow(
-    ball: HeldBall, found: Modes, start: Array, at: float, speed: float, is_held: bool
-) -> tuple[float, Array]:
+def _follow(ball: HeldBall, found: Modes, start: Array, at: float, speed: float) -> tuple[float, Array]:
     """Force at a speed from the solution at the last one, in as many steps as Newton's method needs."""
     unknown, step, depth = start, speed - at, 0
     while True:
         trial = speed if abs(speed - at) <= abs(step) * (1.0 + 1e-12) else at + step
-        force, there, rest = _newton(ball, found, unknown, trial, is_held)
+        force, there, rest = _newton(ball, found, unknown, trial)
         if rest <= CLOSED:
             unknown, at = there, trial
             if at == speed:
@@ -69,14 +67,11 @@ def _follow(
             raise ConvergenceError(message, DEEPEST, rest)
 
 
-def _newton(
-    ball: HeldBall, found: Modes, unknown: Array, speed: float, is_held: bool
-) -> tuple[float, Array, float]:
+def _newton(ball: HeldBall, found: Modes, unknown: Array, speed: float) -> tuple[float, Array, float]:
     """Newton on (V - V_0, spin - spin_0, drift of the held mode), all scaled; force and unbalance, too."""
-    held = found if is_held and found.right is not None else None
     force, best, rest = 0.0, unknown, np.inf
     for _ in range(25):
-        force, rows, matrix = _equations(ball, held, unknown, speed)
+        force, rows, matrix = _equations(ball, found, unknown, speed)
         rest, best = float(np.abs(rows).max()), unknown
         if not np.isfinite(rest) or rest <= 0.01 * CLOSED:
             break
@@ -87,9 +82,7 @@ def _newton(
     return force, best, rest
 
 
-def _equations(
-    ball: HeldBall, held: Modes | None, unknown: Array, speed: float
-) -> tuple[float, Array, Array]:
+def _equations(ball: HeldBall, found: Modes, unknown: Array, speed: float) -> tuple[float, Array, Array]:
     """Force of a push, what is not yet 0, shape (6,), and its slopes with the unknowns, (6, 6).
 
     Balance in the plane of the contacts, couples less the drift, and the held mode's coordinate.
@@ -104,18 +97,18 @@ def _equations(
     state[3:] += moved[2:] / ball.units[1:]
     balance, slopes = balanced(ball, state)
     drift, row = np.zeros(4), np.zeros(4)
-    if held is not None and held.right is not None and held.left is not None:
-        drift = _over_spin(held.masses @ held.right) * ball.capacity * arm
-        row = _over_spin(held.left)
+    if found.right is not None and found.left is not None:
+        drift = _over_spin(found.masses @ found.right) * ball.capacity * arm
+        row = _over_spin(found.left)
     balance[2:] -= unknown[5] * drift
     matrix = np.zeros((6, 6))
     matrix[:5, :2] = slopes[acts, :2]
     matrix[:5, 2:5] = slopes[acts, 3:] / ball.units[1:]
     matrix[:5, :5] *= units / scales[:, None]
     matrix[2:5, 5] = -drift[1:] / scales[2:]
-    matrix[5, 2:5], matrix[5, 5] = row[1:], float(held is None)
+    matrix[5, 2:5], matrix[5, 5] = row[1:], float(found.right is None)
     coordinate = (row[0] * speed + row[1:] @ moved[2:]) / units[2]
-    last = unknown[5] if held is None else coordinate
+    last = unknown[5] if found.right is None else coordinate
     return -float(balance[2]), np.append(balance[acts] / scales, last), matrix
 
 

@@ -1,15 +1,10 @@
 """Traction of a rolling ball/race contact: strips with film and friction; curve and slope at the origin."""
 
-from separatrix.chain.traction.curve import (
-    TractionCurve,
-    dundurs_coupling,
-    traction_curve,
-    traction_slope,
-)
+from separatrix.chain.traction.curve import TractionCurve, traction_curve, traction_slope
 from separatrix.chain.traction.film import Track, film_compliance, track_of
 from separatrix.chain.traction.layer import BondedLayer, bonded_layer
 from separatrix.chain.traction.profile import Profile, worn_band
-from separatrix.chain.traction.shear import ShearField, direct_traction, shear_field
+from separatrix.chain.traction.shear import ShearField, shear_field
 from separatrix.chain.traction.strip import StripSolution, solve_strip
 
 __all__ = [
@@ -20,8 +15,6 @@ __all__ = [
     "Track",
     "TractionCurve",
     "bonded_layer",
-    "direct_traction",
-    "dundurs_coupling",
     "film_compliance",
     "shear_field",
     "solve_strip",

@@ -32,7 +32,6 @@ from separatrix.chain.traction.master import MasterTable, film_tables, master_tr
 from separatrix.chain.traction.profile import Profile, edges_of, ends_of
 from separatrix.compiled import kernel
 from separatrix.errors import InputError, ValidityWarning
-from separatrix.study import Material
 from separatrix.units import Array, Metre, Ratio, format_quantity
 
 NODES = (200, 400, 800)  # elements a strip of the coarser of two solutions; the finer one has twice as many
@@ -324,16 +323,3 @@ def check_film(**values: float | Profile) -> None:
                 raise InputError(f"traction: {name}", "must be > 0 everywhere [-]", f"{min(value.values):g}")
         elif not 0.0 <= value < math.inf:
             raise InputError(f"traction: {name}", f"must be finite and >= 0 [{units[name]}]", f"{value:g}")
-
-
-def dundurs_coupling(first: Material, second: Material) -> Ratio:
-    """Dundurs' constant beta of two half-planes [-]: 0 for equal bodies; neglected in `traction_curve`.
-
-    beta = [(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2] / (2 [(1 - nu1)/G1 + (1 - nu2)/G2]). Pressure p then strains the
-    two surfaces apart by 2 beta p/E*, as a creep of beta/mu saturation creeps would
-    (docs/theory/traction.md).
-    """
-    G1, G2 = (0.5 * m.elastic_modulus / (1.0 + m.poisson_ratio) for m in (first, second))
-    n1, n2 = first.poisson_ratio, second.poisson_ratio
-    difference = (1.0 - 2.0 * n1) / G1 - (1.0 - 2.0 * n2) / G2
-    return 0.5 * difference / ((1.0 - n1) / G1 + (1.0 - n2) / G2)

@@ -9,18 +9,10 @@ import numpy as np
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.curve import ScaledContact, reach, scaled_contact
-from separatrix.chain.traction.ellipse import (
-    GAUSS_NODES,
-    GAUSS_WEIGHTS,
-    LAM_LOW,
-    LEVELS,
-    panel_edges,
-    strip_places,
-)
+from separatrix.chain.traction.curve import scaled_contact
 from separatrix.chain.traction.layer import BondedLayer, strip_layer
 from separatrix.chain.traction.profile import Profile
-from separatrix.chain.traction.strip import StripSolution, solve_strip, stick_solution, strip_influence
+from separatrix.chain.traction.strip import solve_strip, stick_solution, strip_influence
 from separatrix.units import Array, Ratio
 
 
@@ -106,34 +98,3 @@ def _stuck(creep: Ratio, influence: Array, nodes: int) -> Array:
 def strip_toeplitz(film: Ratio, nodes: int, layer: BondedLayer | None) -> Array:
     """Influences of a strip, shape (2 node - 1,) [-]; `film` is L E* or h over its half length."""
     return strip_influence(nodes, film) if layer is None else strip_layer(layer, film, nodes)
-
-
-def direct_traction(
-    ellipse: ContactEllipse,
-    creep: Creep,
-    *,
-    race_friction: Ratio,
-    film_compliance: float,
-    centre_creep: Ratio,
-    nodes: int = 100,
-    layer: BondedLayer | None = None,
-) -> tuple[Ratio, Ratio]:
-    """Traction coefficient and slope from strips solved one by one: the reference of the master curves [-].
-
-    `centre_creep` is the whole creep on the centre line, free-rolling offset included.
-    """
-    case = scaled_contact(ellipse, creep, race_friction, film_compliance, layer)
-    d, levels = centre_creep / case.saturation, LEVELS * reach(case.tables(200)[0], case.pieces[0, LAM_LOW])
-    theta, share = strip_places(panel_edges(d, case.sigma, case.eta, levels, 1), GAUSS_NODES, GAUSS_WEIGHTS)
-    solved = [_direct_strip(case, d, place, nodes, layer) for place in theta]
-    force = sum(w * s.traction_ratio for w, s in zip(share, solved, strict=True))
-    slope = sum(w / np.cos(p) * s.slope for w, p, s in zip(share, theta, solved, strict=True))
-    return float(race_friction * force), float(case.steepness * slope)
-
-
-def _direct_strip(
-    case: ScaledContact, d: Ratio, theta: float, nodes: int, layer: BondedLayer | None
-) -> StripSolution:
-    half, y = np.cos(theta), np.sin(theta)
-    influence = strip_toeplitz(case.pieces[0, LAM_LOW] / half, nodes, layer)
-    return solve_strip((d + (case.sigma + case.eta * y) * y) / half, influence=influence)

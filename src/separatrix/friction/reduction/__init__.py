@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.friction.file import UNITS, in_words, place
+from separatrix.friction.file import in_words
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import cycles, steady
 from separatrix.friction.reduction.conditions import steady_conditions
@@ -22,51 +21,11 @@ PREFERRED = ("distance", "time", "cycles")  # the abscissa of ends and drift is 
 FEWEST_TESTS = 4  # tests from which an outlier can be detected
 OUTLIER = 1.5  # friction over the median of the others, or the reverse, from which a test may be an outlier
 FAR = 5.0  # distance from that median over the usual one, in standard deviations
-_PERCENT = _check.must(_check.between, 0.0, 100.0)
+RUN_IN_END = "run_in"
+"""Where a given end of running-in is refused."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReductionOptions:
-    """How a log is reduced; the defaults suit most."""
-
-    run_in_end: str | None = None
-    """Where running-in ends, for instance ``"200 m"``, ``"10 min"`` or ``"500 cycles"``; None to find it."""
-    axis: str | None = None
-    """Abscissa of ends and drift; None for the first of distance, time, cycles that the log has."""
-    whole_cycles: bool = True  # whether means are over whole cycles, where those are known
-    find_cycle: bool = False
-    """Whether the length of an unknown cycle is taken from the strongest line of the spectrum."""
-    seizure_ratio: Ratio = field(
-        default=3.0, metadata=_check.must(_check.between, 1.0, 1000.0, open_low=True)
-    )
-    """Friction over its usual level from which, if it stays, a contact counts as seized."""
-    force_loss: Ratio = field(default=0.5, metadata=_check.must(_check.between, 0.0, 1.0, open_high=True))
-    """Share of the usual normal force below which, if it stays, the load counts as lost."""
-    stick_slip_ratio: Ratio = field(default=0.1, metadata=_PERCENT)
-    """Peak to peak over mean friction from which an oscillation is reported."""
-    drift_ratio: Ratio = field(default=0.02, metadata=_PERCENT)
-    """Change over the steady part, over the mean, from which a significant drift is reported."""
-    fewest_effective: Ratio = field(default=20.0, metadata=_check.must(_check.between, 2.0, 1e6))
-    """Independent values below which a test is reported as too short."""
-
-    def __post_init__(self) -> None:
-        _check.settle(self._problems(), _check.each_field(self))
-
-    @property
-    def cut(self) -> tuple[str, float] | None:
-        """Abscissa and place of the given end of running-in, in SI units."""
-        return None if self.run_in_end is None else place(self.run_in_end, "ReductionOptions.run_in_end")
-
-    def _problems(self) -> Iterator[InputError]:
-        try:
-            _ = self.cut
-        except InputError as error:
-            yield error
-        if self.axis is not None and self.axis not in UNITS:
-            yield _check.problem(self, "axis", f"must be one of {', '.join(UNITS)}")
-        for name in ("whole_cycles", "find_cycle"):
-            if not isinstance(getattr(self, name), bool):
-                yield _check.problem(self, name, "must be true or false")
+Cut = tuple[str, float]
+"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction.file.place`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +76,6 @@ class Reduction:
 
     log: RawLog
     test: TestFriction
-    options: ReductionOptions
     rows: slice  # rows between loading and the end of the test
     steady_rows: slice  # rows of the steady part
     along: Array  # abscissa of every row of the log, shape (row,)
@@ -136,44 +94,39 @@ class Reduction:
     events: tuple[Event, ...] = ()
 
 
-def reduce_log(log: RawLog, options: ReductionOptions | None = None) -> TestFriction:
+def reduce_log(log: RawLog, cut: Cut | None = None) -> TestFriction:
     """Return the friction of a log with its error; `reduction` returns also what it was made from."""
-    return reduction(log, options).test
+    return reduction(log, cut).test
 
 
-def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction:
-    """Return the friction of a log, its error, flags and series.
+def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
+    """Return the friction of a log, its error, flags and series; without a cut running-in is looked for.
 
     Raises
     ------
     InputError
-        The log runs backwards along its abscissa, lacks the abscissa of the options, or is too short.
+        The log runs backwards along its abscissa, lacks the abscissa of the cut, or is too short.
     """
-    options = options or ReductionOptions()
-    wanted = [name for name in (options.axis, options.cut and options.cut[0]) if name]
-    for name in wanted:
-        if name not in log.abscissae:
-            cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
-            raise InputError(log.source, f"needs a column of {name}", "none", cure)
-    axis = (wanted or [name for name in PREFERRED if name in log.abscissae])[0]
+    if cut is not None and cut[0] not in log.abscissae:
+        cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
+        raise InputError(log.source, f"needs a column of {cut[0]}", "none", cure)
+    axis = cut[0] if cut else next(name for name in PREFERRED if name in log.abscissae)
     along = cycles.rising(log, axis)
     bad = np.flatnonzero(~np.isfinite(log.friction))
     if bad.size:
         where = f"{log.source}: friction"
         raise InputError(where, "must be a finite number in each row", f"none in row {bad[0] + 1}")
-    events = row_events(log, options.seizure_ratio, options.force_loss)
+    events = row_events(log)
     kept = slice(*kept_rows(events, log.rows))
-    done, cycle, notes = cycles.clock(
-        log, along, whole_cycles=options.whole_cycles, find_cycle=options.find_cycle
-    )
+    done, cycle, notes = cycles.clock(log, along)
     rows = cycles.Stretch(
         source=log.source,
         along=along[kept],
         friction=log.friction[kept],
         done=None if done is None else done[kept],
     )
-    stretch, cut, found, more = _steady(log, rows, kept, options)
-    spans = stretch.spans(cut)
+    stretch, start, found, more = _steady(log, rows, kept, cut)
+    spans = stretch.spans(start)
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
     steady_rows = slice(kept.start + first, kept.start + first + friction.size)
@@ -181,7 +134,6 @@ def reduction(log: RawLog, options: ReductionOptions | None = None) -> Reduction
     one = Reduction(
         log=log,
         test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found, strongest),
-        options=options,
         rows=kept,
         steady_rows=steady_rows,
         along=along,
@@ -242,7 +194,7 @@ def _test(
 
 
 def _steady(
-    log: RawLog, stretch: cycles.Stretch, kept: slice, options: ReductionOptions
+    log: RawLog, stretch: cycles.Stretch, kept: slice, given: Cut | None
 ) -> tuple[cycles.Stretch, float | None, RunIn | None, tuple[str, ...]]:
     """Return the rows, where on their ruler the steady part begins, how that was found, and notes.
 
@@ -252,20 +204,20 @@ def _steady(
     if stretch.done is not None and not stretch.holds_cycles():
         notes = (_few(*stretch.cycles()),)
         stretch = replace(stretch, done=None)
-        if options.cut is None:  # within a cycle friction may change as it likes
+        if given is None:  # within a cycle friction may change as it likes
             return stretch, None, RunIn(end=0.0, rest=0.0, ends=True, level=True), notes
     cut: float | None = None
     found: RunIn | None = None
-    if options.cut is None:
+    if given is None:
         spans = stretch.spans()
         found = run_in(spans.means)
         cut = spans.start + found.end * (spans.end - spans.start) if found.end else None
     else:
-        axis, value = options.cut
+        axis, value = given
         column = cycles.rising(log, axis)[kept]
         if value >= column[-1]:
             rule = f"must lie before the end of the test, {in_words(float(column[-1]), axis)}"
-            raise InputError("ReductionOptions.run_in_end", rule, in_words(value, axis))
+            raise InputError(RUN_IN_END, rule, in_words(value, axis))
         cut = float(stretch.ruler[int(np.searchsorted(column, value))])
     if stretch.done is not None and not stretch.holds_cycles(cut):
         notes = (_few(*stretch.cycles(cut)),)

@@ -123,38 +123,27 @@ class Stretch:
         return float(self.along[min(int(np.searchsorted(self.done, ruled)), self.along.size - 1)])
 
 
-def clock(
-    log: RawLog, along: Array, *, whole_cycles: bool, find_cycle: bool
-) -> tuple[Array | None, float | None, tuple[str, ...]]:
-    """Return the cycles of a log: by its column, by the time of one cycle, or in its spectrum.
+def clock(log: RawLog, along: Array) -> tuple[Array | None, float | None, tuple[str, ...]]:
+    """Return the cycles of a log: by its column, or by the time of one cycle.
 
     That is: cycles done at each row, shape (row,), if means are over whole ones; the length of a cycle in the
     unit of the abscissa; notes. None where that is unknown.
     """
     done: Array | None = None
-    notes: tuple[str, ...] = ()
     if log.cycles is not None:
         done = rising(log, "cycles")
     elif log.time is not None and log.conditions.cycle_time is not None:
         time = rising(log, "time")
         done = np.asarray((time - time[0]) / log.conditions.cycle_time, dtype=float)
-    elif find_cycle:  # the strongest line in the second half of the test
-        half = along.size // 2
-        frequency = oscillation(along[half:], log.friction[half:], None).frequency
-        notes = ("No line exceeds the noise of the spectrum: no cycle was found, and none is averaged over.",)
-        if frequency > 0.0:
-            done = np.asarray((along - along[0]) * frequency, dtype=float)
-            rate = format_number(1.0 / frequency)
-            notes = (f"The cycle was found in the spectrum: one in {rate} of the abscissa's SI unit.",)
     if done is None or done[-1] <= done[0]:
-        return None, None, notes
+        return None, None, ()
     cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))
     rows = float(done.size / max(done[-1] - done[0], 1e-300))
-    if whole_cycles and rows < ROWS_OF_A_CYCLE:
+    if rows < ROWS_OF_A_CYCLE:
         count = format_number(rows, 2)
         note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
-        return None, cycle, (*notes, note)
-    return (done if whole_cycles else None), cycle, notes
+        return None, cycle, (note,)
+    return done, cycle, ()
 
 
 def rising(log: RawLog, axis: str) -> Array:

@@ -15,11 +15,16 @@ from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.conditions import changes
 from separatrix.friction.reduction.cycles import FEWEST, Spans, means
 from separatrix.friction.reduction.steady import LONG
-from separatrix.units import Ratio, format_number, format_quantity
+from separatrix.units import format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.friction.reduction import Reduction
 
+SEIZURE = 3.0  # friction over its usual level from which, if it stays, a contact counts as seized
+FORCE_LOSS = 0.5  # share of the usual normal force below which, if it stays, the load counts as lost
+STICK_SLIP = 0.1  # peak to peak over mean friction from which an oscillation is reported
+DRIFT_SIZE = 0.02  # change over the steady part, over the mean, from which a significant drift is reported
+FEWEST_EFFECTIVE = 20.0  # independent values below which a test is reported as too short
 SMOOTHED = 5  # rows of the running median: fewer in a row are not an event
 LASTING = 0.1  # share of the rows through which a state must last to count as staying, if not to the end
 CHUNKS = 256  # stretches from whose means the usual friction is taken
@@ -46,9 +51,9 @@ class Event:
     usual: float  # what it is compared with
 
 
-def row_events(log: RawLog, seizure_ratio: Ratio, force_loss: Ratio) -> tuple[Event, ...]:
+def row_events(log: RawLog) -> tuple[Event, ...]:
     """Return what single rows show: loading, seizure, spikes, lost load; in the order of the rows."""
-    found = [*_force_events(log, force_loss), *_friction_events(log, seizure_ratio)]
+    found = [*_force_events(log), *_friction_events(log)]
     return tuple(sorted(found, key=lambda event: event.row))
 
 
@@ -59,7 +64,7 @@ def kept_rows(events: tuple[Event, ...], rows: int) -> tuple[int, int]:
     return start, min([row for row in ends if row > start], default=rows)
 
 
-def _friction_events(log: RawLog, seizure_ratio: Ratio) -> Iterator[Event]:
+def _friction_events(log: RawLog) -> Iterator[Event]:
     # the level that a fifth of the stretches of a test stay below: no seizure can lift it
     size = max(SMOOTHED, -(-log.rows // CHUNKS))
     starts = np.arange(0, log.rows, size)
@@ -72,13 +77,13 @@ def _friction_events(log: RawLog, seizure_ratio: Ratio) -> Iterator[Event]:
     # 20 % of a normal distribution are 1.96 and 0.84 standard deviations below its mean
     low, fifth = np.percentile(smooth, (2.5, 20.0))
     noise = float(fifth + (0.84 + NOISE) * (fifth - low) / (1.96 - 0.84))
-    for first, last in _stretches(smooth > max(seizure_ratio * usual, noise)):
+    for first, last in _stretches(smooth > max(SEIZURE * usual, noise)):
         if first == 0 or last - first < SMOOTHED:
             continue
         stays = last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows
         row = first
         if stays:
-            calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (seizure_ratio - 1.0)))
+            calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (SEIZURE - 1.0)))
             row = int(calm[-1]) + 1 if calm.size else first
         kind = "seizure" if stays else "spike"
         yield Event(kind=kind, row=row, size=float(smooth[first:last].max()), usual=usual)
@@ -86,12 +91,12 @@ def _friction_events(log: RawLog, seizure_ratio: Ratio) -> Iterator[Event]:
             return
 
 
-def _force_events(log: RawLog, force_loss: Ratio) -> Iterator[Event]:
+def _force_events(log: RawLog) -> Iterator[Event]:
     force = log.normal_force
     if force is None or not np.isfinite(force).any():
         return
     usual = float(np.nanmedian(np.abs(force)))
-    low = np.abs(force) < force_loss * usual
+    low = np.abs(force) < FORCE_LOSS * usual
     for first, last in _stretches(low):
         least = float(np.nanmin(np.abs(force[first:last])))
         if first == 0:
@@ -237,7 +242,7 @@ def _run_in(one: Reduction) -> Iterator[str]:
 def _drift(one: Reduction) -> Iterator[str]:
     """Report a straight drift that is significant and large enough."""
     mean, test = one.mean, one.test
-    if mean.change_chance >= CHANCE or abs(mean.change) < one.options.drift_ratio * abs(mean.mean):
+    if mean.change_chance >= CHANCE or abs(mean.change) < DRIFT_SIZE * abs(mean.mean):
         return
     size, words = RATES[test.run_in_axis]
     rate, error = format_number(test.drift_rate * size, 3), format_number(test.drift_error * size, 2)
@@ -251,7 +256,7 @@ def _drift(one: Reduction) -> Iterator[str]:
 def _oscillation(one: Reduction) -> Iterator[str]:
     """Report an oscillation that is large enough and exceeds the noise."""
     found, test = one.oscillation, one.test
-    small = found.amplitude < one.options.stick_slip_ratio * abs(test.friction)
+    small = found.amplitude < STICK_SLIP * abs(test.friction)
     if found.amplitude <= 0.0 or small or found.signal_to_noise < CLEAR:
         return
     rate = format_number(found.frequency, 3)
@@ -296,7 +301,7 @@ def _changes(one: Reduction) -> Iterator[str]:
 
 def _length(one: Reduction) -> Iterator[str]:
     """Report a test too short for its correlation, where the error is not mostly that of running-in."""
-    test, fewest = one.test, one.options.fewest_effective
+    test = one.test
     if test.steady_rows < FEW_ROWS:
         yield (
             f"The steady part has {test.steady_rows} rows: too few to see running-in or correlation, and the "
@@ -307,10 +312,10 @@ def _length(one: Reduction) -> Iterator[str]:
             f"Friction is correlated over {100 / (np.pi * LONG):.0f} % of the steady part or longer: the "
             "test is too short for its scatter, and the interval may be too narrow."
         )
-    elif test.effective_count < fewest:
+    elif test.effective_count < FEWEST_EFFECTIVE:
         yield (
             f"The steady part holds {format_number(test.effective_count, 2)} independent values, fewer than "
-            f"{format_number(fewest)}: the test is short for its scatter."
+            f"{format_number(FEWEST_EFFECTIVE)}: the test is short for its scatter."
         )
 
 
