@@ -163,17 +163,15 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
 
 def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
-    other = other_than_candidates(study, asked) if len(question.cages) > 1 else ""
-    notes = [other] if other else []
+    notes = [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
     if question.drawn and (failures := question.drawn.failures):
         share = f"{len(failures)} of {study.stability.runs}"
         notes.append(f"{share} draws of the uncertain inputs make no bearing: {failures[0]}")
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
     reference = question.cages[question.reference]
-    if (missing := no_second(reference)) and any(is_beyond(reference, one) for _, one in judged):
-        notes.append(missing)
-    return (*notes, *within_a_turn(reference), *beyond_motion(reference, moved))
+    notes += [no_second(reference)] if any(is_beyond(reference, one) for _, one in judged) else []
+    return (*filter(None, notes), *within_a_turn(reference), *beyond_motion(reference, moved))
 
 
 def _question(
