@@ -40,6 +40,7 @@ from separatrix.ranking.reason import (
     Second,
     beyond_motion,
     is_beyond,
+    needs_second,
     no_second,
     not_finite,
     not_measured,
@@ -136,7 +137,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
         return Ranking(
             environment=environment,
             candidate=reference_candidate(study, asked).name,
-            restitution_factor=_eta(question, question.reference),
+            restitution_factor=reference.restitution.restitution_factor,
             restitution_factor_free_spin=reference.restitution.restitution_factor_free_spin,
             ball_cage_stiffness=question.reference.stiffness,
             pocket=reference.pocket,
@@ -212,10 +213,6 @@ def _question(
     )
 
 
-def _eta(question: _Question, pocket: Pocket) -> Ratio:
-    return question.cages[pocket].restitution.restitution_factor
-
-
 def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ranking:
     """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
     keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
@@ -283,9 +280,8 @@ def _more(
 
 
 def _wants_second(question: _Question, key: Key, found: Judgement) -> bool:
-    """Whether a verdict of the bearing's own environment rests on forces beyond the range of its ball."""
-    solution = question.cages[key[0]]
-    return key in question.own and is_beyond(solution, found) and not no_second(solution)
+    """Whether a verdict of the bearing's own environment needs one by the other model of a ball."""
+    return key in question.own and needs_second(question.cages[key[0]], found)
 
 
 def _points_of(
@@ -354,7 +350,7 @@ def _row(
 ) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
     pocket = question.pockets[case.candidate]
-    eta = _eta(question, pocket)
+    eta = question.cages[pocket].restitution.restitution_factor
     row = NotFinished(
         name=case.candidate,
         friction=friction.mean,

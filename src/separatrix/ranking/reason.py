@@ -238,6 +238,11 @@ def is_beyond(solution: Solution, judgement: Judgement) -> bool:
     return judgement.largest_contact_force > NOTICED * transmitted_force(solution)
 
 
+def needs_second(solution: Solution, judgement: Judgement) -> bool:
+    """Whether a verdict rests on forces beyond the range of its ball, and the other model can be followed."""
+    return is_beyond(solution, judgement) and not no_second(solution)
+
+
 def no_second(solution: Solution) -> str:
     """Return why there is no verdict by the other model of a ball; empty if there can be one."""
     longest, duration = longest_duration(with_other_ball(solution, 0.0)), solution.stability.duration
