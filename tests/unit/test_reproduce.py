@@ -158,7 +158,7 @@ def test_a_changed_number_is_found(stored, put, capsys):
     assert (found["same"], found["result"]["agreement"]) == (True, "to rounding")
     assert found["result"]["largest_at"] == "inner.load"
     assert main(["reproduce", put(changed(stored[VARIANT], wrong)), "--quiet"]) == 0
-    assert "restitution variant: different: 1 values differ." in capsys.readouterr().out
+    assert "restitution variant: different: 1 value differs." in capsys.readouterr().out
 
 
 def test_a_changed_study_is_found(stored, put, capsys):

@@ -68,8 +68,9 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
     elif first.data is not None and second.data is not None:
         nodes = [of_dataset(one) for one in (first.data, second.data)]
     else:
-        cure = "Name the folders, or two files of one kind."
-        raise InputError(second.path, f"must have a {'document' if first.document else 'dataset'}", cure=cure)
+        kind = ".json" if first.document else ".nc"
+        rule = f"must be a {kind} file or a folder, as {first.path} is a {kind} file"
+        raise InputError(second.path, rule, cure="Name the folders, or two files of one kind.")
     found = list(differing(verb, *nodes))
     rows = sorted((row for row in found if row is not None), key=order)
     verdicts = tuple(row for row in rows if row.is_verdict)

@@ -33,6 +33,7 @@ MOST_CANDIDATES = 1000
 DEFAULT_SCATTER = RankingQuestion.__dataclass_fields__["friction_scatter"].default
 """Relative standard deviation that an unrepeated test is assumed to have [-]."""
 
+FROM_LOGS = " The friction file of your own logs (.toml) is written by `separatrix tribometer`."
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
 
 
@@ -61,7 +62,7 @@ def _of_tests(document: Document, given: Values) -> tuple[tuple[str, ...], tuple
     if name.endswith(".toml"):
         environments, frictions = _of_file(place(document.friction_folder, name), given, scatter)
     else:
-        name = known_name(name, "friction table", "[ranking] friction")
+        name = known_name(name, "friction table", "[ranking] friction", FROM_LOGS)
         found = context().library.friction_table(name)
         environments = found.environments
         frictions = {
