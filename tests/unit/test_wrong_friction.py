@@ -106,7 +106,10 @@ def test_a_wrong_friction_file_is_refused_in_one_line(tmp_path, name):
 WRONG_STUDIES = {
     "no such file": ('friction = "other.toml"', ("[ranking] friction names no file", "other.toml")),
     "a folder": ('friction = "folder.toml"', ("names no file beside the study",)),
-    "no such table": ('friction = "pin-on-disk-77"', ("[ranking] friction is not a friction table", "separatrix tribometer")),
+    "no such table": (
+        'friction = "pin-on-disk-77"',
+        ("[ranking] friction is not a friction table", "separatrix tribometer"),
+    ),
     "a material it lacks": (
         'friction = "friction.toml"\nmaterials = ["Armalom"]',
         ("materials names a material that friction.toml lacks", "Did you mean Armalon?"),

@@ -273,11 +273,8 @@ def _versions(stored: Document, kept: Document) -> Iterator[Version]:
 def _lines(one: Reproduced) -> Iterator[str]:
     found = one.result
     verdict = "the same" if one.same else "different"
-    how = (
-        f", {found.agreement}"
-        if found.same
-        else f": {found.count} value{'s differ' if found.count != 1 else ' differs'}"
-    )
+    differ = "value differs" if found.count == 1 else "values differ"
+    how = f", {found.agreement}" if found.same else f": {found.count} {differ}"
     yield f"{one.verb} {one.name}: {verdict}{how}."
     if found.largest_at is not None:
         yield f"  Largest relative difference {found.largest_difference:.2g}, of {found.largest_at}."
