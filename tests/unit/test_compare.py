@@ -106,8 +106,9 @@ def test_two_answers_of_any_verb_are_compared(folder, capsys, verb):
     assert same["unchanged"] > 10
 
 
-def test_rankings_without_a_common_candidate_have_no_verdict_in_common(folder, capsys, tmp_path):
+def test_rankings_without_a_common_candidate_have_no_verdict_in_common(folder, capsys, tmp_path, monkeypatch):
     """None changed, because none can be compared: said instead of "None."."""
+    monkeypatch.chdir(tmp_path)
     other = json.loads((folder / "second" / "rank.json").read_text())
     for row in [*other["overall"], *(row for one in other["environments"] for row in one["materials"])]:
         row["name"] = f"another {row['name']}"
