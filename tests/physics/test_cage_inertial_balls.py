@@ -225,7 +225,9 @@ def test_critical_friction_of_small_motions_is_a_root_that_neither_grows_nor_die
     assert min(abs(r.real) for r in whirl) < 1e-8 * max(abs(r) for r in whirl)
     light = replace(grip, traction=dampers(900.0, 1e-9))
     heavy_free = replace(grip, traction=None, race_damping=900.0)
-    assert linear_critical_friction(light) == pytest.approx(linear_critical_friction(heavy_free), rel=1e-6)
+    massless = linear_critical_friction(heavy_free)
+    # what mass changes is of the order k m_e/C^2, 3.7e-9 here
+    assert linear_critical_friction(light) == pytest.approx(massless, rel=1e-8)
 
 
 @pytest.mark.parametrize("whirl", [2.7e4, 2.9e4])

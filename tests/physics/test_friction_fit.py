@@ -398,5 +398,5 @@ def test_any_number_of_equal_tests_has_a_fit(groups):
     ]
     fit = fit_friction(tests)
     for one in fit.groups.values():
-        assert one.at().mean == pytest.approx(0.1, rel=1e-12)
+        assert one.at().mean == pytest.approx(0.1, rel=1e-12)  # rounding of a mean of equal logarithms
         assert 0.0 < one.scatter < 0.01

@@ -16,7 +16,14 @@ from separatrix.limits.map import PointFinder, require_cage_friction
 from separatrix.limits.map_records import MapQuestion
 from separatrix.limits.point import linear_guess
 from separatrix.limits.response import GrowthCounter
-from separatrix.ranking.reason import NOTICED, no_second, transmitted_force, with_other_ball
+from separatrix.ranking.reason import (
+    NOTICED,
+    Pocket,
+    no_second,
+    pocket_of,
+    transmitted_force,
+    with_other_ball,
+)
 from separatrix.runner import PART, Runner
 from separatrix.study import StabilitySettings, Study, TractionModel
 from separatrix.units import Ratio, Second
@@ -73,22 +80,22 @@ def expected_verdicts(
 
 
 def expected_ranking(study: Study, *, jobs: int) -> Second:
-    """Time of a ranking: a curve for every pocket stiffness, and a verdict for every friction.
+    """Time of a ranking: a curve for every pocket, and a verdict for every friction.
 
-    Timed is the cage of middle stiffness for all: to time each took a tenth of the ranking.
+    Timed is the middle cage, by mass and stiffness, for all: to time each took a tenth of the ranking.
     """
     asked = ranking_question(study)
     environment = required_environment(study, asked)
-    keys: set[tuple[float, Ratio]] = set()
-    own: set[tuple[float, Ratio]] = set()
-    solutions: dict[float, Solution] = {}
+    keys: set[tuple[Pocket, Ratio]] = set()
+    own: set[tuple[Pocket, Ratio]] = set()
+    solutions: dict[Pocket, Solution] = {}
     for candidate in asked.candidates:
         solution = solve(study, candidate)
-        stiffness = solution.ball_cage_stiffness
-        solutions[stiffness] = solution
-        keys |= {(stiffness, found.mean) for found in solution.frictions.values() if found is not None}
+        pocket = pocket_of(solution)
+        solutions[pocket] = solution
+        keys |= {(pocket, found.mean) for found in solution.frictions.values() if found is not None}
         here = solution.frictions.get(environment)
-        own |= {(stiffness, here.mean)} if here is not None else set()
+        own |= {(pocket, here.mean)} if here is not None else set()
     middle = solutions[sorted(solutions)[len(solutions) // 2]]
     cage, settings = middle.cage_with(0.0), middle.stability
     curves = len(solutions) * expected_curve(cage, settings, jobs=jobs, band=False)

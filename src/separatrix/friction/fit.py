@@ -124,9 +124,8 @@ class MaterialFit:
 
 ASSUMED = "assumed"
 OWN, OTHERS = "its own tests", "tests of other materials, and assumed"
-MANY = (
-    60  # tests beyond the coefficients from which 9 % moves a scatter of 2 to 30 % by about a tenth at most
-)
+MANY = 60
+"""Tests beyond the coefficients from which 9 % moves a scatter of 2 to 30 % by about a tenth at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from separatrix.present.text.sentences import (
     by_verdict,
+    drift,
     drift_sentence,
     margin,
     probability,
@@ -73,7 +74,7 @@ def _evidence(row: Row) -> tuple[str, ...]:
         return (ABSENT,) * 5
     return (
         quantity(row["largest_offset"], "m", 3),
-        significant(row["drift_rate"], 2),
+        drift(row),
         quantity(row["largest_contact_force"], "N", 3),
         quantity(row["largest_land_force"], "N", 3),
         f"{row['runs']} x {quantity(row['longest_run'], 's', 3)}",
@@ -107,8 +108,8 @@ def _stability(kept: Kept) -> Iterator[Block]:
         yield Paragraph(
             f"The cage's friction of {significant(friction, 3)} is {side} {band}: {then}.", "lead"
         )
-    if drift := drift_sentence(bool(found.get("drifts")), found.get("drift_rate_law")):
-        yield Paragraph(drift, "lead")
+    if sentence := drift_sentence(bool(found.get("drifts")), found.get("drift_rate_law")):
+        yield Paragraph(sentence, "lead")
     why = "`rank` was not computed" if found["study"].get("ranking") else "The study has no [ranking]"
     yield Paragraph(f"{why}: no cage materials were compared.", "lead")
     yield from picture(

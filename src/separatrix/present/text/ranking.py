@@ -12,6 +12,7 @@ from separatrix.present.text.cage import by_the_other_ball, judgement_facts, mot
 from separatrix.present.text.chain import basis
 from separatrix.present.text.sentences import (
     by_verdict,
+    drift,
     margin,
     probability,
     rank_texts,
@@ -30,7 +31,6 @@ from separatrix.present.text.tables import (
     quantity,
     rate,
     section,
-    significant,
     table,
 )
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking, Row
@@ -247,12 +247,6 @@ def _ensemble(found: Ranking) -> str:
     return f"{found.runs} runs of {quantity(found.duration, 's')} from each kick, {kick_list(found.kicks)}"
 
 
-def _drift(found: Judgement) -> str:
-    """Return the drift rate; a dash where every run from the worst kick whirls."""
-    worst = next(kick for kick in found.by_kick if kick.kick == found.worst_kick)
-    return ABSENT if worst.whirls == worst.runs else significant(found.drift_rate, 2)
-
-
 def _short_evidence(rows: Sequence[Row]) -> str:
     """Return motion, largest offset, drift, forces and rubbing of every candidate that has a verdict."""
     judged = [found for row in rows if (found := judgement(row)) is not None]
@@ -265,7 +259,7 @@ def _short_evidence(rows: Sequence[Row]) -> str:
             " ".join(str(kick.settles) for kick in found.by_kick),
             quantity(found.largest_offset, "m", 3),
             *([] if flat else [number(1e3 * (found.largest_tilt or 0.0), 1)]),
-            _drift(found),
+            drift(plain(found)),
             quantity(found.largest_contact_force, "N", 3),
             quantity(found.largest_land_force, "N", 3),
             quantity(found.rubbing_power, "W", 2),
@@ -292,7 +286,7 @@ def evidence(rows: Sequence[Row]) -> str:
                 *(row.name, motion_words(found.cage_motion)),
                 *([number(row.restitution_factor, 2)] if len(etas) > 1 else []),
                 rate(found.growth_rate, found.growth_rate_low, found.growth_rate_high),
-                *(number(1e3 * found.largest_offset), _drift(found)),
+                *(number(1e3 * found.largest_offset), drift(plain(found))),
                 *(number(found.largest_contact_force, 0), number(found.largest_land_force, 0)),
                 *(whirl + DIRECTIONS[found.whirl_direction], number(found.whirl_ratio, 2)),
             ]

@@ -36,6 +36,12 @@ def margin(row: Row) -> str:
     return ABSENT if row.get("margin") is None else f"{row['margin']:+.2f}"
 
 
+def drift(row: Row) -> str:
+    """Return the drift rate; a dash where every run from the worst kick whirls."""
+    worst = next(one for one in row["by_kick"] if one["kick"] == row["worst_kick"])
+    return ABSENT if worst["whirls"] == row["runs"] else significant(row["drift_rate"], 2)
+
+
 def verdict(row: Row) -> str:
     """Return the verdict, or why there is none."""
     if row.get("verdict"):
