@@ -1,86 +1,122 @@
-"""What the races do to a ball that is pushed along its orbit: an effective mass and a law of traction."""
+"""What the races do to a ball that is pushed: with one state, a mass and a law of traction; or free, two slip fields."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Annotated
 
 import numpy as np
 
 from separatrix import _check
 from separatrix.errors import InputError
-from separatrix.units import Array, Kilogram, MetrePerSecond, Newton, NewtonSecondPerMetre
-
-MOST_ELEMENTS = 4
-"""Elements of a law, at most."""
+from separatrix.units import (
+    Array,
+    Kilogram,
+    KilogramMetre2,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonSecondPerMetre,
+    PerSecond,
+    Ratio,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BallTraction:
-    r"""A ball pushed along its orbit: :math:`m_e \dot u = N - F(u)` with saturating elements.
+    r"""A ball of one state: :math:`m_e \dot u = N - F(u)`, :math:`F(u) = C u / (1 + (u/v)^4)^{1/4}`.
 
-    :math:`F(u) = \sum_i C_i u / (1 + (u/v_i)^n)^{1/n}`, where u is the speed beyond its free orbit. The law
-    is odd and rises with u; an element of infinite speed is a damper.
+    u is the speed beyond its free orbit. The slip fields of bearings have the knee of this power within 1 to 2 % of
+    the capacity (docs/theory/mobility.md).
 
     Parameters
     ----------
     mass : float
         Effective mass m_e: of the ball with the spin that follows it at once [kg].
-    slopes, speeds : tuple of float
-        C_i [N s/m] and v_i [m/s] of at most `MOST_ELEMENTS` elements.
-    sharpness : int
-        n, 2 or 4: how sharp the knee is from creep to sliding [-].
+    slope, speed : float
+        C [N s/m], and v, above which the races slide [m/s]; infinite for a damper.
 
     Raises
     ------
     InputError
-        A number is not above zero, or slopes and speeds do not pair.
+        A number is not above zero.
     """
 
     mass: Kilogram
-    slopes: Annotated[tuple[NewtonSecondPerMetre, ...], ("element",)]
-    speeds: Annotated[tuple[MetrePerSecond, ...], ("element",)]
-    sharpness: int = 2
+    slope: NewtonSecondPerMetre
+    speed: MetrePerSecond
 
     def __post_init__(self) -> None:
-        _check.settle(_check.positive(self, "mass", 1e-12, 1e3), _refused_elements(self))
-
-    @property
-    def slope(self) -> NewtonSecondPerMetre:
-        """Damping of a slow push, dF/du at rest."""
-        return sum(self.slopes)
+        limits = (("mass", 1e-12, 1e3), ("slope", 1e-12, 1e12))
+        _check.settle(*(_check.positive(self, name, low, high) for name, low, high in limits), _refused_speed(self))
 
     @property
     def capacity(self) -> Newton:
         """Largest force of the law, at infinite speed; infinite with a damper."""
-        return sum(c * v for c, v in zip(self.slopes, self.speeds, strict=True))
+        return self.slope * self.speed
 
     def stiffened(self, ratio: float) -> BallTraction:
-        """Return the law with slopes this many times as large, of the same capacity and mass."""
-        return replace(
-            self,
-            slopes=tuple(c * ratio for c in self.slopes),
-            speeds=tuple(v / ratio for v in self.speeds),
-        )
+        """Return the law with a slope this many times as large, of the same capacity and mass."""
+        return replace(self, slope=self.slope * ratio, speed=self.speed / ratio)
 
     def force(self, speed: Array) -> Array:
         """F(u) at speeds beyond the free orbit, same shape [N]."""
-        u = np.asarray(speed, dtype=np.float64)[..., None]
-        slopes, speeds = np.array(self.slopes), np.array(self.speeds)
-        root = (1.0 + (u / speeds) ** self.sharpness) ** (1.0 / self.sharpness)
-        return np.asarray(np.sum(slopes * u / root, axis=-1))
+        u = np.asarray(speed, dtype=np.float64)
+        return np.asarray(self.slope * u / (1.0 + (u / self.speed) ** 4) ** 0.25)
 
 
-def _refused_elements(law: BallTraction) -> Iterator[InputError]:
-    """Slopes and speeds pair, and are above zero; a speed may be infinite."""
-    if not 0 < len(law.slopes) == len(law.speeds) <= MOST_ELEMENTS:
-        rule = f"must be 1 to {MOST_ELEMENTS} numbers, as many as slopes"
-        yield InputError("BallTraction.speeds", rule, str(len(law.speeds)))
-    if not all(0.0 < c < math.inf for c in law.slopes):
-        yield InputError("BallTraction.slopes", "must each be finite and > 0 [N s/m]", str(law.slopes))
-    if not all(v > 0.0 for v in law.speeds):
-        yield InputError("BallTraction.speeds", "must each be > 0 [m/s]", str(law.speeds))
-    if law.sharpness not in (2, 4):
-        yield InputError("BallTraction.sharpness", "must be 2 or 4 [-]", str(law.sharpness))
+def _refused_speed(law: BallTraction) -> Iterator[InputError]:
+    """The knee is at a speed above zero; it may be infinite."""
+    if not law.speed > 0.0:
+        yield InputError("BallTraction.speed", "must be > 0 [m/s]", str(law.speed))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlipField:
+    """One race at a free ball in steady rolling, seen from the ball.
+
+    Attributes
+    ----------
+    normal_axial, normal_radial : float
+        Direction from the ball's centre to the contact: along the axis and outward [-].
+    limit : float
+        Friction times load [N].
+    semi_major, axis_ratio : float
+        Half the ellipse across the groove [m], and its other half over it [-].
+    slip, pivoting, heathcote : float
+        Slip of the middle along the orbit; half the ellipse times the pivoting speed; slip of the ellipse's ends against
+        its middle from the curvature of the pressed surface [m/s].
+    elastic_slip : float
+        Slip that elastic creep makes of full friction [m/s].
+    """
+
+    normal_axial: Ratio
+    normal_radial: Ratio
+    limit: Newton
+    semi_major: Metre
+    axis_ratio: Ratio
+    slip: MetrePerSecond
+    pivoting: MetrePerSecond
+    heathcote: MetrePerSecond
+    elastic_slip: MetrePerSecond
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeBall:
+    """A ball with its mass, its spin and both races' slip fields; and the fastest rate of its small motions."""
+
+    mass: Kilogram
+    inertia: KilogramMetre2
+    inner: SlipField
+    outer: SlipField
+    fastest_rate: PerSecond
+
+    @property
+    def capacity(self) -> Newton:
+        """Largest force that both races hold, f_BT (Q_i + Q_o) [N]."""
+        return self.inner.limit + self.outer.limit
+
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(x) and x > 0.0 for x in (self.mass, self.inertia, self.capacity, self.fastest_rate)):
+            raise InputError("FreeBall", "must have a mass, an inertia, loads and rates above zero")

@@ -14,31 +14,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.cage.space_body import pocket_plays
-from separatrix.pocket_shape import PocketShape
+from separatrix.pocket_shape import PocketShape, end_half_play
 from separatrix.study import Guidance
 from separatrix.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
 
 if TYPE_CHECKING:
     from separatrix.ball_traction import BallTraction
-    from separatrix.cage.planar import PlanarCage
+    from separatrix.cage.moving_cage import MovingCage
 
 LOWEST_RESTITUTION = 1e-4
 REAL = 1e-9
 """Imaginary over whole of a root that counts as real."""
 
 
-def linear_whirl_frequency(cage: PlanarCage) -> Hertz:
+def linear_whirl_frequency(cage: MovingCage) -> Hertz:
     r"""Whirl without clearance at the stability limit, :math:`\sqrt{Zk/2M}/2\pi`, ball set at rest [Hz]."""
     return whirl_rate(cage) / (2.0 * math.pi)
 
 
-def whirl_rate(cage: PlanarCage) -> float:
+def whirl_rate(cage: MovingCage) -> float:
     r""":math:`\omega_0 = \sqrt{Zk/2M}` [rad/s]."""
     return math.sqrt(cage.ball_count * cage.ball_cage_stiffness / (2.0 * cage.mass))
 
 
-def linear_critical_friction(cage: PlanarCage) -> Ratio:
+def linear_critical_friction(cage: MovingCage) -> Ratio:
     r"""Friction above which it whirls without clearance, :math:`\sqrt{2kM/Z}/C_\mu`, ball set at rest [-].
 
     With balls of inertia that of small motions, from the roots of their polynomial.
@@ -48,7 +47,7 @@ def linear_critical_friction(cage: PlanarCage) -> Ratio:
     return math.sqrt(2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count) / cage.race_damping
 
 
-def _inertial_critical_friction(cage: PlanarCage, law: BallTraction) -> Ratio:
+def _inertial_critical_friction(cage: MovingCage, law: BallTraction) -> Ratio:
     r"""Friction at which a whirl of small motions lasts among balls of inertia, ball set at rest.
 
     With :math:`\lambda = i\omega`, :math:`G = m_e^2\omega^2 + C^2`: the real part of the polynomial is
@@ -63,7 +62,7 @@ def _inertial_critical_friction(cage: PlanarCage, law: BallTraction) -> Ratio:
     return float(min((f for f in frictions if f > 0.0), default=math.inf))
 
 
-def drift_law(cage: PlanarCage) -> float:
+def drift_law(cage: MovingCage) -> float:
     r"""Growth rate of a landless cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
 
     The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction.
@@ -71,17 +70,17 @@ def drift_law(cage: PlanarCage) -> float:
     return 2.0 * cage.mass * cage.cage_speed**2 / (cage.ball_count * cage.slow_damping)
 
 
-def room(cage: PlanarCage) -> Metre:
+def room(cage: MovingCage) -> Metre:
     """Offset that the cage centre has: to its land, or half its pocket clearance without a land [m]."""
     return cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
 
 
-def moving_mass(cage: PlanarCage) -> Kilogram:
+def moving_mass(cage: MovingCage) -> Kilogram:
     """Mass that moves across the axis: of the cage, and in space of the fluid that moves with it [kg]."""
-    return cage.mass + (cage.space.added_mass if cage.space is not None else 0.0)
+    return cage.mass + cage.added_mass
 
 
-def drive_energy(cage: PlanarCage) -> Joule:
+def drive_energy(cage: MovingCage) -> Joule:
     r"""Kinetic energy that the frame and the loads can give the cage over its room, without any kick [J].
 
     .. math:: \tfrac12 M (\Omega w)^2 + 2 w (M g + U \Omega^2) + \tfrac12 (M + J/R^2) (2 V)^2
@@ -100,7 +99,7 @@ def drive_energy(cage: PlanarCage) -> Joule:
     return across + axial_drive_energy(cage)
 
 
-def axial_drive_energy(cage: PlanarCage) -> Joule:
+def axial_drive_energy(cage: MovingCage) -> Joule:
     r"""What gravity along the axis and dynamic unbalance can give a cage in space over its axial room [J].
 
     .. math:: 2 w_z M |g_z| + 2 \frac{w_z}{R} |J_p - J_t| \Omega^2 \delta
@@ -108,36 +107,39 @@ def axial_drive_energy(cage: PlanarCage) -> Joule:
     with half the axial clearance :math:`w_z` of the pockets, and the tilt :math:`w_z/R` that it leaves. 0 in
     the plane, and where no pocket limits the axial motion.
     """
-    body = cage.space
-    if body is None:
+    w = axial_half_play(cage)
+    if not cage.is_in_space:
         return 0.0
-    around, _, beside = pocket_plays(cage, body)
-    w = beside if cage.pocket_shape is PocketShape.SQUARE else around
-    if math.isinf(w):
-        return 0.0
-    leaning = abs(cage.moment_of_inertia - body.transverse_inertia) * body.dynamic_unbalance
-    fall = 0.0 if body.is_axially_held else cage.mass * abs(body.axial_gravity)
-    tilting = 0.0 if body.is_tilt_held else leaning * cage.cage_speed**2 / cage.pitch_radius
+    leaning = abs(cage.moment_of_inertia - cage.transverse) * cage.dynamic_unbalance
+    fall = 0.0 if cage.is_axially_held else cage.mass * abs(cage.axial_gravity)
+    tilting = 0.0 if cage.is_tilt_held else leaning * cage.cage_speed**2 / cage.pitch_radius
     return 2.0 * w * (fall + tilting)
 
 
-def drifts(cage: PlanarCage) -> bool:
+def axial_half_play(cage: MovingCage) -> Metre:
+    """Half the clearance of a pocket along the axis [m]: as wide as along the orbit, unless it is elongated."""
+    if cage.pocket_shape is not PocketShape.SQUARE:
+        return end_half_play(cage)
+    return cage.pocket_clearance / 2.0
+
+
+def drifts(cage: MovingCage) -> bool:
     """Whether the centre is free to drift: no land, and the turning of the ball set or gravity moves it."""
     return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
-def drift_rate_law(cage: PlanarCage) -> float:
+def drift_rate_law(cage: MovingCage) -> float:
     """Rate at which the linear law has a landless cage drift [1/s]; 0 for one with a land."""
     return drift_law(cage) if math.isinf(cage.land_gap) else 0.0
 
 
-def felt_mass(cage: PlanarCage, *, may_turn: bool = True) -> float:
+def felt_mass(cage: MovingCage, *, may_turn: bool = True) -> float:
     """Mass that an impact feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
     turning = cage.pitch_radius**2 / cage.moment_of_inertia if may_turn else 0.0
     return 1.0 / (1.0 / cage.mass + turning)
 
 
-def impact_restitution(cage: PlanarCage, *, may_turn: bool = True) -> Ratio:
+def impact_restitution(cage: MovingCage, *, may_turn: bool = True) -> Ratio:
     r"""Restitution of an impact of the series spring and damper on the mass that it feels [-].
 
     :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})` with :math:`\zeta = \sqrt{km}/2C_\mu`, 0 from :math:`\zeta
@@ -180,23 +182,7 @@ def rebound_damping(restitution: Ratio) -> Ratio:
     return low
 
 
-def time_unit(cage: PlanarCage) -> Second:
+def time_unit(cage: MovingCage) -> Second:
     """Unit of time: a radian of the motion with one ball in touch [s]."""
     R, J = cage.pitch_radius, cage.moment_of_inertia
     return 1.0 / math.sqrt(cage.ball_cage_stiffness * (1.0 / cage.mass + R * R / J))
-
-
-def fastest_rate(cage: PlanarCage) -> float:
-    """Bound on the rates of any motion in contact [1/s]."""
-    turning, k, Z = cage.pitch_radius**2 / cage.moment_of_inertia, cage.ball_cage_stiffness, cage.ball_count
-    squared = Z * k * (turning + 1.0 / cage.mass)
-    rate = 1.0 / cage.race_damping * k
-    if cage.traction is not None:
-        # a ball between its spring and its races; in a ramp these hold it harder at first
-        share = cage.ramp_start if cage.ramp_time > 0.0 else 1.0
-        rate = cage.traction.slope / (cage.traction.mass * share) + math.sqrt(k / cage.traction.mass)
-    if cage.guidance is not Guidance.BALL:
-        K = cage.land_count * cage.land_stiffness
-        squared += K / cage.mass
-        rate += 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(K / cage.mass)
-    return math.sqrt(squared) + rate + abs(cage.cage_speed)

@@ -1,61 +1,51 @@
-"""An ensemble of runs: kicks and seeds, over threads, the same numbers for any number of them."""
+"""An ensemble of runs: from starts, side by side, to one record of evidence, the same for any number of threads."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, TypeVar, cast
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from separatrix.cage.closed_forms import fastest_rate, time_unit
-from separatrix.cage.ending import run_limits
-from separatrix.cage.inputs import balls_of, coefficients
-from separatrix.cage.planar import PlanarCage, RunOutcome, turned_forward
-from separatrix.cage.records import PLAIN, Evidence, Samples, dtype_of, samples_for
-from separatrix.cage.run import books_for, random_start, run_chunk, run_plain_chunk
+from separatrix.cage import outcome, rows, run
+from separatrix.cage.disturbance import ball_places, chosen, random_starts, settings_for, start_states
+from separatrix.cage.moving_cage import turned_forward
+from separatrix.cage.numbers import Kind, Numbers, look_time, numbers_of
+from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.errors import InputError
-from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
-from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio, Second, format_quantity
+from separatrix.units import Array, Second, format_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from numpy.typing import NDArray
 
+    from separatrix.cage.moving_cage import MovingCage
+    from separatrix.study import StabilitySettings
+    from separatrix.units import MetrePerSecond
 
-Scalar = TypeVar("Scalar", bound=np.generic)
+MOST_LOOKS = 100_000
+"""Longest run, in looks: beyond it nobody waits."""
 
-REFERENCE: Ratio = 2.5
-"""Reference kick over the pocket speed [-]."""
-
-SPAN: tuple[Ratio, ...] = (0.2, 1.0, 4.0)
-"""Kicks over the reference kick: 0.5, 2.5 and 10 times the pocket speed [-]."""
-
-LEAST_POCKET_SPEED: MetrePerSecond = 0.02
-"""Pocket speed of a ball set at rest or a pocket without clearance: the reference kick is then 0.05 m/s."""
-
-DIGITS = 3
-"""Significant digits of a default kick, so that a reader can repeat it."""
+FIFTH, LAST = 5, 10
+"""A run is described by its last fifth, or its last ten looks if they are more."""
 
 
-CHUNK_RADIANS = 200_000.0
-"""Time of the runs that one call of the kernel takes, in radians of the fastest motion: some tenths of a
-second of work."""
+class Stop:
+    """A flag that ends runs under way at their next look."""
 
-PER_MASS = (
-    "largest_contact_force",
-    "largest_land_force",
-    "rubbing_force",
-    "end_energy",
-    "pocket_power",
-    "land_power",
-)
-"""Evidence that the kernels give over the mass."""
+    def __init__(self) -> None:
+        self.flag = np.zeros(1, np.int64)
 
-MOST_RADIANS = 1e8
-"""Longest run, in radians of the fastest motion."""
+    def set(self) -> None:
+        """End all runs that look at it."""
+        self.flag[0] = 1
+
+    @property
+    def is_set(self) -> bool:
+        """Whether runs are to end."""
+        return bool(self.flag[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,16 +55,15 @@ class Ensemble:
     Attributes
     ----------
     kicks : ndarray
-        Speeds of the kicks, shape (kick,) [m/s].
+        Speeds of the initial disturbances, shape (kick,) [m/s].
     outcome : ndarray
         `RunOutcome` of each run, integer.
     cause : ndarray
         `Cause` of each run that is unresolved, or that friction on the land keeps moving, integer; else 0.
     end_energy : ndarray
-        Mean kinetic energy in the last part of the run: the last fifth, or the last window by which its end
-        was plain [J].
+        Mean kinetic energy in the last part of the run: its last fifth, or its last ten looks if they are more [J].
     growth_rate : ndarray
-        Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the kick in
+        Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the start in
         a run that ends within five looks [1/s].
     largest_offset : ndarray
         Largest offset of the cage centre [m].
@@ -84,26 +73,37 @@ class Ensemble:
         Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
         squared offset, over the last part; positive as the ball set turns [rad/s].
     drift_rate : ndarray
-        Growth rate of the mean offset late in the run, of a cage free to drift that of its mean place [1/s].
+        Growth rate of the mean offset between the last two fifths, of a cage free to drift that of its mean place [1/s].
     whirl_frequency, whirl_direction : ndarray
         Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
         its sense: 1 forward (as the ball set turns), -1 backward, 0 none.
     largest_contact_force, largest_land_force : ndarray
         Largest force between a ball and its pocket, and between cage and land [N].
-    pocket_impacts, land_impacts : ndarray
-        How often each pocket met its ball, shape (kick, run, ball), and the cage its land.
+    pocket_impacts, pocket_rubbing : ndarray
+        How often each pocket met its ball, and the integral of force times sliding speed [J], shape (kick, run, ball).
+    land_impacts, strike_rate : ndarray
+        How often the cage met its land; impacts of all pockets in the last part [1/s].
     energy_imbalance : ndarray
-        What the ledger of sources and sinks leaves unexplained, over the work done [-].
+        What the ledger of works leaves unexplained, over the work done and the energy at the start [-].
     pocket_power, land_power : ndarray
-        Mean power that the friction of pockets and of the land feeds into the cage in the last part; 0 where
-        the run ended before it was known [W].
+        Mean power that the friction of pockets and of the land feeds into the cage in the last part [W].
     rubbing_force, rubbing_speed : ndarray
         Mean normal force on the land over the last part [N], and the sliding speed there weighted with it
         [m/s].
+    left_ball, left_time : ndarray
+        The first ball, from 1, at which the wall of a pocket ended, and when [s]; 0 where none did.
     followed, judged_from : ndarray
         Time up to which the run was judged, and at which its last part begins [s].
+    largest_tilt, mean_tilt : ndarray or None
+        Angle between the axes of cage and bearing: the largest, and its mean over the last part [rad]. This and all that
+        follow are None where the cage moves in the plane.
+    cone_speed, cone_phase : ndarray or None
+        Mean angular speed of the lean of the axis about the bearing's axis in the fixed frame [rad/s]; angle
+        from the offset of the centre to the lean, the same if 0 [rad].
+    axial_low, axial_high, axial_place, axial_spread : ndarray or None
+        Extremes of the axial place, its mean and standard deviation over the last part [m].
     duration : float
-        Of a run whose end is plain by then; others go on, to `ending.LONGEST` times as long at most [s].
+        Time for which a motion whose end is not plain is followed, if it is longer than 160 looks [s].
     """
 
     kicks: Array
@@ -121,207 +121,308 @@ class Ensemble:
     largest_contact_force: Array
     largest_land_force: Array
     pocket_impacts: NDArray[np.int64]
+    pocket_rubbing: Array
     land_impacts: NDArray[np.int64]
+    strike_rate: Array
     energy_imbalance: Array
     pocket_power: Array
     land_power: Array
     rubbing_force: Array
     rubbing_speed: Array
+    left_ball: NDArray[np.int64]
+    left_time: Array
     followed: Array
     judged_from: Array
+    largest_tilt: Array | None = None
+    mean_tilt: Array | None = None
+    cone_speed: Array | None = None
+    cone_phase: Array | None = None
+    axial_low: Array | None = None
+    axial_high: Array | None = None
+    axial_place: Array | None = None
+    axial_spread: Array | None = None
     duration: Second
 
-    def count(self, outcome: RunOutcome) -> NDArray[np.int64]:
+    def count(self, one: RunOutcome) -> NDArray[np.int64]:
         """Runs that ended so at each kick, shape (kick,)."""
-        return np.asarray(np.count_nonzero(self.outcome == outcome, axis=1), dtype=np.int64)
+        return np.asarray(np.count_nonzero(self.outcome == one, axis=1), dtype=np.int64)
 
 
-def run_in_plane(
-    cage: PlanarCage,
+WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts", "left_ball")
+BY_BALL = ("pocket_impacts", "pocket_rubbing")
+SPACE_ONLY = (
+    *("largest_tilt", "mean_tilt", "cone_speed", "cone_phase"),
+    *("axial_low", "axial_high", "axial_place", "axial_spread"),
+)
+
+
+class Piece(NamedTuple):
+    """Runs of one cage from one size of disturbance: where they start, shape (run, state), and their numbers."""
+
+    cage: MovingCage
+    kick: MetrePerSecond
+    numbers: Numbers
+    states: Array
+    places: Array
+
+
+def piece_of(cage: MovingCage, kick: MetrePerSecond, settings: StabilitySettings, first_run: int, runs: int) -> Piece:
+    """Runs of a cage that turns forward, from one disturbance, by their numbers."""
+    starts = random_starts(cage, settings, first_run, runs)
+    numbers = numbers_of(cage, kick, settings.duration)
+    return Piece(cage, kick, numbers, start_states(cage, kick, starts), ball_places(cage, starts))
+
+
+def run_ensemble(
+    cage: MovingCage,
     settings: StabilitySettings,
     *,
     kicks: Sequence[MetrePerSecond] | None = None,
     runs: int | None = None,
     first_run: int = 0,
     jobs: int = 1,
+    stop: Stop | None = None,
 ) -> Ensemble:
-    """Run the cage in the plane from every kick and seed; one that turns backward as its mirror image.
+    """Run the cage from every disturbance and seed; one that turns backward as its mirror image.
 
     Parameters
     ----------
-    cage, settings, kicks, runs, first_run, jobs
-        As in `cage.run_ensemble`.
+    cage : MovingCage
+        The cage.
+    settings : StabilitySettings
+        Disturbances, runs, duration, scatter and seed.
+    kicks, runs
+        Instead of those of the settings.
+    first_run : int
+        Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
+    jobs : int
+        Threads. The result is the same to the last bit for any number.
+    stop : Stop, optional
+        Ends the runs at their next look; what is returned then has no meaning.
 
     Raises
     ------
     InputError
-        No kick or no run, or a run would need more steps than can be waited for.
+        No disturbance or no run, or a run would need more steps than can be waited for.
     """
     forward = cage.rotation_sense > 0
     cage = turned_forward(cage)
     speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
-    check_length(settings.duration, fastest_rate(cage))
-    starts = random_starts(cage, settings, first_run, runs)
-    evidence = np.zeros((len(speeds), runs), dtype_of(Evidence))
-    hits = np.zeros((len(speeds), runs, cage.ball_count), dtype=np.int64)
-
-    def work(i: int, rows: slice) -> None:
-        run_rows(cage, settings.duration, speeds[i], starts[rows], evidence[i, rows], hits[i, rows])
-
-    size = max(1, int(CHUNK_RADIANS / (settings.duration * fastest_rate(cage))))
-    spread(work, len(speeds), runs, size, jobs)
-    return gathered(speeds, evidence, hits if forward else other_way_round(hits), settings.duration)
-
-
-def run_rows(
-    cage: PlanarCage,
-    duration: Second,
-    kick: MetrePerSecond,
-    starts: Array,
-    evidence: NDArray[np.void],
-    hits: NDArray[np.int64],
-    *,
-    samples: Samples | None = None,
-) -> None:
-    """Run from one kick and every row of `starts`, into rows of `evidence` and `hits`.
-
-    With samples of a history a run goes on to the last of them, even where its end is plain before.
-    """
-    balls, limits = cage.ball_count, run_limits(cage, kick, duration, least=samples is not None)
-    numbers = coefficients(cage, kick)
-    follow = run_plain_chunk if PLAIN in (cast("np.void", numbers).dtype.names or ()) else run_chunk
-    follow(
-        numbers,
-        balls_of(cage),
-        starts,
-        kick * time_unit(cage),
-        books_for(balls, cage.land_lobes, len(starts), limits.most),
-        limits,
-        samples or samples_for(0, balls),
-        cast("Sequence[Evidence]", evidence),
-        hits,
-    )
-    for name in PER_MASS:
-        evidence[name] *= cage.mass
+    check_length(settings.duration, cage)
+    pieces = [piece_of(cage, float(kick), settings, first_run, runs) for kick in speeds]
+    found = follow(pieces, jobs=jobs, stop=stop)
+    if not forward:
+        for name in BY_BALL:
+            found[name] = other_way_round(found[name])
+        left = found["left_ball"]
+        found["left_ball"] = np.where(left > 1, cage.ball_count + 2 - left, left)
+    shaped = {name: values.reshape(len(speeds), runs, *values.shape[1:]) for name, values in found.items()}
+    return Ensemble(kicks=speeds, duration=settings.duration, **shaped)
 
 
-def check_length(duration: Second, fastest: RadianPerSecond) -> None:
-    """Refuse a run of a cage with this fastest motion that would take longer than anyone waits.
-
-    Raises
-    ------
-    InputError
-        It would need too many steps.
-    """
-    longest = MOST_RADIANS / fastest
-    if not duration <= longest:
-        cure = "Shorten the run, or check the cage's stiffnesses, damping, mass and moments of inertia."
-        rule = f"must be at most {format_quantity(longest, 's', 3)} for this cage"
-        raise InputError("[stability] duration", rule, format_quantity(duration, "s"), cure)
-
-
-def random_starts(cage: PlanarCage, settings: StabilitySettings, first_run: int, runs: int) -> Array:
-    """Start of every run, shape (run, 1 + 3 ball).
-
-    Direction of the kick [rad]; then by pocket the lead of its ball [m], half its clearance [m] and its angle
-    [rad]. A lead is random within the clearance, times `ball_scatter`, about the ball's free place among
-    those that a radial load speeds up and slows down; no ball starts beyond its clearance. A pocket out of
-    its place is a lead of its ball.
-    """
-    angles, half = np.array(cage.ball_angles), cage.half_play
-    free = free_leads(cage, angles)
-    starts = np.empty((runs, 1 + 3 * cage.ball_count))
-    for i in range(runs):
-        drawn = random_start(settings.seed, first_run + i, cage.ball_count)
-        play = half - 0.5 * cage.ball_diameter_scatter * drawn[2]
-        lead = settings.ball_scatter * play * drawn[1] + free - cage.pocket_position_scatter * drawn[3]
-        pitch = 2.0 * math.pi / cage.ball_count
-        starts[i, 0] = drawn[0, 0]
-        by_pocket = starts[i, 1:].reshape(3, -1)
-        by_pocket[0] = np.clip(lead, -play, play)
-        by_pocket[1] = play
-        by_pocket[2] = angles + cage.pocket_spacing_scatter * pitch * drawn[4]
-    return starts
-
-
-def free_leads(cage: PlanarCage, angles: Array) -> Array:
-    """Lead of each ball in its free orbit at the start, which a radial load makes uneven [m]."""
-    lead = np.zeros(angles.size)
-    for h, (a, b) in enumerate(zip(cage.orbital_cosines, cage.orbital_sines, strict=True), start=1):
-        lead += (a * np.sin(h * angles) - b * np.cos(h * angles)) / (h * cage.cage_speed)
-    return lead
-
-
-def pocket_speed(cage_speed: RadianPerSecond, pocket_clearance: Metre) -> MetrePerSecond:
-    """Cage speed times half the pocket clearance, but not below `LEAST_POCKET_SPEED`.
-
-    The cage centre has this speed in space where it is half a pocket clearance off the axis.
-    """
-    return max(abs(cage_speed) * 0.5 * pocket_clearance, LEAST_POCKET_SPEED)
-
-
-def settings_for(settings: StabilitySettings, cage: PlanarCage) -> StabilitySettings:
-    """Return the settings with the kicks and the reference kick of this cage; given ones stay."""
-    return with_kicks(settings, pocket_speed(cage.cage_speed, cage.pocket_clearance))
-
-
-def with_kicks(settings: StabilitySettings, speed: MetrePerSecond) -> StabilitySettings:
-    """Return the settings with numbers for kicks and reference kick, from the pocket speed [m/s].
-
-    The reference kick is 2.5 times the pocket speed unless it is given, for any kicks: thresholds and
-    margins belong to the bearing, not to the list. Without kicks they are 0.2, 1 and 4 times it.
-    """
-    reference = settings.reference_kick or _rounded(REFERENCE * speed)
-    spanned = tuple(reference if part == 1.0 else _rounded(part * reference) for part in SPAN)
-    return replace(settings, kicks=settings.kicks or spanned, reference_kick=reference)
-
-
-def _rounded(speed: MetrePerSecond) -> MetrePerSecond:
-    return float(f"{speed:.{DIGITS}g}")
-
-
-def chosen(
-    settings: StabilitySettings, kicks: Sequence[MetrePerSecond] | None, runs: int | None
-) -> tuple[Array, int]:
-    """Kicks, shape (kick,), and runs: those given, else those of the settings; refuse an empty ensemble."""
-    speeds = np.array(settings.kicks if kicks is None else kicks, dtype=np.float64)
-    count = settings.runs if runs is None else runs
-    if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > LEAST_KICK)):
-        rule = f"must be one or more speeds > {LEAST_KICK:g} [m/s]"
-        raise InputError("[stability] kicks", rule, str(speeds.tolist()), NO_KICK)
-    if count < 1:
-        raise InputError("[stability] runs", "must be at least 1 [-]", str(count))
-    return speeds, count
-
-
-def other_way_round(by_ball: NDArray[Scalar]) -> NDArray[Scalar]:
+def other_way_round(by_ball: Array) -> Array:
     """Columns of balls counted the other way round, shape (..., ball); ball 0 stays."""
     return np.roll(by_ball[..., ::-1], 1, axis=-1)
 
 
-def spread(work: Callable[[int, slice], None], kicks: int, runs: int, size: int, jobs: int) -> None:
-    """Do the work on chunks of `size` runs of every kick, by threads; an interrupt waits for these only."""
-    chunks = [
-        (i, slice(first, min(first + size, runs))) for i in range(kicks) for first in range(0, runs, size)
-    ]
-    if jobs <= 1 or len(chunks) == 1:
-        for chunk in chunks:
-            work(*chunk)
-        return
-    pool = ThreadPoolExecutor(max_workers=jobs)
-    try:
-        for done in [pool.submit(work, *chunk) for chunk in chunks]:
-            done.result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+def longest_duration(cage: MovingCage) -> Second:
+    """Duration above which a run of this cage is refused."""
+    return MOST_LOOKS * look_time(cage)
 
 
-def gathered(kicks: Array, evidence: NDArray[np.void], hits: NDArray[np.int64], duration: Second) -> Ensemble:
-    """Record of the evidence of all runs, shape (kick, run)."""
-    names = [field.name for field in fields(Ensemble) if field.name in Evidence.__annotations__]
-    return Ensemble(
-        kicks=kicks,
-        pocket_impacts=hits,
-        duration=duration,
-        **{name: np.ascontiguousarray(evidence[name]) for name in names},
+def check_length(duration: Second, cage: MovingCage) -> None:
+    """Refuse a run of a cage that would take longer than anyone waits.
+
+    Raises
+    ------
+    InputError
+        It would need too many looks.
+    """
+    longest = longest_duration(cage)
+    if not duration <= longest:
+        cure = "Shorten the run, or check the cage's stiffnesses, mass and moments of inertia."
+        rule = f"must be at most {format_quantity(longest, 's', 3)} for this cage"
+        raise InputError("[stability] duration", rule, format_quantity(duration, "s"), cure)
+
+
+def follow(
+    pieces: Sequence[Piece], *, jobs: int = 1, stop: Stop | None = None, real: type = np.float32
+) -> dict[str, Array]:
+    """Evidence of the runs of all pieces, one after the other, by name; each array has shape (run, ...)."""
+    sizes = [len(piece.states) for piece in pieces]
+    at = np.concatenate([[0], np.cumsum(sizes)])
+    groups: dict[Kind, list[int]] = {}
+    for i, piece in enumerate(pieces):
+        groups.setdefault(piece.numbers.kind, []).append(i)
+    whole: dict[str, Array] = {}
+    for kind, members in groups.items():
+        found = follow_alike(kind, [pieces[i] for i in members], jobs, stop or Stop(), real)
+        rows_of = np.concatenate([np.arange(at[i], at[i + 1]) for i in members])
+        for name, values in found.items():
+            whole.setdefault(name, np.zeros((at[-1], *values.shape[1:]), values.dtype))[rows_of] = values
+    return whole
+
+
+CHUNK = 512
+"""Runs that one thread takes at a time, at most: their looks fit into its memory."""
+
+
+def follow_alike(
+    kind: Kind, pieces: Sequence[Piece], jobs: int, stop: Stop, real: type = np.float32
+) -> dict[str, Array]:
+    """Evidence of the runs of pieces of one kind."""
+    of = np.repeat(np.arange(len(pieces)), [len(piece.states) for piece in pieces])
+    states, places = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("states", "places"))
+    count = len(of)
+    size = min(CHUNK, max(rows.LANES, math.ceil(count / jobs / rows.LANES) * rows.LANES))
+    parts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
+
+    def work(part: slice) -> dict[str, Array]:
+        mine = [pieces[i] for i in of[part]]
+        raw = run_rows(kind, [piece.numbers for piece in mine], states[part], places[part], stop, real)
+        return evidence_of(mine, raw)
+
+    if jobs == 1 or len(parts) == 1:
+        found = [work(part) for part in parts]
+    else:
+        with ThreadPoolExecutor(max_workers=jobs) as pool:
+            found = list(pool.map(work, parts))
+    return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+
+
+class Raw(NamedTuple):
+    """What the queue wrote: looks, shape (run, look, column), and per run; samples, shape (sample, column)."""
+
+    looks: Array
+    evidence: Array
+    hits: Array
+    heat: Array
+    record: Array
+
+
+def run_rows(
+    kind: Kind,
+    numbers: Sequence[Numbers],
+    states: Array,
+    places: Array,
+    stop: Stop,
+    real: type = np.float32,
+    *,
+    record: Array | None = None,
+    every: int = 1,
+) -> Raw:
+    """Put runs of one kind through the queue."""
+    count, most = len(numbers), int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers))
+    raw = Raw(
+        looks=np.zeros((count, most, rows.LOOK_COLUMNS), np.float32),
+        evidence=np.zeros((count, run.EVIDENCE_COLUMNS)),
+        hits=np.zeros((count, kind.balls)),
+        heat=np.zeros((count, kind.balls)),
+        record=np.zeros((0, 1)) if record is None else record,
     )
+    raw.evidence[:, run.OUTCOME] = outcome.UNKNOWN
+    given = (np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits"))
+    values, strips, waves, limits = given
+    follow_queue = run.queue(kind.ball, kind.space, kind.leans, kind.hertz, kind.lobes, real)
+    follow_queue(
+        states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits, raw.heat,
+        raw.record, every, stop.flag,
+    )  # fmt: skip
+    return raw
+
+
+def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
+    """Evidence by name from the looks of runs; a row a run."""
+    at, looks = raw.evidence, raw.looks
+    end = np.maximum(at[:, run.JUDGED].astype(np.int64), 1)
+    sums = np.concatenate([np.zeros((len(looks), 1, looks.shape[2])), np.cumsum(looks, axis=1, dtype=np.float64)], axis=1)
+    each = np.arange(len(looks))
+
+    def mean(first: Array, last: Array) -> Array:
+        return (sums[each, last] - sums[each, first]) / (last - first)[:, np.newaxis]
+
+    length = np.array([piece.numbers.numbers[rows.STEP] * piece.numbers.kind.steps for piece in pieces])
+    speed = np.array([piece.cage.cage_speed for piece in pieces])
+    fifth = np.maximum(1, end // FIFTH)
+    part = np.maximum(fifth, np.minimum(end, LAST))
+    last = mean(end - part, end)
+    curl = _share(last[:, rows.CURL], last[:, rows.SPEED_SQUARE])
+    left = at[:, run.FIRST_EXTREME - rows.WATCHED + rows.LEFT_BALL]
+    start = np.array([_energy(piece.cage, piece.kick) for piece in pieces])
+    found = {
+        "outcome": at[:, run.OUTCOME].astype(np.int64),
+        "cause": at[:, run.CAUSE].astype(np.int64),
+        "end_energy": last[:, rows.ENERGY],
+        "growth_rate": _growth(mean, end, fifth, start) / length,
+        "largest_offset": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_OFFSET],
+        "mean_offset": last[:, rows.OFFSET_MEAN],
+        "offset_spread": np.sqrt(np.maximum(0.0, last[:, rows.OFFSET_SQUARE] - last[:, rows.OFFSET_MEAN] ** 2)),
+        "orbit_speed": _share(last[:, rows.SWEPT], last[:, rows.OFFSET_SQUARE]) + speed,
+        "drift_rate": _drift(pieces, mean, end, fifth) / length,
+        "whirl_frequency": np.abs(curl) / (2.0 * math.pi),
+        "whirl_direction": np.sign(curl).astype(np.int64),
+        "largest_contact_force": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_FORCE],
+        "largest_land_force": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_LAND],
+        "pocket_impacts": raw.hits.astype(np.int64),
+        "pocket_rubbing": raw.heat,
+        "land_impacts": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.LAND_STRIKES].astype(np.int64),
+        "strike_rate": last[:, rows.STRIKES],
+        "energy_imbalance": at[:, run.OPEN] / np.maximum(at[:, run.DONE] + start, 1e-300),
+        "pocket_power": last[:, rows.WORK_POCKET] / length,
+        "land_power": last[:, rows.WORK_LAND] / length,
+        "rubbing_force": last[:, rows.PRESSED],
+        "rubbing_speed": _share(last[:, rows.HEATED], last[:, rows.PRESSED]),
+        "left_ball": left.astype(np.int64),
+        "left_time": at[:, run.LEFT_AT],
+        "followed": end * length,
+        "judged_from": (end - part) * length,
+    }
+    if not pieces[0].cage.is_in_space:
+        return found
+    axial = last[:, rows.AXIAL]
+    return found | {
+        "largest_tilt": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_TILT],
+        "mean_tilt": last[:, rows.TILT],
+        "cone_speed": _share(last[:, rows.CONE], last[:, rows.TILT_SQUARE]) + speed,
+        "cone_phase": np.arctan2(last[:, rows.LEAN_CROSS], last[:, rows.LEAN_DOT]),
+        "axial_low": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.AXIAL_LOW],
+        "axial_high": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.AXIAL_HIGH],
+        "axial_place": axial,
+        "axial_spread": np.sqrt(np.maximum(0.0, last[:, rows.AXIAL_SQUARE] - axial**2)),
+    }
+
+
+def _share(part: Array, whole: Array) -> Array:
+    """Part over whole, 0 where there is none."""
+    return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
+
+
+def _energy(cage: MovingCage, kick: MetrePerSecond) -> float:
+    return 0.5 * (cage.mass + cage.added_mass) * kick**2
+
+
+LEAST_SHARE = 2.0**-104
+"""Share of the energy at the start below which speeds are rounding: growth rates count no further."""
+
+
+def _growth(mean, end, fifth, start):  # noqa: ANN001, ANN202
+    """Half the logarithmic growth of the mean energy from half way to the last fifth, per look."""
+    last = mean(end - fifth, end)[:, rows.ENERGY]
+    first = np.maximum(0, end // 2 - fifth // 2)
+    is_short = end < FIFTH
+    before = np.where(is_short, start, mean(first, first + fifth)[:, rows.ENERGY])
+    span = np.where(is_short, end - 0.5 * fifth, end - fifth - first)
+    least = LEAST_SHARE * start
+    return 0.5 * np.log(np.maximum(last, least) / np.maximum(before, least)) / np.maximum(span, 0.5)
+
+
+def _drift(pieces, mean, end, fifth):  # noqa: ANN001, ANN202
+    """Logarithmic growth of the mean offset between the last two fifths, per look; 0 where there is none."""
+    late, early = mean(end - fifth, end), mean(np.maximum(0, end - 2 * fifth), np.maximum(end - fifth, 1))
+    adrift = np.array([piece.numbers.limits[outcome.IS_ADRIFT] > 0.0 for piece in pieces])
+
+    def size(part: Array) -> Array:
+        return np.where(adrift, np.hypot(part[:, rows.MEAN_X], part[:, rows.MEAN_Y]), part[:, rows.OFFSET_MEAN])
+
+    ratio = np.divide(size(late), size(early), out=np.ones(len(end)), where=(size(early) > 0.0) & (size(late) > 0.0))
+    return np.where(end > 1, np.log(ratio) / fifth, 0.0)

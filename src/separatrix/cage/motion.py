@@ -1,340 +1,114 @@
-"""Motion of the cage in the plane from event to event, each mode by its series."""
+r"""The equations of motion: rates of the cage and of every ball, from the forces between them.
+
+A runs' state is one column of numbers (`rows`); these functions take sixteen runs side by side. The plane is space with
+tilt and axial motion held; the ball is a damper, has one state, or is free (`ball`).
+"""
 
 from __future__ import annotations
 
 import math
 
-from separatrix.cage.ending import Look
-from separatrix.cage.events import (
-    LAND_CLEAR,
-    LAND_LEAVE,
-    LAND_PRESS,
-    LAND_TOUCH,
-    NOTHING,
-    PART,
-    SLIDE_START,
-    TOUCH,
-    pocket_change,
-)
-from separatrix.cage.evidence import enter_step, record
-from separatrix.cage.expand import expand
-from separatrix.cage.features import (
-    harmonics,
-    has_hertz_pockets,
-    has_inertia,
-    has_own_series,
-    has_unbalance,
-    is_ramped,
-    needs_frame,
-    needs_rotation,
-)
-from separatrix.cage.land import land_change, land_geometry, slide_speed
-from separatrix.cage.records import (
-    BACKWARD,
-    CLEAR,
-    FORWARD,
-    ORDER,
-    RELEASED,
-    STICK,
-    Balls,
-    Coefficients,
-    Ledger,
-    Pace,
-    Points,
-    Room,
-    Samples,
-    Series,
-    State,
-    Whole,
-)
-from separatrix.cage.series import ROUNDING, centre, fourths, knots, slope, value
-from separatrix.cage.step import longest_step
-from separatrix.cage.traction import begin_moving, dropped, move_balls, rescale_balls
-from separatrix.cage.work import LAST, enter_work
-from separatrix.compiled import inlined_kernel, inner_kernel
-
-HOLD = 1e-9
-"""Share by which the friction that a sticking land needs may exceed what it can carry, by rounding."""
-
-MOST_STEPS, HERTZ_STEPS = 200.0, 30.0
-"""Steps in the time of a radian of the fastest motion: a run that needs more makes no progress in time."""
+from separatrix.cage.ball import REST_PLACE, REST_SPEED, race_force, traction
+from separatrix.cage.frame import cage_rates, place
+from separatrix.cage.land_force import land_forces
+from separatrix.cage.pocket_force import friction_in_plane, level_depth, pocket_depth, pocket_depth_in_plane, pocket_friction
+from separatrix.cage.rows import *  # noqa: F403
+from separatrix.compiled import inlined
 
 
-@inlined_kernel
-def pace_at(p: Coefficients, clock: float) -> Pace:
-    """Share of the full speed at a time, and its rate."""
-    if not is_ramped(p) or clock >= p.ramp_time:
-        return Pace(1.0, 0.0)
-    rise = (1.0 - p.ramp_start) / p.ramp_time
-    return Pace(p.ramp_start + rise * clock, rise)
+@inlined
+def rates(s, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number):
+    """Rates `d` of the state `s`; what the forces add up to in `a`."""
+    place(s, a, p, space)
+    ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz)
+    land_forces(s, a, p, strips, lobe_number, space)
+    cage_rates(s, d, a, p, space)
 
 
-@inner_kernel
-def frame_angle(p: Coefficients, clock: float) -> float:
-    """Angle by which the frame has turned."""
-    # alpha = Omega (t - T) + Omega (lambda_0 T + lambda' T^2 / 2), with T = t within the ramp
-    ramped = min(clock, p.ramp_time)
-    angle = p.turning * (clock - ramped)
-    if ramped > 0.0:
-        rise = (1.0 - p.ramp_start) / p.ramp_time
-        angle += p.turning * ramped * (p.ramp_start + 0.5 * rise * ramped)
-    return angle
-
-
-@inlined_kernel
-def load_state(p: Coefficients, balls: Balls, state: State, w: Series) -> None:
-    """First coefficients of the series from the state."""
-    start = w[0]
-    start.x, start.y, start.vx, start.vy = state.x, state.y, state.vx, state.vy
-    start.s, start.vs = state.s, state.vs
-    if needs_rotation(p):
-        theta = state.s / p.radius
-        start.cos, start.sin = math.cos(theta), math.sin(theta)
-    if has_unbalance(p):
-        start.gx = start.x - p.eccentricity * start.cos
-        start.gy = start.y - p.eccentricity * start.sin
-    if needs_frame(p):
-        angle = frame_angle(p, state.clock)
-        for h in range(max(1, harmonics(p))):
-            start.frame[2 * h] = math.cos((h + 1) * angle)
-            start.frame[2 * h + 1] = math.sin((h + 1) * angle)
-    if has_own_series(p):
-        for i in range(state.touching):
-            j = balls.touching[i]
-            balls.depth[0, j] = balls.penetration[j]
-    if has_inertia(p):
-        begin_moving(balls, state)
-
-
-@inlined_kernel
-def rescale(p: Coefficients, balls: Balls, w: Series, state: State, h: float, pressed: bool) -> None:
-    """Make the step the unit of time of all series that are looked at."""
-    power, count = h, state.touching
-    if has_inertia(p):
-        rescale_balls(w, balls.moving, count + state.coasting, h)
-    for n in range(1, ORDER + 1):
-        t = w[n]
-        t.x, t.y, t.vx, t.vy = t.x * power, t.y * power, t.vx * power, t.vy * power
-        t.s, t.vs = t.s * power, t.vs * power
-        if count > 0 and not has_own_series(p):
-            t.ex, t.ey, t.es, t.kept = t.ex * power, t.ey * power, t.es * power, t.kept * power
-        elif count > 0:
-            for i in range(count):
-                balls.depth[n, balls.touching[i]] *= power
-                balls.force[n, balls.touching[i]] *= power
-        if needs_rotation(p):
-            t.gx, t.gy, t.cos, t.sin = t.gx * power, t.gy * power, t.cos * power, t.sin * power
-        if needs_frame(p):
-            for k in range(max(2, 2 * harmonics(p))):
-                t.frame[k] *= power
-                t.felt[k] *= power
-                t.gone[k] *= power
-        if pressed:
-            t.nx, t.ny, t.depth = t.nx * power, t.ny * power, t.depth * power
-            t.normal, t.tangent, t.sliding = t.normal * power, t.tangent * power, t.sliding * power
-        power *= h
-
-
-@inner_kernel
-def first_sliding(p: Coefficients, w: Series, now: Pace) -> float:
-    """Speed at which the cage's surface slides on the ring's, from the first coefficients."""
-    # v_s = t . dr_g/dt + q [ds/dt - (omega_ring - Omega) R], dr_g/dt = v + epsilon d(theta)/dt (sin, -cos)
-    start = w[0]
-    gx, gy, vx, vy = start.x, start.y, start.vx, start.vy
-    if has_unbalance(p):
-        gx, gy = start.gx, start.gy
-        rate = p.eccentricity * start.vs / p.radius
-        vx, vy = vx + rate * start.sin, vy - rate * start.cos
-    r = math.sqrt(gx * gx + gy * gy)
-    return (gx * vy - gy * vx) / r + p.land_side * (start.vs - p.ring_slide * now.share)
-
-
-@inner_kernel
-def change_land(
-    p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, kind: int, room: Room
-) -> None:
-    """Mode of the land after a change; the state is in the first coefficients of the series."""
-    if kind == LAND_CLEAR:
-        state.land = CLEAR
-        return
-    if kind == LAND_LEAVE:
-        land_geometry(p, w, room.lobes, 0)
-        state.land = RELEASED if w[0].depth > ROUNDING * p.land_gap else CLEAR
-        return
-    if kind in (LAND_TOUCH, LAND_PRESS):
-        sliding = first_sliding(p, w, now)
-        if abs(sliding) > ROUNDING * (abs(w[0].vs) + abs(p.ring_slide)):
-            state.land = FORWARD if sliding > 0.0 else BACKWARD
-            return
-    if kind != SLIDE_START:
-        # Nothing slides: it sticks if |F_t| <= mu P, else it starts to slide
-        state.land = STICK
-        expand(p, balls, w, state, now, room)
-        if abs(w[0].tangent) <= p.land_friction * max(0.0, w[0].normal) * (1.0 + HOLD):
-            return
-    state.land = BACKWARD if w[0].tangent > 0.0 else FORWARD
-
-
-@inlined_kernel
-def kinetic(p: Coefficients, state: State) -> float:
-    """Kinetic energy of the cage in the turning frame, over its mass."""
-    return 0.5 * (state.vx * state.vx + state.vy * state.vy + p.inertia * state.vs * state.vs)
-
-
-@inner_kernel
-def land_energy(p: Coefficients, balls: Balls, state: State, w: Series, room: Room) -> float:
-    """Energy in the land's spring, over the mass."""
-    load_state(p, balls, state, w)
-    land_geometry(p, w, room.lobes, 0)
-    return 0.5 * p.land_stiffness * w[0].depth ** 2
-
-
-@inlined_kernel
-def place_of(p: Coefficients, balls: Balls, state: State, j: int) -> float:
-    """Place of pocket j along the circumference, against a ball without lead."""
-    x, y = state.x, state.y
-    if has_unbalance(p):
-        x -= p.eccentricity * math.cos(state.s / p.radius)
-        y -= p.eccentricity * math.sin(state.s / p.radius)
-    return float(y * balls.cosine[j] - x * balls.sine[j] + state.s)
-
-
-@inlined_kernel
-def finish_step(
-    p: Coefficients,
-    balls: Balls,
-    w: Series,
-    state: State,
-    now: Pace,
-    h: float,
-    end: float,
-    at: Points,
-    ledger: Ledger,
-) -> None:
-    """State at the end of a step, from its series and its motion by `place_points`."""
-    state.x, state.y, state.s = at.x[LAST], at.y[LAST], value(w.s, end)
-    state.vx, state.vy, state.vs = at.vx[LAST], at.vy[LAST], at.vs[LAST]
-    state.clock += end * h
-    if has_own_series(p):
-        for i in range(state.touching):
-            j = balls.touching[i]
-            balls.penetration[j] = value(balls.depth[:, j], end)
-    elif state.touching > 0:
-        ex, ey, es, kept = at.ex[LAST], at.ey[LAST], at.es[LAST], at.kept[LAST]
-        for i in range(state.touching):
-            j = balls.touching[i]
-            q = balls.penetration[j] * kept + ey * balls.cosine[j] - ex * balls.sine[j] + es
-            for k in range(2 * harmonics(p)):
-                q -= balls.drive[k, j] * value(w.felt[:, k], end)
-            balls.penetration[j] = q
-    for k in range(2 * harmonics(p)):
-        gone = value(w.gone[:, k], end)
-        for j in range(balls.play.size):
-            if balls.side[j] == 0:
-                balls.lead[j] += balls.drive[k, j] * gone
-    if has_inertia(p):
-        move_balls(p, balls, state, end, now.share, ledger)
-
-
-@inlined_kernel
-def meet_ball(p: Coefficients, balls: Balls, state: State, ball: int, hits: Whole) -> None:
-    """Put a ball on the list of those in touch; beyond the number of balls: on the negative side."""
-    j = ball % balls.play.size
-    side = 1 if ball < balls.play.size else -1
-    balls.side[j] = side
-    balls.penetration[j] = place_of(p, balls, state, j) - balls.lead[j] - side * balls.play[j]
-    if has_hertz_pockets(p):
-        balls.penetration[j] = side * p.onset
-    balls.touching[state.touching] = j
-    state.touching += 1
-    hits[j] += 1
-    if has_inertia(p):
-        state.coasting = dropped(balls.coasting, state.coasting, j)
-
-
-@inlined_kernel
-def leave_ball(p: Coefficients, balls: Balls, w: Series, state: State, j: int, h: float, end: float) -> None:
-    """Take a ball off the list of those in touch: it stays where it was left, or coasts."""
-    side = balls.side[j]
-    balls.lead[j] = place_of(p, balls, state, j) - side * balls.play[j] - balls.penetration[j]
-    if has_hertz_pockets(p) and not has_inertia(p):
-        follows = state.vy * balls.cosine[j] - state.vx * balls.sine[j] + state.vs
-        for k in range(2 * harmonics(p)):
-            follows -= balls.drive[k, j] * slope(w.gone[:, k], end) / h
-        if side * follows > 0.0:
-            # The pocket follows more slowly than the force at the onset drives the ball: without a distance
-            # between the two it would meet the ball at once, and again without end.
-            balls.lead[j] += 0.5 * side * p.onset
-    balls.side[j] = 0
-    state.touching = dropped(balls.touching, state.touching, j)
-    if has_inertia(p):
-        balls.coasting[state.coasting] = j
-        state.coasting += 1
-
-
-@inner_kernel
-def advance(
-    p: Coefficients,
-    balls: Balls,
-    state: State,
-    w: Series,
-    ledger: Ledger,
-    look: Look,
-    hits: Whole,
-    length: float,
-    ceiling: float,
-    samples: Samples,
-    room: Room,
-) -> bool:
-    """Advance the cage by a time, in place; False if more events came than any motion has.
-
-    Parameters
-    ----------
-    p, balls, state, w
-        The cage, its balls, its state, and series of a step.
-    ledger, look, hits
-        Work since the start, tally of this look, and impacts of every pocket.
-    length, ceiling : float
-        Time to advance, and the kinetic energy above which to stop.
-    samples : Samples
-        History.
-    room : Room
-        Room for a step.
-    """
-    done, taken = 0.0, 0
-    most = MOST_STEPS * (1.0 + length * p.fastest) * (HERTZ_STEPS if has_hertz_pockets(p) else 1.0)
-    gx, gy = centre(p, w)
-    while done < length and kinetic(p, state) < ceiling:
-        taken += 1
-        if taken > most:
-            return False
-        now, land = pace_at(p, state.clock), state.land
-        pressed = land != CLEAR and land != RELEASED
-        load_state(p, balls, state, w)
-        expand(p, balls, w, state, now, room)
-        if pressed and land != STICK:
-            for n in range(ORDER + 1):
-                w[n].sliding = slide_speed(p, w, now, n)
-        h = longest_step(p, balls, w, state, now, length - done)
-        rescale(p, balls, w, state, h, pressed)
-        x, y, s = knots(gx), knots(gy), knots(w.s)
-        off, late_off = fourths(gx, gy, w.s, w.kept, 0.0)
-        end, kind, ball, deepest = pocket_change(p, balls, w, state, h, x, y, s, off, late_off, room)
-        if p.land_side != 0.0:
-            end, kind = land_change(p, w, land, h, end, kind, x, y, max(off, late_off), room)
-        if len(samples.row) > state.rows:
-            record(p, balls, w, state, now, h, end, ledger, samples, room)
-        enter_work(p, balls, w, state, now, h, end, ledger, room)
-        enter_step(p, balls, w, state, deepest, h, end, look, room)
-        finish_step(p, balls, w, state, now, h, end, room.points, ledger)
-        done = length if kind == NOTHING and h == length - done else done + end * h
-        if kind == TOUCH:
-            meet_ball(p, balls, state, ball, hits)
-        elif kind == PART:
-            leave_ball(p, balls, w, state, ball, h, end)
-        elif kind != NOTHING:
-            load_state(p, balls, state, w)
-            change_land(p, balls, w, state, now, kind, room)
-            look.land_hits += kind == LAND_TOUCH
-    look.steps += taken
-    return True
+@inlined
+def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
+    """Rates of every ball, and the sums of what all of them do to the cage."""
+    first, speed_row = (SPACE_STATES if space else PLANE_STATES) * LANES, 2 if space else 1
+    size = (speed_row + (0 if ball == DAMPER else 1 if ball == ONE_STATE else 4)) * LANES
+    for i in range(LX * LANES):
+        a[i] = ZERO
+    for j in range(balls):
+        b, db = s[first + j * size : first + (j + 1) * size], d[first + j * size : first + (j + 1) * size]
+        q = places[j * BALL_ROWS * LANES : (j + 1) * BALL_ROWS * LANES]
+        for l in range(LANES):
+            c, n, radius, lever = q[COSINE * LANES + l], q[SINE * LANES + l], p[RADIUS * LANES + l], p[LEVER * LANES + l]
+            ramp, turning = s[RAMP * LANES + l], s[VS * LANES + l] * p[PER_RADIUS * LANES + l]
+            oz, o_r, ot = ramp * p[SPIN_Z * LANES + l], ramp * p[SPIN_R * LANES + l], ramp * p[SPIN_T * LANES + l]
+            own = ramp * q[OWN_SPEED * LANES + l]  # speed of the free orbit against the ball set
+            u = own
+            if ball > DAMPER:
+                u = own + b[speed_row * LANES + l]
+            if ball == FREE:
+                oz, o_r, ot = oz + b[(speed_row + 1) * LANES + l], o_r + b[(speed_row + 2) * LANES + l], ot + b[(speed_row + 3) * LANES + l]
+            # place and velocity of the pocket less its ball's
+            along = a[GY * LANES + l] * c - a[GX * LANES + l] * n + s[S * LANES + l] - b[LEAD * LANES + l]
+            wr, wt = ZERO, ZERO
+            vr, vt = a[GVX * LANES + l] * c + a[GVY * LANES + l] * n, a[GVY * LANES + l] * c - a[GVX * LANES + l] * n + s[VS * LANES + l]
+            vz = ZERO
+            if space:
+                across = s[Z * LANES + l] - radius * (a[GB * LANES + l] * c - a[GA * LANES + l] * n) - b[GROOVE * LANES + l]
+                wr, wt = a[GWA * LANES + l] * c + a[GWB * LANES + l] * n, a[GWB * LANES + l] * c - a[GWA * LANES + l] * n
+                vz = s[VZ * LANES + l] - radius * wt
+                depth, nz, nt = pocket_depth(along, across, q[AROUND * LANES + l], q[APART * LANES + l], p[BESIDE * LANES + l])
+            elif leans:
+                depth, nz, nt = pocket_depth_in_plane(along, q[APART * LANES + l], p[LEAN_SINE * LANES + l], p[LEAN_COSINE * LANES + l])
+            else:
+                depth, nt = level_depth(along, q[APART * LANES + l])
+            push = p[STIFFNESS * LANES + l] * depth
+            if hertz:
+                push *= math.sqrt(depth)
+            if space or leans:
+                # velocity of the wall where it is touched: (w_r, w_t, turning) x lever n
+                pr, pt, pz = vr + lever * (wt * nz - turning * nt), vt - lever * wr * nz, vz + lever * wr * nt
+                ez, er, et, slide = pocket_friction(
+                    p[FRICTION * LANES + l] * push, nz, nt, lever, oz, o_r, ot, u, pz, pr, pt, p[PIVOT * LANES + l]
+                )
+                ft, fz = push * nt + et, push * nz + ez
+                a[RUB * LANES + l] += ez * pz + er * pr + et * pt
+            else:
+                pr = vr - lever * turning * nt
+                er, slide = friction_in_plane(p[FRICTION * LANES + l] * push, nt, lever, oz, o_r, pr, p[PIVOT * LANES + l])
+                ft = push * nt
+                a[RUB * LANES + l] += er * pr
+            q[FORCE * LANES + l], q[HEAT * LANES + l] = push, push * slide
+            a[FX * LANES + l] += er * c - ft * n
+            a[FY * LANES + l] += er * n + ft * c
+            a[FS * LANES + l] += ft - lever * p[PER_RADIUS * LANES + l] * nt * er
+            uz = ZERO
+            if space:
+                uz = -(fz + p[GROOVE_STIFFNESS * LANES + l] * (b[GROOVE * LANES + l] - REST_PLACE)) * p[PER_GROOVE * LANES + l]
+                db[GROOVE * LANES + l] = uz
+                mr, mt = lever * (nt * ez - nz * et), lever * nz * er - radius * fz
+                a[FZ * LANES + l] += fz
+                a[MX * LANES + l] += mr * c - mt * n
+                a[MY * LANES + l] += mr * n + mt * c
+            if ball == DAMPER:
+                u = own - ft * ramp * p[PER_DAMPING * LANES + l]
+            db[LEAD * LANES + l] = u
+            a[DRIVE * LANES + l] += push * (nz * uz + nt * u) if space else push * nt * u
+            if ball == ONE_STATE:
+                v = b[speed_row * LANES + l]
+                slope, per = p[SLOPE * LANES + l], ONE / ramp
+                bent = traction(v * per, slope, p[PER_KNEE * LANES + l]) + slope * v * (per - ONE)
+                # its linear part at full speed, -HELD_RATE v, is taken exactly by the step
+                db[speed_row * LANES + l] = p[HELD_RATE * LANES + l] * REST_SPEED - (ft + bent) * p[PER_BALL_MASS * LANES + l]
+            if ball == FREE:
+                per, v = ONE / ramp, b[speed_row * LANES + l]
+                per_m, per_j, per_r = p[PER_OWN_MASS * LANES + l], p[PER_OWN_INERTIA * LANES + l], p[PER_RADIUS * LANES + l]
+                om, w = ramp * p[ORBIT * LANES + l], v * per_r
+                dz, dr, dt = b[(speed_row + 1) * LANES + l], b[(speed_row + 2) * LANES + l], b[(speed_row + 3) * LANES + l]
+                turn, side = (dz + w) * per, lever * ot * per
+                fi, zi, ri, ti = race_force(p, INNER, l, v * per, turn, dr * per, side, lever)
+                fo, zo, ro, to = race_force(p, OUTER, l, v * per, turn, dr * per, side, lever)
+                gain = (fi + fo - ft) * per_m
+                base_r, base_t = ramp * p[SPIN_R * LANES + l], ramp * p[SPIN_T * LANES + l]
+                db[speed_row * LANES + l] = gain
+                db[(speed_row + 1) * LANES + l] = (lever * nt * er + zi + zo) * per_j - gain * per_r
+                couple_r, couple_t = (lever * (nz * et - nt * ez), -lever * nz * er) if space or leans else (ZERO, ZERO)
+                db[(speed_row + 2) * LANES + l] = (couple_r + ri + ro) * per_j + (om + w) * ot - om * base_t
+                db[(speed_row + 3) * LANES + l] = (ti + to + couple_t) * per_j - (om + w) * o_r + om * base_r

@@ -1,390 +1,273 @@
-"""One run from a kick to its outcome and its evidence, and a chunk of such runs."""
+"""Runs side by side: sixteen at a time from their starts to their ends, a queue that refills the lanes.
+
+A run's bits depend on its own numbers and start only: not on its lane, its neighbours, the number of threads.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import lru_cache
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from functools import cache
 
 import numpy as np
-from numpy.random import Generator, Philox
 
-from separatrix.cage.ending import (
-    BY_NOTHING,
-    FEWEST_LOOKS,
-    SETTLES,
-    UNKNOWN,
-    UNRESOLVED,
-    Limits,
-    Look,
-    Memory,
-    after_look,
-    book,
-    mean_energy,
-    with_cause,
-)
-from separatrix.cage.evidence import pocket_energy
-from separatrix.cage.features import is_gripped
-from separatrix.cage.motion import advance, kinetic, land_energy
-from separatrix.cage.planar import Cause, RunOutcome
-from separatrix.cage.records import (
-    CLEAR,
-    Balls,
-    Coefficients,
-    Evidence,
-    Ledger,
-    Room,
-    Samples,
-    Series,
-    State,
-    Whole,
-    records,
-    room_for,
-    series,
-)
-from separatrix.cage.traction import ball_energy
-from separatrix.cage.work import total_work
-from separatrix.compiled import kernel, part, unfolded
-from separatrix.units import Array
+from separatrix.cage.frame import place
+from separatrix.cage.motion import rates
+from separatrix.cage.outcome import FROM, LEAST, MOST, RAMP_START, RAMP_TIME, TURNS_AT, UNKNOWN, end_of_motion
+from separatrix.cage.pocket_force import pocket_depth, pocket_depth_in_plane
+from separatrix.cage.rows import *  # noqa: F403
+from separatrix.cage.step import held_stage_end, hold, stage_end
+from separatrix.compiled import inlined, part, queue_kernel
 
-DRIFTS = int(RunOutcome.DRIFTS)
-IMPACTS, NOT_FINITE = int(Cause.IMPACTS), int(Cause.NOT_FINITE)
-NOTHING_LEFT = 2.0**-104
-"""Share of the kick's energy below which speeds are rounding: growth rates count no further."""
+OUTCOME, CAUSE, ENDED, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(8)
+EVIDENCE_COLUMNS = FIRST_EXTREME + EXTREMES_END - WATCHED
 
 
-class Scales(Protocol):
-    """What the kernels' numbers are in SI units, of a cage in the plane or in space."""
-
-    @property
-    def unit(self) -> float:
-        """Unit of time [s]."""
-
-    @property
-    def turning(self) -> float:
-        """Angle by which the frame turns in it."""
-
-
-class Books(NamedTuple):
-    """What a chunk of runs keeps while it runs: a row a run, but for the looks and the room of a step."""
-
-    state: Sequence[State]
-    ledger: Sequence[Ledger]
-    memory: Sequence[Memory]
-    looks: Sequence[Look]  # as many as a run may have, and one more that stays zero
-    series: Series
-    room: Room
+@inlined
+def orbit_speeds(s, places, waves, turned, balls):
+    """Speed of every ball's free orbit beyond that of the ball set, at its azimuth in space."""
+    for j in range(balls):
+        q = places[j * BALL_ROWS * LANES : (j + 1) * BALL_ROWS * LANES]
+        for l in range(LANES):
+            c, n = s[TURN_COSINE * LANES + l], s[TURN_SINE * LANES + l]
+            turned[l] = q[COSINE * LANES + l] * c - q[SINE * LANES + l] * n
+            turned[LANES + l] = q[SINE * LANES + l] * c + q[COSINE * LANES + l] * n
+            turned[2 * LANES + l], turned[3 * LANES + l] = turned[l], turned[LANES + l]
+            q[OWN_SPEED * LANES + l] = ZERO
+        for h in range(waves.size // (HARMONIC_NUMBERS * LANES)):
+            row = h * HARMONIC_NUMBERS * LANES
+            for l in range(LANES):
+                c, n = turned[2 * LANES + l], turned[3 * LANES + l]
+                q[OWN_SPEED * LANES + l] += waves[row + l] * c + waves[row + LANES + l] * n
+                turned[2 * LANES + l] = c * turned[l] - n * turned[LANES + l]
+                turned[3 * LANES + l] = n * turned[l] + c * turned[LANES + l]
 
 
-def books_for(balls: int, lobes: int, runs: int, most: int) -> Books:
-    """Books of a number of runs with at most `most` looks each."""
-    return Books(
-        state=records(State, runs),
-        ledger=records(Ledger, runs),
-        memory=records(Memory, runs),
-        looks=records(Look, most + 1),
-        series=series(),
-        room=room_for(balls, lobes),
-    )
+@inlined
+def kinetic_energy(s, p, l, space):
+    """Kinetic energy of the cage in the turning frame."""
+    e = p[MASS * LANES + l] * (s[VX * LANES + l] ** 2 + s[VY * LANES + l] ** 2)
+    e += s[VS * LANES + l] ** 2 / p[PER_TURNING * LANES + l]
+    if space:
+        e += p[AXIAL_MASS * LANES + l] * s[VZ * LANES + l] ** 2
+        e += p[TRANSVERSE * LANES + l] * (s[WX * LANES + l] ** 2 + s[WY * LANES + l] ** 2)
+    return HALF * e
 
 
 @part
-def held_energy(p: Coefficients, balls: Balls, state: State) -> float:
-    """Energy in the pockets' springs and in the speeds of the balls, over the mass."""
-    held = ball_energy(p, balls, state)
-    for i in range(state.touching):
-        held += pocket_energy(p, balls.penetration[balls.touching[i]])
-    return held
+def spring_energy(s, a, p, places, l, balls, one, space, hertz):
+    """Energy in the pockets' springs of the run in lane l; `a` has its geometric centre."""
+    total, states = 0.0, SPACE_STATES if space else PLANE_STATES
+    for j in range(balls):
+        b, q = (states + j * one) * LANES + l, j * BALL_ROWS * LANES + l
+        c, e = places[q + COSINE * LANES], places[q + SINE * LANES]
+        along = a[GY * LANES + l] * c - a[GX * LANES + l] * e + s[S * LANES + l] - s[b]
+        if space:
+            across = s[Z * LANES + l] - p[RADIUS * LANES + l] * (a[GB * LANES + l] * c - a[GA * LANES + l] * e) - s[b + LANES]
+            depth = pocket_depth(along, across, places[q + AROUND * LANES], places[q + APART * LANES], p[BESIDE * LANES + l])[0]
+        else:
+            depth = pocket_depth_in_plane(along, places[q + APART * LANES], p[LEAN_SINE * LANES + l], p[LEAN_COSINE * LANES + l])[0]
+        k = p[STIFFNESS * LANES + l]
+        total += 0.4 * k * depth * depth * math.sqrt(depth) if hertz else 0.5 * k * depth * depth
+    return total
 
 
-@unfolded
-def watch(
-    p: Coefficients,
-    balls: Balls,
-    state: State,
-    ledger: Ledger,
-    memory: Memory,
-    looks: Sequence[Look],
-    w: Series,
-    hits: Whole,
-    limits: Limits,
-    samples: Samples,
-    room: Room,
-) -> tuple[int, int, int]:
-    """Run, look by look, until the end of the motion is plain.
+@inlined
+def watch(s, d, a, p, places, w, balls, i, space):
+    """Add what is watched of this moment to the sums of the look and the extremes of the run."""
+    for l in range(LANES):
+        x, y, gvx, gvy = a[GX * LANES + l], a[GY * LANES + l], a[GVX * LANES + l], a[GVY * LANES + l]
+        vx, vy, push = s[VX * LANES + l], s[VY * LANES + l], a[LAND_N * LANES + l]
+        square = x * x + y * y
+        r = math.sqrt(square)
+        w[ENERGY * LANES + l] += kinetic_energy(s, p, l, space)
+        w[OFFSET_MEAN * LANES + l] += r
+        w[OFFSET_SQUARE * LANES + l] += square
+        w[SWEPT * LANES + l] += x * gvy - y * gvx
+        w[CURL * LANES + l] += vx * d[VY * LANES + l] - vy * d[VX * LANES + l]
+        w[SPEED_SQUARE * LANES + l] += vx * vx + vy * vy
+        w[PRESSED * LANES + l] += push
+        w[HEATED * LANES + l] += a[LAND_HEAT * LANES + l]
+        w[MEAN_X * LANES + l] += x
+        w[MEAN_Y * LANES + l] += y
+        on = ONE if push > ZERO else ZERO
+        w[LAND_STRIKES * LANES + l] += max(on - w[LAND_TOUCHED * LANES + l], ZERO)
+        w[LAND_TOUCHED * LANES + l] = on
+        w[PEAK_LAND * LANES + l] = max(w[PEAK_LAND * LANES + l], push)
+        w[PEAK_OFFSET * LANES + l] = max(w[PEAK_OFFSET * LANES + l], r)
+        if space:
+            ta, tb, z = a[GA * LANES + l], a[GB * LANES + l], s[Z * LANES + l]
+            tilt2 = ta * ta + tb * tb
+            tilt = math.sqrt(tilt2)
+            w[TILT * LANES + l] += tilt
+            w[TILT_SQUARE * LANES + l] += tilt2
+            w[CONE * LANES + l] += ta * a[GWB * LANES + l] - tb * a[GWA * LANES + l]
+            w[LEAN_CROSS * LANES + l] -= x * ta + y * tb
+            w[LEAN_DOT * LANES + l] += x * tb - y * ta
+            w[AXIAL * LANES + l] += z
+            w[AXIAL_SQUARE * LANES + l] += z * z
+            w[PEAK_TILT * LANES + l] = max(w[PEAK_TILT * LANES + l], tilt)
+            w[AXIAL_LOW * LANES + l] = min(w[AXIAL_LOW * LANES + l], z)
+            w[AXIAL_HIGH * LANES + l] = max(w[AXIAL_HIGH * LANES + l], z)
+    for j in range(balls):
+        q, number = places[j * BALL_ROWS * LANES : (j + 1) * BALL_ROWS * LANES], np.float32(j + 1)
+        for l in range(LANES):
+            push = q[FORCE * LANES + l]
+            on = ONE if push > ZERO else ZERO
+            strike = max(on - q[TOUCHING * LANES + l], ZERO)
+            q[TOUCHING * LANES + l] = on
+            q[HITS * LANES + l] += strike
+            q[RUBBED * LANES + l] += q[HEAT * LANES + l]
+            w[STRIKES * LANES + l] += strike
+            w[PEAK_FORCE * LANES + l] = max(w[PEAK_FORCE * LANES + l], push)
+            out = a[GX * LANES + l] * q[COSINE * LANES + l] + a[GY * LANES + l] * q[SINE * LANES + l]
+            beyond = max(out - p[MARGIN_IN * LANES + l], -out - p[MARGIN_OUT * LANES + l])
+            was, when = w[LEFT_BALL * LANES + l], w[LEFT_STEP * LANES + l]
+            is_first = (beyond > ZERO) & (push > ZERO) & (was == ZERO)
+            w[LEFT_BALL * LANES + l] = number if is_first else was
+            w[LEFT_STEP * LANES + l] = i if is_first else when
 
-    Returns
-    -------
-    tuple
-        Outcome, the looks up to which it was judged, and the cause.
+
+@part
+def frame_angle(time, limits):
+    """Angle of the frame against the housing, and the share of its speed that the ball set has."""
+    rise, start = limits[RAMP_TIME], limits[RAMP_START]
+    if time >= rise:
+        return limits[TURNS_AT] * (time - 0.5 * (1.0 - start) * rise), 1.0
+    share = start + (1.0 - start) * time / rise
+    return limits[TURNS_AT] * 0.5 * (start + share) * time, share
+
+
+@cache
+def queue(ball: int, space: bool, leans: bool = False, hertz: bool = False, lobe_number: int = 0, real: type = np.float32) -> Callable[..., None]:
+    """Compiled queue of runs of a cage among balls of this level, in the plane or in space.
+
+    It closes over plain numbers only, so that its code can be kept.
     """
-    outcome, judged, touches, touched = UNKNOWN, 0, 0, state.touching > 0
-    for i in range(limits.most):
-        looks[i] = looks[limits.most]  # type: ignore[index]
-        look = looks[i]
-        book(looks, i, ledger, -1.0, limits)
-        going, beat = True, 0
-        while going and beat < limits.beats and kinetic(p, state) < limits.grown:
-            going = advance(p, balls, state, w, ledger, look, hits, limits.beat, limits.grown, samples, room)
-            beat += 1
-        book(looks, i, ledger, 1.0, limits)
-        energy = kinetic(p, state)
-        held = held_energy(p, balls, state)
-        if not (going and np.isfinite(energy + look.kinetic)):
-            cause = NOT_FINITE if going else IMPACTS
-            return (UNRESOLVED, i + 1, cause) if outcome == UNKNOWN else (outcome, judged, BY_NOTHING)
-        hit = int(np.sum(hits))
-        met = bool(state.touching > 0 or hit > touches)
-        touches = hit
-        touched = touched or met or look.land_hits > 0.0
-        if outcome == UNKNOWN:
-            judged = i + 1
-            outcome = after_look(
-                looks, i, energy + held, met, touched, state.clock >= p.ramp_time, limits, memory
-            )
-        if outcome != UNKNOWN and (i + 1 >= limits.least or energy + held > limits.grown):
-            break
-    return with_cause(looks, outcome, judged, touched, limits)
+    states, one = cage_states(space=space), ball_states(ball, space=space)
+    speed_row = 2 if space else 1
+
+    def run_queue(start, numbers, places_of, strips_of, waves_of, limits, steps, looks, evidence, hits_of, heat_of, record, every, stop):  # noqa: E501
+        balls = hits_of.shape[1]
+        size = (states + one * balls) * LANES
+        s, t, d, q = np.zeros(size, real), np.zeros(size, real), np.zeros(size, real), np.zeros(size, real)
+        a, w = np.zeros(SUMS * LANES, real), np.zeros(EXTREMES_END * LANES, real)
+        p = np.ones(NUMBERS * LANES, real)
+        places, strips = np.zeros(balls * BALL_ROWS * LANES, real), np.zeros(strips_of.shape[1] * LANES, real)
+        waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
+        before, first_rate, middle_rate = np.zeros(balls * LANES, real), np.zeros(balls * LANES, real), np.zeros(balls * LANES, real)
+        h = np.zeros(size, real)
+        run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
+        next_run = live = row = 0
+        while stop[0] == 0:
+            for l in range(LANES):
+                if look[l] < 0:  # a lane that is done takes the next run
+                    run[l], look[l] = -1, 0
+                    s[l::LANES] = ZERO
+                    w[l::LANES] = ZERO
+                    places[l::LANES] = ZERO
+                    if next_run < start.shape[0]:
+                        run[l], next_run, live = next_run, next_run + 1, live + 1
+                        take(start[run[l]], s, l)
+                        take(numbers[run[l]], p, l)
+                        h[l::LANES] = p[STEP * LANES + l]
+                        for j in range(balls):
+                            for i in range(BALL_NUMBERS):
+                                places[(j * BALL_ROWS + i) * LANES + l] = places_of[run[l], j * BALL_NUMBERS + i]
+                        take(strips_of[run[l]], strips, l)
+                        take(waves_of[run[l]], waves, l)
+                        w[AXIAL_LOW * LANES + l] = w[AXIAL_HIGH * LANES + l] = s[Z * LANES + l] if space else ZERO
+                n = run[l]
+                if n >= 0:
+                    time = look[l] * steps * numbers[n, STEP]
+                    angle, share = frame_angle(time, limits[n])
+                    s[TURN_COSINE * LANES + l], s[TURN_SINE * LANES + l] = math.cos(angle), math.sin(angle)
+                    s[RAMP * LANES + l] = share
+                else:
+                    s[RAMP * LANES + l] = ONE
+                for work in range(POCKET_WORK, FRAME_WORK + 1):
+                    s[work * LANES + l] = ZERO
+            if live == 0:
+                return
+            w[: WATCHED * LANES] = ZERO
+            t[:] = s
+            for i in range(steps):
+                for stage in range(4):
+                    if waves.size > 0:
+                        orbit_speeds(t, places, waves, turned, balls)
+                    rates(t, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
+                    if stage == 0:
+                        if i == 0:
+                            for l in range(LANES):
+                                had[l] = kinetic_energy(s, p, l, space) + spring_energy(s, a, p, places, l, balls, one, space, hertz)
+                        watch(s, d, a, p, places, w, balls, np.float32(i), space)
+                        if row < record.shape[0] and (look[0] * steps + i) % every == 0:
+                            write_row(record[row], (look[0] * steps + i) * numbers[0, STEP], s, a, places, balls)
+                            row += 1
+                    if ball == ONE_STATE and stage == 0:
+                        hold(s, before, (states + speed_row) * LANES, one * LANES, balls)
+                    stage_end(stage, s, t, d, q, h)
+                    if ball == ONE_STATE:
+                        held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, (states + speed_row) * LANES, one * LANES, balls)
+            place(t, a, p, space)
+            for l in range(LANES):
+                n = run[l]
+                if n < 0:
+                    continue
+                found, at = looks[n, look[l]], evidence[n]
+                for column in range(WATCHED):
+                    found[column] = w[column * LANES + l] / steps
+                step = numbers[n, STEP]
+                found[STRIKES] /= step
+                found[WORK_POCKET], found[WORK_LAND] = s[POCKET_WORK * LANES + l], s[LAND_WORK * LANES + l]
+                found[WORK_BALL], found[WORK_FRAME] = s[BALL_WORK * LANES + l], s[FRAME_WORK * LANES + l]
+                pressed = s[LAND_PRESS_WORK * LANES + l]
+                works = float(found[WORK_POCKET]) + found[WORK_LAND] + found[WORK_BALL] + found[WORK_FRAME] + pressed
+                kept = kinetic_energy(s, p, l, space) + spring_energy(s, a, p, places, l, balls, one, space, hertz) - had[l]
+                at[OPEN] += abs(kept - works)
+                at[DONE] += abs(found[WORK_POCKET]) + abs(found[WORK_LAND]) + abs(found[WORK_BALL]) + abs(found[WORK_FRAME]) + abs(pressed)
+                touched = w[PEAK_FORCE * LANES + l] + w[PEAK_LAND * LANES + l] > ZERO
+                for e in range(EXTREMES_END - WATCHED):
+                    at[FIRST_EXTREME + e] = w[(WATCHED + e) * LANES + l]
+                for j in range(balls):
+                    pocket = j * BALL_ROWS * LANES + l
+                    hits_of[n, j] += places[pocket + HITS * LANES]
+                    heat_of[n, j] += places[pocket + RUBBED * LANES] * step
+                    places[pocket + HITS * LANES] = places[pocket + RUBBED * LANES] = ZERO
+                look[l] += 1
+                if at[OUTCOME] == UNKNOWN:
+                    at[OUTCOME], at[CAUSE] = end_of_motion(looks[n], look[l] - 1, touched, limits[n])
+                    at[JUDGED] = look[l]
+                    if w[LEFT_BALL * LANES + l] > ZERO:
+                        at[OUTCOME], at[CAUSE] = 3, 1
+                        at[LEFT_AT] = ((look[l] - 1) * steps + w[LEFT_STEP * LANES + l]) * step
+                at[ENDED] = look[l]
+                is_over = look[l] >= limits[n, LEAST] or not math.isfinite(found[ENERGY])
+                if at[OUTCOME] != UNKNOWN and is_over:
+                    look[l], live = -1, live - 1
+
+    return queue_kernel(run_queue)
 
 
 @part
-def offset_of(looks: Sequence[Look], first: int, last: int, limits: Limits) -> float:
-    """Offset in some looks, times their time: see `drift_rate`."""
-    x = y = offset = 0.0
-    for i in range(first, last):
-        x += looks[i].mean_x
-        y += looks[i].mean_y
-        offset += looks[i].offset
-    return float(np.hypot(x, y)) if limits.drifts else offset
+def take(numbers, into, lane):
+    """Put the numbers of a run into its lane."""
+    for i in range(numbers.size):
+        into[i * LANES + lane] = numbers[i]
 
 
 @part
-def drift_rate(looks: Sequence[Look], end: int, limits: Limits) -> float:
-    """Logarithmic growth of the mean offset between the last two fifths; 0 where there is no offset.
-
-    Between the halves of the window by which a short run was judged: before it the kick still had its effect.
-    A cage that is free to drift creeps under a fast whirl, which the distance of its mean place leaves out.
-    Any other goes round on its land or swings about its place, so that its mean distance tells; of a run that
-    is all window, the last half only, for the first has the kick.
-    """
-    half = min(end, limits.window) // 2
-    n = max(end // FEWEST_LOOKS, half if limits.drifts else min(half, max(1, end // 4)))
-    if n == 0:
-        return 0.0
-    last, before = offset_of(looks, end - n, end, limits), offset_of(looks, end - 2 * n, end - n, limits)
-    return float(np.log(last / before) / n) if last > 0.0 and before > 0.0 else 0.0
-
-
-@part
-def growth(looks: Sequence[Look], end: int, length: float, start: float) -> float:
-    """Half the logarithmic rate of the mean energy from half way to the last fifth.
-
-    From the kick's energy, `start`, in a run that ends within five looks.
-    """
-    n = max(1, end // FEWEST_LOOKS)
-    last = mean_energy(looks, end - n, end, length)
-    if end < FEWEST_LOOKS:
-        before, span = start, end - 0.5 * n
-    else:
-        first = end // 2 - n // 2
-        before, span = mean_energy(looks, first, first + n, length), float(end - n - first)
-    least = NOTHING_LEFT * start
-    return float(0.5 * np.log(max(last, least) / max(before, least)) / (span * length))
-
-
-@part
-def imbalance(
-    p: Coefficients, balls: Balls, state: State, w: Series, ledger: Ledger, start: float, room: Room
-) -> float:
-    """Energy that the ledger does not explain, over the work done and the kick's energy [-]."""
-    held = held_energy(p, balls, state)
-    if state.land != CLEAR:
-        held += land_energy(p, balls, state, w, room)
-    unexplained = kinetic(p, state) + held - start - total_work(ledger)
-    return abs(unexplained) / (ledger.gross + start)
-
-
-@unfolded
-def run_one(
-    p: Coefficients,
-    balls: Balls,
-    direction: float,
-    kick: float,
-    books: Books,
-    run: int,
-    limits: Limits,
-    samples: Samples,
-    out: Evidence,
-    hits: Whole,
-) -> None:
-    """Run from one kick; write outcome and evidence into `out` and the impacts of every pocket into `hits`.
-
-    `kick` is in units of the engine; the state and the ledger of this run in the `books` are zero.
-    """
-    state, ledger, looks, w = books.state[run], books.ledger[run], books.looks, books.series
-    balls.side[:], balls.touching[:], balls.own_speed[:] = 0, 0, 0.0
-    if is_gripped(p):
-        balls.side[:] = 2
-        balls.penetration[:] = -balls.lead
-        balls.touching[:] = np.arange(balls.play.size)
-        state.touching = balls.play.size
-    state.x, state.vx, state.vy = p.eccentricity, kick * np.cos(direction), kick * np.sin(direction)
-    start = kinetic(p, state)
-    outcome, end, cause = watch(
-        p, balls, state, ledger, books.memory[run], looks, w, hits, limits, samples, books.room
-    )
-    out.outcome, out.cause = DRIFTS if limits.drifts and outcome == SETTLES else outcome, cause
-    out.energy_imbalance = imbalance(p, balls, state, w, ledger, start, books.room)
-    out.rows = state.rows
-    if cause == NOT_FINITE:
-        return
-    enter_looks(p, looks, end, start, limits, out)
-
-
-@part
-def enter_looks(
-    p: Scales, looks: Sequence[Look], end: int, start: float, limits: Limits, out: Evidence
-) -> None:
-    """Write what the looks up to `end` tell of a run that began with this energy."""
-    length = limits.beats * limits.beat
-    farthest, force, land_force, land_hits = 0.0, 0.0, 0.0, 0.0
-    for i in range(end):
-        farthest, force = max(farthest, looks[i].offset_max), max(force, looks[i].force_max)
-        land_force = max(land_force, looks[i].land_max)
-        land_hits += looks[i].land_hits
-    out.largest_offset, out.land_impacts = np.sqrt(farthest), int(land_hits)
-    out.followed = end * length * p.unit
-    out.growth_rate = growth(looks, end, length, start) / p.unit
-    out.drift_rate = drift_rate(looks, end, limits) / (length * p.unit)
-    unit_force = 1.0 / p.unit**2
-    out.largest_contact_force, out.largest_land_force = force * unit_force, land_force * unit_force
-    enter_end(p, looks, end, length, limits, out)
-
-
-@part
-def last_part(end: int, limits: Limits) -> int:
-    """Number of looks by whose motion a run is described: the last fifth, or the last window."""
-    return max(1, end // FEWEST_LOOKS, min(end, limits.window))
-
-
-@part
-def enter_end(
-    p: Scales, looks: Sequence[Look], end: int, length: float, limits: Limits, out: Evidence
-) -> None:
-    """Write what the motion is in the last part of the looks."""
-    n = last_part(end, limits)
-    first, time = end - n, n * length
-    kinetic_, turning, squared, offset, offset_squared, swept = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    pocket, land, pressed, rubbed = 0.0, 0.0, 0.0, 0.0
-    for i in range(first, end):
-        look = looks[i]
-        kinetic_ += look.kinetic
-        turning += look.turning
-        squared += look.speed_squared
-        offset += look.offset
-        offset_squared += look.offset_squared
-        swept += look.swept
-        pocket += look.pocket_work
-        land += look.land_work
-        pressed += look.pressed
-        rubbed += look.rubbed
-    out.judged_from = first * length * p.unit
-    out.end_energy = kinetic_ / time / p.unit**2
-    whirl = turning / squared / p.unit if squared > 0.0 else 0.0
-    out.whirl_frequency = abs(whirl) / (2.0 * np.pi)
-    out.whirl_direction = int(np.sign(whirl))
-    out.mean_offset = offset / time
-    out.offset_spread = np.sqrt(max(0.0, offset_squared / time - out.mean_offset**2))
-    orbit = swept / offset_squared if offset_squared > 0.0 else 0.0
-    out.orbit_speed = (orbit + p.turning) / p.unit
-    out.pocket_power, out.land_power = pocket / time / p.unit**3, land / time / p.unit**3
-    out.rubbing_force = pressed / time / p.unit**2
-    out.rubbing_speed = rubbed / pressed / p.unit if pressed > 0.0 else 0.0
-
-
-@unfolded
-def follow_all(
-    p: Coefficients,
-    balls: Balls,
-    starts: Array,
-    kick: float,
-    books: Books,
-    limits: Limits,
-    samples: Samples,
-    out: Sequence[Evidence],
-    hits: Whole,
-) -> None:
-    """Run from every row of `starts`; evidence into `out`, impacts into `hits`.
-
-    A row of `starts`, of length 1 + 3 ball: direction of the kick [rad], then for each pocket its ball's lead
-    [m], half its clearance [m] and its angle [rad].
-    """
-    count = hits.shape[1]
-    for i in range(starts.shape[0]):
-        start = starts[i]
-        angle = start[1 + 2 * count :]
-        balls.cosine[:], balls.sine[:], balls.penetration[:] = np.cos(angle), np.sin(angle), 0.0
-        balls.lead[:], balls.play[:] = start[1 : 1 + count], start[1 + count : 1 + 2 * count]
-        run_one(p, balls, start[0], kick, books, i, limits, samples, out[i], hits[i])
-
-
-@kernel
-def run_chunk(
-    p: Coefficients,
-    balls: Balls,
-    starts: Array,
-    kick: float,
-    books: Books,
-    limits: Limits,
-    samples: Samples,
-    out: Sequence[Evidence],
-    hits: Whole,
-) -> None:
-    """Run any cage, see `follow_all`."""
-    follow_all(p, balls, starts, kick, books, limits, samples, out, hits)
-
-
-@kernel
-def run_plain_chunk(
-    p: Coefficients,
-    balls: Balls,
-    starts: Array,
-    kick: float,
-    books: Books,
-    limits: Limits,
-    samples: Samples,
-    out: Sequence[Evidence],
-    hits: Whole,
-) -> None:
-    """Run a plain cage, see `features` and `follow_all`: a kernel that is cached has one signature only."""
-    follow_all(p, balls, starts, kick, books, limits, samples, out, hits)
-
-
-@lru_cache(maxsize=512)
-def random_start(seed: int, run: int, ball_count: int) -> Array:
-    """Numbers drawn for a run, shape (4, ball).
-
-    First the direction of the kick [rad] (repeated) and the lead of each ball (share of the scatter, -1 to
-    1), then normal deviations of ball diameters and of pocket positions, cut at 3, then displacements of
-    pockets with their balls (-1 to 1). They depend on the seed and the number of the run only: the same for
-    any cage, kick and number of workers, so they are kept, read-only.
-    """
-    stream = Generator(Philox(key=np.array([seed, run], dtype=np.uint64)))
-    numbers = stream.random(1 + ball_count)
-    rows = np.empty((5, ball_count))
-    rows[0] = 2.0 * math.pi * numbers[0]
-    rows[1] = 2.0 * numbers[1:] - 1.0
-    for row in (2, 3):
-        rows[row] = _cut_normal(stream, ball_count)
-    rows[4] = 2.0 * stream.random(ball_count) - 1.0
-    rows.flags.writeable = False
-    return rows
-
-
-def _cut_normal(stream: Generator, count: int) -> Array:
-    """Normal deviations, those beyond 3 drawn again."""
-    drawn = stream.standard_normal(count)
-    while (far := np.abs(drawn) > 3.0).any():
-        drawn[far] = stream.standard_normal(int(far.sum()))
-    return drawn
+def write_row(row, time, s, a, places, balls):
+    """Time, state, geometric centre and axis, forces of the pockets and of the land, of the first lane."""
+    row[0] = time
+    n = 1
+    for i in range(s.size // LANES):
+        row[n] = s[i * LANES]
+        n += 1
+    for i in range(GX, GWB + 1):
+        row[n] = a[i * LANES]
+        n += 1
+    for j in range(balls):
+        row[n] = places[(j * BALL_ROWS + FORCE) * LANES]
+        n += 1
+    row[n] = a[LAND_N * LANES]

@@ -1,107 +1,144 @@
-"""How long a step may be: as long as its series tell the motion, and to the next time something is due."""
+r"""One step of sixteen runs by classical Runge-Kutta, and the length of a step.
+
+The speed of a ball of one state is stiff in a slow bearing: there :math:`C_f/m_e` is far above every other rate. Its
+linear part is taken exactly (exponential time differencing of order 4, Cox and Matthews 2002), which is classical
+Runge-Kutta where that rate is small.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from separatrix.cage.features import (
-    harmonics,
-    has_hertz_pockets,
-    has_inertia,
-    has_own_series,
-    is_out_of_round,
-    is_ramped,
-)
-from separatrix.cage.records import CLEAR, ORDER, RELEASED, Balls, Coefficients, Pace, Series, State
-from separatrix.cage.traction import fastest_ball
-from separatrix.compiled import inlined_kernel
+import numpy as np
 
-PRECISION, HERTZ_PRECISION = 2.0**-34, 2.0**-40
-"""Share of the speeds below which the last terms of a series must be. The force of a Hertz contact has no
-series about its beginning, so that near it the terms fall slowly."""
+from separatrix.cage.closed_forms import moving_mass, rebound_damping
+from separatrix.cage.rows import *  # noqa: F403
+from separatrix.cage_design import Guidance
+from separatrix.compiled import inlined
 
-LONGEST = 1e6
-"""Step in space where nothing limits it."""
+if TYPE_CHECKING:
+    from separatrix.cage.moving_cage import MovingCage
+    from separatrix.units import Metre, MetrePerSecond, NewtonPerMetre, Second
 
-RELAXED = 4.0
-"""Longest step with linear pockets in touch, in units of the time in which they yield."""
-
-SLOWED = 5.0
-"""Longest step with balls that move, in units of the time in which the slope of their traction stops them: a
-series of 14 terms still damps what it no longer resolves."""
-
-SHORT = 0.2
-"""Share of the distance of the centre that a way may have: its series falls by that from term to term."""
+SIXTH = np.float32(1.0 / 6.0)
 
 
-@inlined_kernel
-def push_of(p: Coefficients, balls: Balls, w: Series, j: int, n: int) -> float:
-    """Coefficient n of the force of a pocket in touch."""
-    if has_own_series(p):
-        return float(balls.force[n, j])
-    depth: float = (
-        balls.penetration[j] * w[n].kept + balls.cosine[j] * w[n].ey - balls.sine[j] * w[n].ex + w[n].es
-    )
-    for k in range(2 * harmonics(p)):
-        depth -= balls.drive[k, j] * w[n].felt[k]
-    return p.stiffness * depth
+@inlined
+def stage_end(stage, s, t, d, q, h):
+    """State `t` at which the next stage is evaluated, from the rates `d` of this one; after the last, `s` and `t`.
 
-
-@inlined_kernel
-def step_length(p: Coefficients, balls: Balls, w: Series, state: State, most: float) -> float:
-    """Time, up to the most, for which the last terms of the series stay below `PRECISION` of the speeds.
-
-    Of the speeds themselves, and of those that each pocket alone would give: forces of several pockets may
-    balance, so that the cage does not feel that they relax.
+    `h`: length of the step, as often as there are numbers in the state, so that one loop does.
     """
-    start, at_end, one_before = w[0], w[ORDER], w[ORDER - 1]
-    speed = abs(start.vx) + abs(start.vy) + abs(start.vs) + p.slowest
-    last = max(abs(at_end.vx), abs(at_end.vy), abs(at_end.vs))
-    before = max(abs(one_before.vx), abs(one_before.vy), abs(one_before.vs))
-    for i in range(state.touching):
-        j = balls.touching[i]
-        last = max(last, abs(push_of(p, balls, w, j, ORDER - 1)) / ORDER)
-        before = max(before, abs(push_of(p, balls, w, j, ORDER - 2)) / (ORDER - 1))
-    if has_inertia(p):
-        moves, ends, ends_before = fastest_ball(balls.moving, state.touching + state.coasting)
-        speed, last, before = max(speed, moves), max(last, ends), max(before, ends_before)
-    scale = (HERTZ_PRECISION if has_hertz_pockets(p) else PRECISION) * speed
-    # |v_n| h^n = scale, for the last two terms
-    h, power = most, most ** (ORDER - 1)
-    if last * power * h > scale:
-        h = (scale / last) ** (1.0 / ORDER)
-        power = h ** (ORDER - 1)
-    if before * power > scale:
-        h = (scale / before) ** (1.0 / (ORDER - 1))
-    return h
+    if stage < 3:
+        keep, gain = ZERO if stage == 0 else ONE, ONE if stage == 0 else TWO
+        ahead = ONE if stage == 2 else HALF
+        for e in range(s.size):
+            q[e] = keep * q[e] + gain * d[e]
+            t[e] = s[e] + ahead * h[e] * d[e]
+    else:
+        for e in range(s.size):
+            s[e] += SIXTH * h[e] * (q[e] + d[e])
+            t[e] = s[e]
 
 
-@inlined_kernel
-def distance_step(p: Coefficients, w: Series, share: float) -> float:
-    """Time for which the distance of the centre has a series: on ways in space shorter than itself."""
-    turning, start = p.turning * share, w[0]
-    x, y, vx, vy = start.x, start.y, start.vx, start.vy
-    swing = p.eccentricity * (abs(turning) + abs(start.vs) / p.radius)
-    # Velocity and acceleration in space: v + Omega x r, dv/dt + 2 Omega x v + Omega x (Omega x r)
-    speed = abs(vx - turning * y) + abs(vy + turning * x) + swing + p.slowest
-    pull = abs(w[1].vx - turning * (2.0 * vy + turning * x))
-    pull += abs(w[1].vy + turning * (2.0 * vx - turning * y))
-    h = SHORT * p.land_gap / speed
-    return h if pull == 0.0 else min(h, SHORT * math.sqrt(2.0 * p.land_gap / pull))
+@inlined
+def hold(s, before, first, size, balls):
+    """Keep the speeds of balls of one state from before the step."""
+    for j in range(balls):
+        for l in range(LANES):
+            before[j * LANES + l] = s[first + j * size + l]
 
 
-@inlined_kernel
-def longest_step(p: Coefficients, balls: Balls, w: Series, state: State, now: Pace, left: float) -> float:
-    """Time for which the series may be used: their own, and up to the next time at which something is due."""
-    h = left
-    if state.touching > 0 and not has_own_series(p):
-        # What is left of a penetration and what is new cancel: of more than this too little is left.
-        h = min(h, RELAXED / (p.yielding * p.stiffness * now.share))
-    if has_inertia(p) and state.touching + state.coasting > 0:
-        # Of a speed that has decayed to less a series of this length has nothing left
-        h = min(h, SLOWED * p.coast_time * now.share)
-    if is_ramped(p) and state.clock < p.ramp_time:
-        h = min(h, p.ramp_time - state.clock)
-    if state.land == RELEASED or (state.land == CLEAR and is_out_of_round(p)):
-        h = min(h, distance_step(p, w, now.share))
-    return step_length(p, balls, w, state, h)
+@inlined
+def held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, first, size, balls):
+    """The same for the speeds of balls of one state, whose decay is exact; `before` is `s` before the step.
+
+    It follows `stage_end`, and replaces what that did to them.
+    """
+    for j in range(balls):
+        for l in range(LANES):
+            e, i = first + j * size + l, j * LANES + l
+            half, gain, v, rate = p[DECAY_HALF * LANES + l], p[GAIN_HALF * LANES + l], before[i], d[e]
+            if stage == 0:
+                first_rate[i] = rate
+                t[e] = half * v + gain * rate
+            elif stage == 1:
+                middle_rate[i] = rate
+                t[e] = half * v + gain * rate
+            elif stage == 2:
+                middle_rate[i] += rate
+                t[e] = half * (half * v + gain * first_rate[i]) + gain * (TWO * rate - first_rate[i])
+            else:
+                s[e] = p[DECAY * LANES + l] * v + p[GAIN_FIRST * LANES + l] * first_rate[i]
+                s[e] += p[GAIN_MIDDLE * LANES + l] * middle_rate[i] + p[GAIN_LAST * LANES + l] * rate
+                t[e] = s[e]
+
+
+def exact_decay(rate: float, step: float) -> tuple[float, float, float, float, float, float]:
+    """Decay over half a step with its gain, over a step, and the gains of first, middle and last rate [-], [s]."""
+    half = -0.5 * rate * step
+    f1, f2, f3 = (_phi(n, 2.0 * half) for n in (1, 2, 3))
+    gains = f1 - 3.0 * f2 + 4.0 * f3, 2.0 * f2 - 4.0 * f3, 4.0 * f3 - f2
+    return math.exp(half), 0.5 * step * _phi(1, half), math.exp(2.0 * half), *(step * gain for gain in gains)
+
+
+def _phi(n: int, z: float) -> float:
+    """phi_n(z) = sum of z^i / (i + n)!: (e^z - 1)/z, ((e^z - 1)/z - 1)/z, ..."""
+    if abs(z) < 1.0:
+        return sum(z**i / math.factorial(i + n) for i in range(20))
+    value = math.exp(z)
+    for i in range(n):
+        value = (value - 1.0 / math.factorial(i)) / z
+    return value
+
+
+LONGEST: Second = 20e-6
+CONTACT, SWING, DECAYS = 0.45, 0.65, 1.2
+"""Radians of a contact of cage and ball or land, and of a ball between pocket and races, and time constants of a
+relaxation, that a step may have at most: shares and margins do not move at an eighth of it (docs/theory/cage.md)."""
+
+FREE_RATE = 2.5
+"""Time constants of the fastest motion of a free ball's spin in a step; 2.78 is where the method is no longer stable."""
+
+
+def step_length(cage: MovingCage, kick: MetrePerSecond) -> Second:
+    """Length of the step of a cage: the least of 20 us and shares of its shortest contact, relaxation and period."""
+    M, k = cage.mass, pocket_stiffness(cage, kick)
+    turning = cage.pitch_radius**2 / cage.moment_of_inertia
+    grips = cage.half_play == 0.0
+    levers = (1.0 / M + turning) * (cage.ball_count / 2.0 if grips else 1.0)
+    if cage.is_in_space:
+        levers += cage.pitch_radius**2 / cage.transverse * (cage.ball_count / 2.0 if grips else 1.0)
+    steps = [LONGEST, CONTACT / math.sqrt(k * levers)]
+    if cage.free_ball is not None:
+        steps += [FREE_RATE / cage.free_ball.fastest_rate, SWING / math.sqrt(k * (levers + 1.0 / cage.free_ball.mass))]
+        steps[-2] *= cage.ramp_start if cage.ramp_time > 0.0 else 1.0
+    elif cage.traction is not None:
+        steps.append(SWING / math.sqrt(k * (levers + 1.0 / cage.traction.mass)))
+        if cage.ramp_time > 0.0:  # in a ramp the races hold a ball harder at first
+            beyond = (1.0 / cage.ramp_start - 1.0) * cage.traction.slope / cage.traction.mass
+            steps.append(DECAYS / max(beyond, 1e-30))
+    else:
+        steps.append(DECAYS * cage.race_damping / k)
+    if cage.is_in_space and math.isfinite(cage.groove_damping):
+        steps.append(DECAYS * cage.groove_damping / (k + cage.groove_stiffness))
+    if cage.guidance is not Guidance.BALL:
+        K = cage.land_count * cage.land_stiffness
+        squared = K / M + (K * land_reach(cage) ** 2 / cage.transverse if cage.is_in_space else 0.0)
+        damping = rebound_damping(cage.land_restitution)
+        steps.append(CONTACT / math.sqrt(squared) * (1.0 if damping < 1.0 else 1.0 / (2.0 * damping)))
+    return min(steps)
+
+
+def pocket_stiffness(cage: MovingCage, kick: MetrePerSecond) -> NewtonPerMetre:
+    """Stiffness of a pocket as deep as in a strong impact: four times the energy of the initial disturbance."""
+    if cage.hertz_coefficient is None:
+        return cage.ball_cage_stiffness
+    K, energy = cage.hertz_coefficient, 2.0 * moving_mass(cage) * max(kick, abs(cage.cage_speed) * cage.half_play) ** 2
+    return 1.5 * K * math.sqrt((2.5 * energy / K) ** 0.4)
+
+
+def land_reach(cage: MovingCage) -> Metre:
+    """Height of the outermost strip of a land over the pockets [m]."""
+    return 0.5 * (cage.land_spacing or 0.0) + 0.5 * cage.land_width

@@ -21,8 +21,15 @@ from separatrix.units import (
     NewtonPerMetre,
     NewtonPerMetre1_5,
     Pascal,
+    RadianPerSecond,
     Ratio,
 )
+
+REFERENCE: Ratio = 2.5
+"""Reference disturbance over the pocket speed [-]."""
+
+LEAST_POCKET_SPEED: MetrePerSecond = 0.02
+"""Pocket speed of a ball set at rest or a pocket without clearance: the reference is then 0.05 m/s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,3 +201,11 @@ def standard_error(friction: Friction) -> Ratio | None:
     """Of the mean under the conditions tested; without a count the scatter is taken as it is."""
     error, deviation = friction.standard_error, friction.standard_deviation
     return deviation / sqrt(friction.count or 1) if error is None and deviation is not None else error
+
+
+def pocket_speed(cage_speed: RadianPerSecond, pocket_clearance: Metre) -> MetrePerSecond:
+    """Cage speed times half the pocket clearance, but not below `LEAST_POCKET_SPEED`.
+
+    The cage centre has this speed in space where it is half a pocket clearance off the axis.
+    """
+    return max(abs(cage_speed) * 0.5 * pocket_clearance, LEAST_POCKET_SPEED)

@@ -1,4 +1,4 @@
-"""The chain of the paper from a study to its cage: every link solved once, every intermediate kept.
+"""The chain of the paper from a study to its pocket: every link solved once, every intermediate kept.
 
 The contacts of the most loaded ball set the race damping: load raises the restitution factor, so this is the
 unfavourable ball.
@@ -11,12 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from separatrix.cage import PlanarCage
-from separatrix.cage.ensemble import REFERENCE, pocket_speed, with_kicks
-from separatrix.cage.space_body import SpaceBody
+import numpy as np
+
+from separatrix.ball_traction import FreeBall
 from separatrix.cage_body import CageInertia, cage_inertia
 from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
-from separatrix.chain.cage_of_design import as_designed, space_body, warn_if_balls_are_driven
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
@@ -28,13 +27,15 @@ from separatrix.chain.contacts import (
     require_rolling,
 )
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
-from separatrix.chain.mobility import Impacts, Mobility, SlipLaw, held_ball, impacts, mobility
+from separatrix.chain.mobility import Impacts, Mobility, SlipLaw, free_ball, held_ball, impacts, mobility
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
 from separatrix.chain.pocket import (
+    REFERENCE,
     PocketConditions,
     friction_in_pocket,
     names_of_fluid,
     pocket_conditions,
+    pocket_speed,
 )
 from separatrix.chain.restitution import (
     Restitution,
@@ -177,12 +178,6 @@ class Solution:
         return REFERENCE * pocket_speed(self.bearing.cage_speed, design.pocket_clearance)
 
     @cached_property
-    def stability(self) -> StabilitySettings:
-        """The study's settings, with numbers for the kicks."""
-        speed = pocket_speed(self.bearing.cage_speed, self.design.pocket_clearance)
-        return with_kicks(self.study.stability, speed)
-
-    @cached_property
     def _stiffness(self) -> tuple[NewtonPerMetre, str]:
         """k_BC and where it comes from: the study, or Hertz with the modulus of the cage's material."""
         given, wall = self.stated_design.ball_cage_stiffness, self.cage_material
@@ -247,6 +242,13 @@ class Solution:
         if asked.film.wear is not None:
             warnings.warn(WORN_MOBILITY, ValidityWarning, stacklevel=2)
         return mobility(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+
+    @cached_property
+    def free_ball(self) -> tuple[FreeBall, tuple[float, float, float]]:
+        """The most loaded ball with its slip fields, and its spin, in a bearing that turns forward."""
+        asked, rates = self.study, self.mobility.linear.rates
+        records = (asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        return free_ball(*records, float(np.abs(rates).max()))
 
     @cached_property
     def impacts(self) -> Impacts:
@@ -315,73 +317,7 @@ class Solution:
         return self.frictions.get(environment) if environment else None
 
     @cached_property
-    def cage(self) -> PlanarCage:
-        """Cage in the plane, with its friction; refused where that is not known."""
-        require_friction(self.study)
-        friction = self.friction
-        return self.cage_with(friction.mean if friction else 0.0)
-
-    def cage_with(self, friction: Ratio) -> PlanarCage:
-        """Cage in the plane or in space, as the study says, with the chain's races and any friction.
-
-        The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs
-        faster and slower around as the equilibrium says. A cage without a stated inertia is a thin ring.
-
-        Warns
-        -----
-        ValidityWarning
-            The balls lead and lag by more than half their clearance, so that the pockets drive them.
-        """
-        study, design, body = self.study, self.design, self.inertia
-        damping, waves, radius = self.restitution, self._waves, self.study.bearing.pitch_diameter / 2.0
-        hertz = design.pocket_contact is not PocketContact.LINEAR
-        stiffness = damping.ball_cage_stiffness
-        try:
-            cage = PlanarCage(
-                mass=body.mass,
-                moment_of_inertia=body.moment_of_inertia,
-                ball_count=study.bearing.ball_count,
-                pitch_radius=radius,
-                cage_speed=self.bearing.cage_speed,
-                inner_speed=study.operation.inner_speed,
-                outer_speed=study.operation.outer_speed,
-                ball_cage_stiffness=stiffness,
-                race_damping=damping.race_damping,
-                ball_cage_friction=friction,
-                # equal energy and depth in an impact at the impact speed
-                hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, self.impact_speed)
-                if hertz
-                else None,
-                orbital_cosines=waves.cosines,
-                orbital_sines=waves.sines,
-                ramp_time=study.operation.ramp_time,
-                ramp_start=study.operation.ramp_start,
-                traction=self.mobility.traction if design.ball is BallModel.TRACTION else None,
-                space=self._in_space(stiffness) if design.motion is MotionModel.SPACE else None,
-                **as_designed(design),
-            )
-        except InputError as error:
-            key = error.path.removeprefix("PlanarCage.")
-            if key not in ("pocket_clearance", "pocket_axial_clearance"):
-                raise
-            raise error.at(f"[cage] {key}", cure=f"It is that of the running cage. {error.cure}") from None
-        warn_if_balls_are_driven(cage)
-        return cage
-
-    def _in_space(self, stiffness: NewtonPerMetre) -> SpaceBody:
-        return space_body(
-            self.design,
-            self.study.bearing,
-            self.bearing,
-            self.mobility,
-            self.stability,
-            stiffness=stiffness,
-            inertia=self.inertia,
-            impact_speed=self.impact_speed,
-        )
-
-    @cached_property
-    def _waves(self) -> OrbitalWaves:
+    def orbital_waves(self) -> OrbitalWaves:
         found = self.bearing.equilibrium
         return orbital_waves(found.orbital_speed, found.azimuth, self.study.bearing.pitch_diameter / 2.0)
 
@@ -391,4 +327,4 @@ class Solution:
 
         None where all balls run alike, as under an axial load.
         """
-        return self._waves.share
+        return self.orbital_waves.share

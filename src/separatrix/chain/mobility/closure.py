@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from separatrix.ball_traction import FreeBall, SlipField
 from separatrix.chain.contacts import BearingState, bearing_state, of_both_races, race_tracks
 from separatrix.chain.creep import Creep
 from separatrix.chain.equilibrium.groove import chebyshev_nodes
@@ -17,7 +18,7 @@ from separatrix.chain.mobility.record import SlipLaw
 from separatrix.chain.race_curve import race_slope
 from separatrix.errors import InputError
 from separatrix.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
-from separatrix.units import MetrePerSecond
+from separatrix.units import MetrePerSecond, PerSecond, RadianPerSecond
 
 REMEMBERED = 256
 """Balls that are kept, by the records they are made of."""
@@ -98,3 +99,43 @@ def elastic_slip_speeds(
     speeds = state.inner.rolling_speed, state.outer.rolling_speed
     inner, outer = (film.race_friction * abs(v) / one.slope for v, one in zip(speeds, found, strict=True))
     return inner, outer
+
+
+def free_ball(
+    bearing: BallBearing,
+    operation: Operation,
+    kinematics: KinematicModel,
+    film: Film,
+    settings: TractionSettings,
+    fastest_rate: PerSecond,
+) -> tuple[FreeBall, tuple[RadianPerSecond, RadianPerSecond, RadianPerSecond]]:
+    """The most loaded ball with its two slip fields at free rolling, and its spin; it orbits in the positive sense."""
+    held = held_ball(bearing, operation, kinematics, film, settings, SlipLaw.ELASTIC)
+    state, p = bearing_state(bearing, operation, kinematics, film.race_friction), held.problem
+    spin, outer_speed = held.state[3:] * p.speed, p.outer_speed
+    orbit = held.state[2] * p.speed + outer_speed
+    fields = []
+    for side, race, contact, f, ring, slip in (
+        (-1.0, held.rings - held.state[:2], state.inner, p.inner_conformity, p.speed + outer_speed, held.slips[0]),
+        (1.0, held.state[:2], state.outer, p.outer_conformity, outer_speed, held.slips[1]),
+    ):
+        normal, a = side * race / np.hypot(*race), contact.ellipse.semi_major
+        pivoting = (spin[0] - ring + orbit) * normal[0] + spin[1] * normal[1]
+        rolling = (spin[0] - ring + orbit) * normal[1] - spin[1] * normal[0]
+        fields.append(
+            SlipField(
+                normal_axial=float(normal[0]),
+                normal_radial=float(normal[1]),
+                limit=film.race_friction * contact.load,
+                semi_major=a,
+                axis_ratio=contact.ellipse.semi_minor / a,
+                slip=float(0.5 * rolling * p.ball_diameter - (ring - orbit) * held.orbit_radius),
+                pivoting=float(a * pivoting),
+                heathcote=float(rolling * a * a * (2.0 * f + 1.0) / (4.0 * f * p.ball_diameter)),
+                elastic_slip=float(slip * abs(p.speed)),
+            )
+        )
+    ball = FreeBall(
+        mass=p.ball_mass, inertia=p.ball_inertia, inner=fields[0], outer=fields[1], fastest_rate=fastest_rate
+    )
+    return ball, (float(spin[0]), float(spin[1]), float(spin[2]))

@@ -13,8 +13,6 @@ import numpy as np
 from separatrix.ball_traction import BallTraction
 from separatrix.units import Array, Kilogram, NewtonSecondPerMetre
 
-SHARPNESS = 4
-
 
 def fitted_law(speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass: Kilogram) -> BallTraction:
     """Law with the exact slope at rest, nearest to F(u) in its largest difference.
@@ -28,7 +26,7 @@ def fitted_law(speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass:
 
     def law(log_speed: float) -> BallTraction:
         own = math.exp(log_speed)
-        return BallTraction(mass=mass, slopes=(float(slope),), speeds=(own,), sharpness=SHARPNESS)
+        return BallTraction(mass=mass, slope=float(slope), speed=own)
 
     def error(log_speed: float) -> float:
         return float(np.abs(law(log_speed).force(speed) - target).max())

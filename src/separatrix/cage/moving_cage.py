@@ -1,0 +1,484 @@
+"""The moving cage: one frozen record of the numbers of its equations."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+from separatrix import _check, cage_design, pocket_shape
+from separatrix.ball_traction import BallTraction, FreeBall
+from separatrix.chain.restitution import hertz_coefficient_for
+from separatrix.errors import InputError, ValidityWarning
+from separatrix.study import BallModel, Guidance, MotionModel, PocketContact, PocketShape
+from separatrix.units import (
+    Kilogram,
+    KilogramMetre,
+    KilogramMetre2,
+    Metre,
+    MetrePerSecond,
+    MetrePerSecond2,
+    NewtonPerMetre,
+    NewtonPerMetre1_5,
+    NewtonSecondPerMetre,
+    Radian,
+    RadianPerSecond,
+    Ratio,
+    Second,
+    format_quantity,
+)
+
+if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
+
+FAST: MetrePerSecond = 1e6
+"""Surface speed of a ball whose spin is not given: its direction alone decides where friction acts."""
+
+LEVER: Metre = 1e-9
+"""Distance of the friction from the centre of a ball whose diameter is not given: as good as none."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MovingCage:
+    """A cage among balls that the races guide, moving in the bearing plane or in space.
+
+    The plane is space with tilt and axial motion held. Axes: x and y in the bearing plane, z along the bearing axis; the
+    frame turns with the ball set. Tilts are small.
+
+    Parameters
+    ----------
+    mass, moment_of_inertia : float
+        M_C [kg] and J about the bearing axis [kg m2]; a thin ring has J = M R^2.
+    transverse_inertia : float or None
+        J_t about a diameter through the centre of mass [kg m2]; None: that of a thin ring, J/2.
+    ball_count : int
+        Z; ball j is at 2 pi j/Z unless `pocket_angles` are given.
+    pitch_radius : float
+        R, where balls and pockets meet [m].
+    cage_speed, inner_speed, outer_speed : float
+        Omega of the ball set and speeds of the rings [rad/s].
+    motion : MotionModel
+        In the plane, or in space.
+    pocket_clearance : float
+        Clearance of a ball in its pocket along the circumference, stop to stop, 2 c_p [m];
+        0 means a pocket that grips its ball from both sides.
+    ball_cage_stiffness, race_damping : float
+        k_BC [N/m] and C_mu [N s/m], in series; an infinite C_mu is a ball gripped by its races.
+    ball_cage_friction : float
+        f_BC [-].
+    ball_spin : tuple of float or None
+        Spin of a ball relative to its orbit: along the axis, outward, and along the orbit [rad/s]. None: about the axis, so
+        fast that it alone decides where friction acts.
+    ball_diameter : float
+        A pocket touches its ball, and friction acts, at half of it from the ball's centre [m]; 0: at the centre.
+    traction, free_ball : BallTraction, FreeBall or None
+        Level of the ball: with neither the paper's damper; with `traction` one state; with `free_ball` its spins too.
+    guidance, land_clearance, land_friction, land_stiffness, land_restitution
+        The land: diametral clearance [m], friction [-], stiffness of each [N/m], restitution [-].
+    land_count, land_spacing, land_width, land_radius
+        One land or two; distance of their middles, width [m]; where friction acts, None: at the pitch radius [m].
+    land_out_of_round, land_lobes
+        Amplitude [m] and number of lobes of the land of the cage.
+    unbalance, dynamic_unbalance : float
+        Mass times eccentricity [kg m]; angle between the axis of the cage and its principal axis [rad].
+    gravity, axial_gravity : float
+        Acceleration across the bearing axis, along azimuth 0, fixed in space; along the axis [m/s2].
+    added_mass : float
+        Of the fluid that moves with the cage across the axis [kg].
+    pocket_shape, pocket_axial_clearance, pocket_axial_offset
+        Shape of the pockets; clearance along the axis, stop to stop, of an elongated one [m], as along the orbit of others;
+        distance of the cage from the plane of the balls, along the bearing axis: held in the plane, at the start in space.
+    hertz_coefficient : float or None
+        K of N = K approach^1.5 [N/m^1.5]; None is linear contact with `ball_cage_stiffness`.
+    pocket_angles : tuple of float
+        Angle of each ball with its pocket, rising within one turn [rad]; empty is even.
+    pocket_spacing_scatter : float
+        Each pocket with its ball is displaced by up to this share of the pitch, uniform, run by run [-].
+    ball_diameter_scatter, pocket_position_scatter : float
+        Standard deviations, normal, cut at 3, run by run [m]; of the position: along the circumference.
+    groove_damping, groove_stiffness : float
+        Of a ball that is pushed along its grooves, in space: c_g [N s/m] and k_g [N/m]. An infinite damping holds it.
+    pivot_speed : float
+        Sliding speed below which pivoting lowers the friction of pockets and of the land [m/s].
+    inner_radius, outer_radius : float or None
+        Of the cage, between which its pockets have walls [m]. None: no edge.
+    orbital_cosines, orbital_sines : tuple of float
+        A_h and B_h, h = 1, 2, ..: a ball at azimuth p runs faster than the ball set by the sum of
+        A_h cos h p + B_h sin h p [m/s]; azimuth is fixed in space, 0 along the radial load.
+    ramp_time, ramp_start : float
+        All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is no ramp.
+    axial_kick, tilt_kick : float
+        Share of an initial disturbance that is along the axis, and at the rim by tilting, in space [-].
+    is_tilt_held, is_axially_held : bool
+        The cage may not tilt, or not move along the axis.
+
+    Raises
+    ------
+    InputError
+        A size is not finite or has the wrong sign, or sizes contradict each other.
+    """
+
+    mass: Kilogram
+    moment_of_inertia: KilogramMetre2
+    transverse_inertia: KilogramMetre2 | None = None
+    ball_count: int
+    pitch_radius: Metre
+    cage_speed: RadianPerSecond
+    inner_speed: RadianPerSecond
+    outer_speed: RadianPerSecond
+    motion: MotionModel = MotionModel.PLANE
+    pocket_clearance: Metre
+    ball_cage_stiffness: NewtonPerMetre
+    race_damping: NewtonSecondPerMetre
+    ball_cage_friction: Ratio
+    ball_spin: Annotated[tuple[RadianPerSecond, ...], ("axis",)] | None = None
+    ball_diameter: Metre = 0.0
+    traction: BallTraction | None = None
+    free_ball: FreeBall | None = None
+    guidance: Guidance = Guidance.BALL
+    land_clearance: Metre | None = None
+    land_friction: Ratio = 0.1
+    land_stiffness: NewtonPerMetre = 1e7
+    land_restitution: Ratio = 0.5
+    land_count: int = 1
+    land_spacing: Metre | None = None
+    land_width: Metre = 0.0
+    land_radius: Metre | None = None
+    land_out_of_round: Metre = 0.0
+    land_lobes: int = 2
+    unbalance: KilogramMetre = 0.0
+    dynamic_unbalance: Radian = 0.0
+    gravity: MetrePerSecond2 = 0.0
+    axial_gravity: MetrePerSecond2 = 0.0
+    added_mass: Kilogram = 0.0
+    pocket_shape: PocketShape = PocketShape.SQUARE
+    pocket_axial_clearance: Metre | None = None
+    pocket_axial_offset: Metre = 0.0
+    hertz_coefficient: NewtonPerMetre1_5 | None = None
+    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = ()
+    pocket_spacing_scatter: Ratio = 0.0
+    ball_diameter_scatter: Metre = 0.0
+    pocket_position_scatter: Metre = 0.0
+    groove_damping: NewtonSecondPerMetre = math.inf
+    groove_stiffness: NewtonPerMetre = 0.0
+    pivot_speed: MetrePerSecond = 0.0
+    inner_radius: Metre | None = None
+    outer_radius: Metre | None = None
+    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
+    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
+    ramp_time: Second = 0.0
+    ramp_start: Ratio = 0.1
+    axial_kick: Ratio = 0.0
+    tilt_kick: Ratio = 0.0
+    is_tilt_held: bool = False
+    is_axially_held: bool = False
+
+    def __post_init__(self) -> None:
+        _check.settle(
+            *(_check.positive(self, name, 1e-30, 1e12) for name in _POSITIVE),
+            *(_check.between(self, name, 0.0, 1e12) for name in _NOT_NEGATIVE),
+            *(_check.between(self, name, -1e7, 1e7) for name in ("cage_speed", "inner_speed", "outer_speed")),
+            _check.whole(self, "ball_count", 1, 1000),
+            _check.positive(self, "transverse_inertia", 1e-30, 1e12),
+            _check.positive(self, "hertz_coefficient", 1e-3, 1e18),
+            _check.not_negative(self, "ramp_time", 1e4),
+            _check.between(self, "ramp_start", 0.0, 1.0, open_low=True),
+            _check.between(self, "axial_gravity", -1e6, 1e6),
+            _check.between(self, "dynamic_unbalance", 0.0, 0.1),
+            *(_check.positive(self, name, 1e-9, 1e3) for name in ("land_radius", "inner_radius", "outer_radius")),
+            *cage_design.pocket_and_land_fields(self),
+            _refused_damping(self),
+            *(_refused_speeds(self, name) for name in ("orbital_cosines", "orbital_sines", "ball_spin")),
+        )
+        _check.settle(
+            _refused_land(self),
+            _refused_orbits(self),
+            _refused_body(self),
+            cage_design.angles_for(self, self.ball_count),
+            *cage_design.together(self, hertz=self.hertz_coefficient is not None),
+        )
+
+    @property
+    def is_in_space(self) -> bool:
+        """Whether the cage tilts and moves along the axis."""
+        return self.motion is MotionModel.SPACE
+
+    @property
+    def half_play(self) -> Metre:
+        """c_p, half the clearance of a ball along the circumference, after shape and offset [m]."""
+        return pocket_shape.half_play(self)
+
+    @property
+    def slow_damping(self) -> NewtonSecondPerMetre:
+        """Damping of a ball that is pushed slowly: C_mu, or the slope of its law of traction [N s/m]."""
+        return self.race_damping if self.traction is None else self.traction.slope
+
+    @property
+    def transverse(self) -> KilogramMetre2:
+        """Moment of inertia about a diameter: as given, or of a thin ring [kg m2]."""
+        return 0.5 * self.moment_of_inertia if self.transverse_inertia is None else self.transverse_inertia
+
+    @property
+    def spin(self) -> tuple[RadianPerSecond, RadianPerSecond, RadianPerSecond]:
+        """Spin of a ball: as given, or about the axis and as good as infinite [rad/s]."""
+        if self.ball_spin is None:
+            return (-FAST / self.lever * self.friction_sense, 0.0, 0.0)
+        axial, outward, along = self.ball_spin
+        return (axial, outward, along)
+
+    @property
+    def lever(self) -> Metre:
+        """Distance of the pocket's friction from the ball's centre [m]; as good as none where no diameter is given."""
+        return self.ball_diameter / 2.0 or LEVER
+
+    @property
+    def ball_angles(self) -> tuple[Radian, ...]:
+        """Angle of each ball with its pocket, before any scatter [rad]."""
+        even = (2.0 * math.pi * j / self.ball_count for j in range(self.ball_count))
+        return self.pocket_angles or tuple(even)
+
+    @property
+    def lead_amplitude(self) -> Metre:
+        """Largest lead or lag of a free ball, from its uneven orbital speed [m]."""
+        waves = enumerate(zip(self.orbital_cosines, self.orbital_sines, strict=True), 1)
+        parts = [(h, a / (h * self.cage_speed), b / (h * self.cage_speed)) for h, (a, b) in waves]
+        turn = (2.0 * math.pi * i / _AROUND for i in range(_AROUND))
+        return max(abs(sum(a * math.sin(h * p) - b * math.cos(h * p) for h, a, b in parts)) for p in turn)
+
+    @property
+    def land_gap(self) -> Metre:
+        """Offset of the cage centre at which it touches its land [m]; infinite without a land."""
+        if self.guidance is Guidance.BALL or self.land_clearance is None:
+            return math.inf
+        return self.land_clearance / 2
+
+    @property
+    def wall_margins(self) -> tuple[Metre, Metre]:
+        """Way of the cage outward, and inward, at a ball until the wall of its pocket ends beside it [m].
+
+        A wall touches a ball at its equator, at the height of the ball's centre, up to half the pocket's length along the
+        orbit; infinite where no diameter of the cage is given.
+        """
+        half = (self.ball_diameter + self.pocket_clearance) / 2.0 + 1.5 * self.ball_diameter_scatter
+        outer = math.inf if self.outer_radius is None else self.outer_radius
+        inward = math.inf if math.isinf(outer) else pocket_shape.edge_level(outer, half) - self.pitch_radius
+        return (math.inf if self.inner_radius is None else self.pitch_radius - self.inner_radius), inward
+
+    @property
+    def friction_sense(self) -> int:
+        """Sigma of the friction: 1 for inner-race rotation, -1 for outer, 0 if the balls do not spin."""
+        return _sign(self.inner_speed - self.outer_speed)
+
+    @property
+    def rotation_sense(self) -> int:
+        """Sense in which the ball set turns; at rest, of the rings' mean, or of the inner ring."""
+        return _sign(self.cage_speed) or _sign(self.inner_speed + self.outer_speed) or self.friction_sense or 1
+
+    @property
+    def guiding_ring_speed(self) -> RadianPerSecond:
+        """Speed of the ring that carries the land [rad/s]; the cage's own without a land."""
+        speeds = {Guidance.INNER: self.inner_speed, Guidance.OUTER: self.outer_speed}
+        return speeds.get(self.guidance, self.cage_speed)
+
+
+_POSITIVE = ("mass", "moment_of_inertia", "pitch_radius", "ball_cage_stiffness", "land_stiffness")
+_NOT_NEGATIVE = (
+    *("ball_cage_friction", "land_friction", "unbalance", "gravity", "ball_diameter", "land_width", "added_mass"),
+    *("groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick"),
+)
+_AROUND = 360
+
+
+def turned_forward(cage: MovingCage) -> MovingCage:
+    """Return the cage, or its mirror image where its ball set turns backward.
+
+    Motion is chaotic: only runs of the same cage from the same starts agree to the last bit, so a bearing
+    that turns the other way is run as its mirror image: azimuth 0 stays where it is, ball j becomes ball -j
+    (counted around), and what runs faster at an azimuth runs slower, backward, at the opposite one.
+    """
+    if cage.rotation_sense > 0:
+        return cage
+    spin, angles = cage.ball_spin, cage.pocket_angles
+    return replace(
+        cage,
+        cage_speed=0.0 - cage.cage_speed,
+        inner_speed=0.0 - cage.inner_speed,
+        outer_speed=0.0 - cage.outer_speed,
+        pocket_angles=tuple(0.0 - a for a in angles[:1]) + tuple(2.0 * math.pi - a for a in angles[:0:-1]),
+        orbital_cosines=tuple(0.0 - value for value in cage.orbital_cosines),
+        ball_spin=None if spin is None else (0.0 - spin[0], 0.0 - spin[1], spin[2]),
+    )
+
+
+def _refused_damping(cage: MovingCage) -> Iterator[InputError]:
+    """C_mu must be above zero; it may be infinite, where the races grip the balls (eta = 1)."""
+    if cage.race_damping != math.inf:
+        yield from _check.positive(cage, "race_damping", 1e-12, 1e12)
+    if not cage.groove_damping > 0.0:
+        yield _check.problem(cage, "groove_damping", "must be > 0")
+
+
+def _refused_land(cage: MovingCage) -> Iterator[InputError]:
+    """A guided cage needs a clearance on its land, and two lands in space a distance."""
+    if cage.guidance is Guidance.BALL:
+        return
+    cure = 'Give the diametral clearance, or guidance = "ball" for a cage without a land.'
+    if cage.land_clearance is None:
+        yield _check.problem(cage, "land_clearance", "is missing", cure)
+    else:
+        yield from _check.positive(cage, "land_clearance", 1e-9, 10.0, hint=cure)
+
+
+def _refused_speeds(cage: MovingCage, field: str) -> Iterator[InputError]:
+    """Each speed is a number."""
+    unit = "rad/s" if field == "ball_spin" else "m/s"
+    wrong = [v for v in getattr(cage, field) or () if not _check.is_number(v) or not -1e12 <= v <= 1e12]
+    if wrong:
+        yield InputError(f"MovingCage.{field}", f"must each be a finite number [{unit}]", f"{wrong[0]!s:.40}")
+
+
+def _refused_orbits(cage: MovingCage) -> Iterator[InputError]:
+    """Cosines and sines come in pairs, and only a set that turns brings its balls back to where they were."""
+    if len(cage.orbital_cosines) != len(cage.orbital_sines):
+        rule = f"must be as many as orbital_cosines, {len(cage.orbital_cosines)}"
+        yield InputError("MovingCage.orbital_sines", rule, str(len(cage.orbital_sines)))
+    elif cage.orbital_cosines and cage.cage_speed == 0.0:
+        rule = "must be empty for a ball set at rest: its balls would run apart"
+        got = str(len(cage.orbital_cosines))
+        yield InputError("MovingCage.orbital_cosines", rule, got, "Give the cage's speed.")
+
+
+def _refused_body(cage: MovingCage) -> Iterator[InputError]:
+    """An inertia that no body can have, a spin without three parts, a ring that does not hold its balls."""
+    if cage.ball_spin is not None and len(cage.ball_spin) != 3:
+        yield InputError("MovingCage.ball_spin", "must be three numbers [rad/s]", str(len(cage.ball_spin)))
+    if cage.moment_of_inertia > 2.0 * cage.transverse * (1.0 + 1e-9):
+        rule = f"must be at least half that about the axis, {cage.moment_of_inertia / 2.0:.4g} [kg m2]"
+        cure = "A flat ring has half of it, a long one more; no body has less."
+        yield _check.problem(cage, "transverse_inertia", rule, cure)
+    inner, outer = cage.inner_radius or 0.0, cage.outer_radius or math.inf
+    if inner >= outer:
+        yield _check.problem(cage, "outer_radius", "must be larger than inner_radius")
+    outward, inward = cage.wall_margins
+    lost = "The walls of its pockets do not reach the balls."
+    if outward <= 0.0:
+        yield _check.problem(cage, "inner_radius", f"must be < {cage.pitch_radius:.4g} [m]", lost)
+    if inward <= 0.0:
+        least = math.hypot(cage.pitch_radius, (cage.ball_diameter + cage.pocket_clearance) / 2.0)
+        yield _check.problem(cage, "outer_radius", f"must be > {least:.4g} [m]", lost)
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = None) -> MovingCage:
+    """The cage of a solved study, with any friction: in the plane or in space, among balls of the study's level.
+
+    The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs
+    faster and slower around as the equilibrium says. In the plane among dampers, as in the paper, the balls spin about
+    the axis of the bearing; else about their own.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of the chain.
+    friction : float
+        Ball on cage [-].
+    ball : BallModel, optional
+        Instead of the study's; AUTO is one state.
+
+    Raises
+    ------
+    InputError
+        The study has no cage, or its running clearances cannot be.
+
+    Warns
+    -----
+    ValidityWarning
+        The balls lead and lag by more than half their clearance, so that the pockets drive them.
+    """
+    study, design, body = solution.study, solution.design, solution.inertia
+    level, waves = ball or design.ball, solution.orbital_waves
+    hertz = design.pocket_contact is not PocketContact.LINEAR
+    stiffness = solution.restitution.ball_cage_stiffness
+    spin = tuple(float(x) for x in solution.bearing.equilibrium.ball_spin.mean(axis=0))
+    if design.motion is MotionModel.PLANE and level is BallModel.DAMPER:
+        spin = (math.copysign(math.hypot(*spin), spin[0]), 0.0, 0.0)
+    free = solution.free_ball if level is BallModel.FREE else None
+    if free is not None:  # that of the most loaded ball, in the sense of this bearing
+        sense = math.copysign(1.0, solution.bearing.cage_speed)
+        spin = (sense * free[1][0], sense * free[1][1], free[1][2])
+    in_space = design.motion is MotionModel.SPACE
+    linear = solution.mobility.linear if in_space else None
+    outer = design.outer_diameter if design.guidance is Guidance.OUTER else design.inner_diameter
+    land = design.land_diameter or outer
+    depth = solution.impact_speed * math.sqrt(body.mass / 2.0 / stiffness)
+    radius = math.sqrt(study.bearing.ball_diameter / 2.0 * depth)
+    try:
+        cage = MovingCage(
+            mass=body.mass,
+            moment_of_inertia=body.moment_of_inertia,
+            transverse_inertia=body.transverse_inertia,
+            ball_count=study.bearing.ball_count,
+            pitch_radius=study.bearing.pitch_diameter / 2.0,
+            cage_speed=solution.bearing.cage_speed,
+            inner_speed=study.operation.inner_speed,
+            outer_speed=study.operation.outer_speed,
+            motion=design.motion,
+            ball_cage_stiffness=stiffness,
+            race_damping=solution.restitution.race_damping,
+            ball_cage_friction=friction,
+            ball_spin=spin,
+            ball_diameter=study.bearing.ball_diameter,
+            traction=None if level is BallModel.DAMPER else solution.mobility.traction,
+            free_ball=free[0] if free else None,
+            # equal energy and depth in an impact at the impact speed
+            hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, solution.impact_speed) if hertz else None,
+            # sliding at which a contact as wide as in an impact at the impact speed pivots (Contensou)
+            pivot_speed=8.0 / (3.0 * math.pi) * radius * math.hypot(*spin),
+            groove_damping=linear.groove_damping if linear else math.inf,
+            groove_stiffness=linear.groove_stiffness if linear else 0.0,
+            land_radius=land / 2.0 if land is not None else None,
+            inner_radius=design.inner_diameter / 2.0 if design.inner_diameter else None,
+            outer_radius=design.outer_diameter / 2.0 if design.outer_diameter else None,
+            orbital_cosines=waves.cosines,
+            orbital_sines=waves.sines,
+            ramp_time=study.operation.ramp_time,
+            ramp_start=study.operation.ramp_start,
+            axial_kick=study.stability.axial_kick,
+            tilt_kick=study.stability.tilt_kick,
+            **{name: getattr(design, name) for name in _AS_DESIGNED},
+        )
+    except InputError as error:
+        key = error.path.removeprefix("MovingCage.")
+        if key not in ("pocket_clearance", "pocket_axial_clearance"):
+            raise
+        raise error.at(f"[cage] {key}", cure=f"It is that of the running cage. {error.cure}") from None
+    _warn_if_balls_are_driven(cage)
+    return cage
+
+
+_AS_DESIGNED = (
+    *("guidance", "land_clearance", "land_friction", "land_stiffness", "land_restitution", "land_count"),
+    *("land_spacing", "land_width", "land_out_of_round", "land_lobes", "unbalance", "dynamic_unbalance", "gravity"),
+    *("axial_gravity", "added_mass", "pocket_shape", "pocket_clearance", "pocket_axial_clearance"),
+    *("pocket_axial_offset", "pocket_angles", "pocket_spacing_scatter", "ball_diameter_scatter"),
+    *("pocket_position_scatter",),
+)
+"""Fields that the moving cage has as its design states them."""
+
+
+def _warn_if_balls_are_driven(cage: MovingCage) -> None:
+    """Warn where free balls would lead and lag by more than their clearance."""
+    if cage.lead_amplitude > cage.half_play:
+        lead, clearance = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
+        warnings.warn(
+            f"Unconstrained, the balls would lead and lag by up to {lead} under this load, more than half "
+            f"their clearance in a pocket, {clearance}: the cage has to drive them, which adds load and "
+            "wear.",
+            ValidityWarning,
+            stacklevel=3,
+        )

@@ -1,0 +1,234 @@
+"""The numbers of a run as the engine takes them: a row of each kind, from the moving cage and a start."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from separatrix.cage import outcome, rows
+from separatrix.cage.ball import slip_field
+from separatrix.cage.closed_forms import (
+    axial_half_play,
+    drifts,
+    drive_energy,
+    moving_mass,
+    rebound_damping,
+    time_unit,
+)
+from separatrix import pocket_shape
+from separatrix.cage.step import exact_decay, step_length
+from separatrix.cage_design import Guidance
+from separatrix.pocket_shape import PocketShape
+
+if TYPE_CHECKING:
+    from separatrix.ball_traction import SlipField
+    from separatrix.cage.moving_cage import MovingCage
+    from separatrix.units import Array, Metre, MetrePerSecond, Second
+
+NOWHERE: Metre = 1e6
+"""Where something is that is never met: finite, so that a difference of two is a number."""
+
+LEAST_PIVOT = 3e-3
+"""Pivoting speed, as a share of the initial disturbance, below which friction would turn round within a step."""
+
+GAUSS = 3
+"""Strips of a land of some width: they hold its force and moment while all of it touches."""
+
+LOOK, TURNS = 150.0, 0.25
+"""Length of a look, in radians of the motion with one ball in touch, and at least this share of a turn of the ball set;
+a slow one has at most ten times the former."""
+
+LADDER = 1.1
+"""Steps of a look are a power of this, so that runs of many cages have few lengths and share a queue."""
+
+FOLLOWED = 160
+"""Looks for which a motion is followed whose end is not plain, at least: 1.5 s of the shipped cage."""
+
+ADRIFT = 10.0
+"""Mean offset, in half clearances of the pockets, at which a cage without a land has left them."""
+
+
+class Kind(NamedTuple):
+    """What runs of one queue have alike: they are compiled for, or have as many numbers of."""
+
+    ball: int
+    space: bool
+    leans: bool
+    hertz: bool
+    lobes: int
+    balls: int
+    strips: int
+    harmonics: int
+    steps: int
+
+
+class Numbers(NamedTuple):
+    """Rows of a run but for what its start draws: `numbers`, strips, harmonics, limits."""
+
+    kind: Kind
+    numbers: Array
+    strips: Array
+    waves: Array
+    limits: Array
+
+
+def ball_level(cage: MovingCage) -> int:
+    """Level of the ball of this cage."""
+    if cage.free_ball is not None:
+        return rows.FREE
+    return rows.DAMPER if cage.traction is None else rows.ONE_STATE
+
+
+def look_time(cage: MovingCage) -> Second:
+    """Length of a look [s]."""
+    least = LOOK * time_unit(cage)
+    turn = 2.0 * math.pi / abs(cage.cage_speed) if cage.cage_speed else 0.0
+    return min(max(least, TURNS * turn), 10.0 * least)
+
+
+def pocket_rectangle(cage: MovingCage) -> tuple[Metre, Metre, Metre]:
+    """Half-lengths of the pocket's rectangle along orbit and axis, and how far its wall is outside it [m]."""
+    half, end = cage.pocket_clearance / 2.0, axial_half_play(cage)
+    if cage.pocket_shape is PocketShape.SQUARE:
+        return half, min(end, NOWHERE), 0.0
+    return half - end, 0.0, end
+
+
+def land_strips(cage: MovingCage) -> Array:
+    """Height, stiffness and damping of the strips of all lands, shape (strip, 3)."""
+    if cage.guidance is Guidance.BALL:
+        return np.zeros((0, rows.STRIP_NUMBERS))
+    spacing = (cage.land_spacing or 0.0) if cage.land_count == 2 else 0.0
+    middles, share = np.array((-0.5 * spacing, 0.5 * spacing))[: cage.land_count], np.ones(1)
+    at = np.zeros(1)
+    if not cage.is_in_space:
+        middles, share = np.zeros(1), np.array([float(cage.land_count)])
+    elif cage.land_width > 0.0:
+        at, weight = np.polynomial.legendre.leggauss(GAUSS)
+        at, share = 0.5 * cage.land_width * at, 0.5 * weight
+    whole = float(cage.land_count) if not cage.is_in_space else 1.0
+    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(cage.land_stiffness * whole * moving_mass(cage))
+    heights = (middles[:, None] + at).ravel()
+    shares = np.tile(share, middles.size)
+    return np.stack([heights, cage.land_stiffness * shares, damping * shares / whole], axis=1)
+
+
+def numbers_of(cage: MovingCage, kick: MetrePerSecond, duration: Second, *, least: Second = 0.0, refine: int = 1) -> Numbers:
+    """Rows of a run of a cage that turns forward, from a disturbance [m/s].
+
+    `least`: time to which it is followed even where its end is plain before; `refine`: steps in one of the usual length.
+    """
+    look = look_time(cage)
+    fewest = look / step_length(cage, kick)
+    steps = refine * math.ceil(LADDER ** math.ceil(math.log(fewest, LADDER)))
+    step = look / steps
+    n = np.zeros(rows.NUMBERS)
+    _enter_cage(n, cage, kick, step)
+    _enter_ball(n, cage, step)
+    strips, waves = land_strips(cage), np.array([cage.orbital_cosines, cage.orbital_sines]).T.ravel()
+    kind = Kind(
+        ball=ball_level(cage),
+        space=cage.is_in_space,
+        leans=not cage.is_in_space and cage.pocket_axial_offset != 0.0,
+        hertz=cage.hertz_coefficient is not None,
+        lobes=cage.land_lobes if cage.land_out_of_round > 0.0 else 0,
+        balls=cage.ball_count,
+        strips=len(strips),
+        harmonics=len(cage.orbital_cosines),
+        steps=steps,
+    )
+    return Numbers(kind, n, strips.ravel(), waves, _limits(cage, kick, duration, least, look))
+
+
+def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) -> None:
+    M, R, body = moving_mass(cage), cage.pitch_radius, cage
+    side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
+    reach = R if cage.land_radius is None else cage.land_radius
+    _, beside, _ = pocket_rectangle(cage)
+    lean_cosine, lean_sine = pocket_shape.tilt(cage)
+    outward, inward = cage.wall_margins
+    given = {
+        rows.STEP: step,
+        rows.PER_MASS: 1.0 / M,
+        rows.PER_AXIAL_MASS: 0.0 if cage.is_axially_held else 1.0 / cage.mass,
+        rows.PER_TURNING: R * R / cage.moment_of_inertia,
+        rows.PER_TILTING: 0.0 if cage.is_tilt_held else 1.0 / cage.transverse,
+        rows.MASS: M,
+        rows.AXIAL_MASS: cage.mass,
+        rows.POLAR: cage.moment_of_inertia,
+        rows.TRANSVERSE: cage.transverse,
+        rows.RADIUS: R,
+        rows.PER_RADIUS: 1.0 / R,
+        rows.ORBIT: cage.cage_speed,
+        rows.RAMP_RATE: (1.0 - cage.ramp_start) / cage.ramp_time if cage.ramp_time > 0.0 else 0.0,
+        rows.GRAVITY: cage.gravity * cage.mass / M,
+        rows.AXIAL_GRAVITY: 0.0 if cage.is_axially_held else cage.axial_gravity,
+        rows.ECCENTRICITY: cage.unbalance / M,
+        rows.LEAN: cage.dynamic_unbalance,
+        rows.STIFFNESS: cage.hertz_coefficient or cage.ball_cage_stiffness,
+        rows.BESIDE: beside,
+        rows.LEAN_COSINE: lean_cosine,
+        rows.LEAN_SINE: -lean_sine,
+        rows.FRICTION: cage.ball_cage_friction,
+        rows.LEVER: cage.lever,
+        rows.SPIN_Z: cage.spin[0],
+        rows.SPIN_R: cage.spin[1],
+        rows.SPIN_T: cage.spin[2],
+        rows.PIVOT: max(cage.pivot_speed, LEAST_PIVOT * kick) ** 2,
+        rows.MARGIN_IN: min(outward, NOWHERE),
+        rows.MARGIN_OUT: min(inward, NOWHERE),
+        rows.LAND_GAP: min(cage.land_gap, NOWHERE),
+        rows.LOBE: cage.land_out_of_round,
+        rows.LOBE_SLOPE: cage.land_out_of_round * cage.land_lobes,
+        rows.LAND_FRICTION: cage.land_friction,
+        rows.LAND_LEVER: side * reach / R,
+        rows.RING_SLIDE: side * (cage.guiding_ring_speed - cage.cage_speed) * reach,
+    }
+    n[list(given)] = list(given.values())
+
+
+def _enter_ball(n: Array, cage: MovingCage, step: Second) -> None:
+    n[rows.PER_DAMPING], n[rows.PER_GROOVE] = 1.0 / cage.race_damping, 1.0 / cage.groove_damping
+    n[rows.GROOVE_STIFFNESS] = cage.groove_stiffness
+    law, ball = cage.traction, cage.free_ball
+    if law is not None:
+        rate = law.slope / law.mass
+        n[rows.SLOPE], n[rows.PER_KNEE], n[rows.PER_BALL_MASS] = law.slope, 1.0 / law.speed, 1.0 / law.mass
+        n[rows.HELD_RATE] = rate
+        n[rows.DECAY_HALF : rows.GAIN_LAST + 1] = exact_decay(rate, step)
+    if ball is not None:
+        n[rows.PER_OWN_MASS], n[rows.PER_OWN_INERTIA] = 1.0 / ball.mass, 1.0 / ball.inertia
+        side = cage.lever * cage.spin[2]
+        n[rows.INNER : rows.INNER + rows.RACE_ROWS] = _race_numbers(ball.inner, side)
+        n[rows.OUTER : rows.OUTER + rows.RACE_ROWS] = _race_numbers(ball.outer, side)
+
+
+def _race_numbers(race: SlipField, side: MetrePerSecond) -> tuple[float, ...]:
+    """Numbers of a race, and what its strips give at free rolling: subtracted for ever, so there a ball stays as it is."""
+    field = race.slip, race.pivoting, race.heathcote, race.axis_ratio**2 / 4.0, race.elastic_slip**2
+    slip, pivoting, heathcote, wide, creep = (np.float64(x) for x in field)
+    at_rest = slip_field.py_func(slip, pivoting, np.float64(side), heathcote, wide, creep)  # type: ignore[attr-defined]
+    return (race.normal_axial, race.normal_radial, race.limit, race.semi_major, *field, *(float(x) for x in at_rest))
+
+
+def _limits(cage: MovingCage, kick: MetrePerSecond, duration: Second, least: Second, look: Second) -> Array:
+    """Limits of a run: see `outcome`."""
+    drive, kicked = drive_energy(cage), 0.5 * moving_mass(cage) * kick**2
+    pressed = 0.5 * cage.ball_cage_stiffness * cage.half_play**2
+    still = outcome.STILL * min(kicked, pressed or kicked)
+    wide = cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
+    found = np.zeros(outcome.LIMITS)
+    ramp = math.ceil(cage.ramp_time / look)
+    found[outcome.DRIVE] = drive
+    found[outcome.RESTING] = max(outcome.REST * drive, still)
+    found[outcome.GROWS] = outcome.GROWN * (kicked + drive + 0.5 * moving_mass(cage) * (cage.cage_speed * wide) ** 2)
+    found[outcome.MOST] = ramp + max(FOLLOWED, math.ceil(duration / look))
+    found[outcome.LEAST] = math.ceil(least / look)
+    found[outcome.FROM] = ramp
+    found[outcome.IS_ADRIFT] = float(drifts(cage))
+    found[outcome.FAR] = ADRIFT * cage.half_play if drifts(cage) and cage.half_play > 0.0 else NOWHERE
+    found[outcome.RAMP_TIME], found[outcome.RAMP_START] = cage.ramp_time, cage.ramp_start
+    found[outcome.TURNS_AT] = cage.cage_speed
+    return found

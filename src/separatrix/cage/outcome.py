@@ -1,0 +1,162 @@
+r"""Where the motion of a run ends, by its energy and by the work of friction, look by look.
+
+A look is some turns of a whirl. What frame and loads can give the cage without friction is its drive energy. The rules,
+in their order, after each look; the constants are shares and multiples of the drive energy E unless they say another:
+
+1. no number any more, or a ball at the edge of its pocket's wall: UNRESOLVED;
+2. more energy than `GROWN` times that of the initial disturbance and E together: WHIRLS;
+3. at rest for two looks: SETTLES;
+4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS, if the pockets give
+   most of the work; what the land maintains counts as settled, and is counted apart;
+5. driven: below E for twenty looks, no higher in the later ten, and pockets give less than half: SETTLES;
+6. at the end, by the last fifth: below `WEAK` E a motion that the pockets feed ROLLS in them, any other SETTLES;
+   above, it WHIRLS if the pockets feed it and it does not fall, and is UNRESOLVED if it still falls.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+
+from separatrix.cage.rows import (
+    ENERGY,
+    OFFSET_MEAN,
+    WORK_BALL,
+    WORK_FRAME,
+    WORK_LAND,
+    WORK_POCKET,
+)
+from separatrix.compiled import part
+
+GROWN = 100.0
+"""Multiple of the energy at the start, with the drive energy, from which no motion of a study came back."""
+
+REST, STILL = 3e-3, 1e-4
+"""Share of the drive energy at which a cage is at rest (speeds of a twentieth), and of the energy of the initial
+disturbance, or of an impact as deep as the clearance if that is less, where nothing drives the cage."""
+
+HIGH, TEN = 10.0, 10
+"""Multiple of the drive energy, and looks, of a whirl that is plain: three times the speed that the frame can give."""
+
+TURNED_OVER = 3.0
+"""How often friction has put in the energy of such a motion: one that only decays slowly has not been fed."""
+
+WEAK = 3.0
+"""Multiple of the drive energy below which a motion that lasts is no danger by itself: it ROLLS in its pockets."""
+
+FALLS = 0.8
+"""Mean energy of later looks over that of earlier ones below which a motion falls."""
+
+
+class RunOutcome(IntEnum):
+    """Where the motion of one run ends."""
+
+    SETTLES = 0
+    WHIRLS = 1
+    DRIFTS = 2
+    UNRESOLVED = 3
+    ROLLS = 4
+
+
+class Cause(IntEnum):
+    """Why a run is unresolved; `LAND_FRICTION`: what keeps one moving that counts as settled."""
+
+    NONE = 0
+    LEFT_POCKET = 1
+    NO_CONTACT = 2
+    FALLING = 3
+    NOT_FINITE = 4
+    LAND_FRICTION = 5
+
+
+SETTLES, WHIRLS, DRIFTS, UNRESOLVED, ROLLS = (int(one) for one in RunOutcome)
+UNKNOWN = -1
+
+# Limits of a run.
+DRIVE, RESTING, GROWS, MOST, LEAST, FROM, IS_ADRIFT, FAR, RAMP_TIME, RAMP_START, TURNS_AT, LIMITS = range(12)
+
+
+@part
+def mean(looks, column, first, last):
+    """Mean of a column of the looks from `first` to before `last`."""
+    total = 0.0
+    for i in range(first, last):
+        total += looks[i, column]
+    return total / (last - first)
+
+
+@part
+def fed(looks, first, last):
+    """Work of pocket friction and of land friction, and all that was put in."""
+    pocket = land = ball = frame = 0.0
+    for i in range(first, last):
+        pocket += looks[i, WORK_POCKET]
+        land += looks[i, WORK_LAND]
+        ball += looks[i, WORK_BALL]
+        frame += looks[i, WORK_FRAME]
+    return pocket, land, max(0.0, pocket) + max(0.0, land) + max(0.0, ball) + max(0.0, frame)
+
+
+@part
+def stays(looks, first, last):
+    """Whether the later half has no less energy than the earlier, but for its scatter."""
+    middle = (first + last) // 2
+    return mean(looks, ENERGY, middle, last) >= FALLS * mean(looks, ENERGY, first, middle)
+
+
+@part
+def end_of_motion(looks, i, touched, limits):
+    """Outcome and cause after look i; `UNKNOWN` if the end is not plain."""
+    energy, drive, end = looks[i, ENERGY], limits[DRIVE], i + 1
+    if not math.isfinite(energy):
+        return UNRESOLVED, 4
+    pocket, land, put_in = fed(looks, max(0, end - TEN), end)
+    by_land = land > 0.5 * put_in
+    if energy > limits[GROWS]:
+        return WHIRLS, 5 if by_land else 0
+    seen = end - int(limits[FROM])
+    settled = DRIFTS if limits[IS_ADRIFT] > 0.0 else SETTLES
+    if touched and seen >= 2:
+        if energy < limits[RESTING] and looks[i - 1, ENERGY] < limits[RESTING] and limits[IS_ADRIFT] == 0.0:
+            return settled, 0
+        if looks[i, OFFSET_MEAN] > limits[FAR] and energy < drive:
+            return DRIFTS, 0
+    if touched and seen >= TEN:
+        above = True
+        for j in range(end - TEN, end):
+            above = above and looks[j, ENERGY] > max(HIGH * drive, limits[RESTING])
+        over = TURNED_OVER * mean(looks, ENERGY, end - TEN, end)
+        if above and stays(looks, end - TEN, end) and max(pocket, land) > max(over, 0.5 * put_in):
+            return (settled, 5) if by_land else (WHIRLS, 0)
+    if touched and seen >= 2 * TEN and drive > 0.0 and limits[IS_ADRIFT] == 0.0:
+        below = True
+        for j in range(end - 2 * TEN, end):
+            below = below and looks[j, ENERGY] < drive
+        pocket, land, put_in = fed(looks, end - 2 * TEN, end)
+        late, early = mean(looks, ENERGY, end - TEN, end), mean(looks, ENERGY, end - 2 * TEN, end - TEN)
+        moved = abs(mean(looks, OFFSET_MEAN, end - TEN, end) - mean(looks, OFFSET_MEAN, end - 2 * TEN, end - TEN))
+        if below and pocket < 0.5 * put_in and FALLS * late <= early and moved < 0.05 * mean(looks, OFFSET_MEAN, end - TEN, end):
+            return settled, 0
+    if end < limits[MOST]:
+        return UNKNOWN, 0
+    return end_by_last_fifth(looks, end, touched, settled, limits)
+
+
+@part
+def end_by_last_fifth(looks, end, touched, settled, limits):
+    """Outcome and cause of a run that was followed to its end."""
+    first = end - max(1, end // 5)
+    pocket, land, put_in = fed(looks, first, end)
+    last = mean(looks, ENERGY, first, end)
+    if not touched:
+        return UNRESOLVED, 2
+    if last <= limits[RESTING]:
+        return settled, 0
+    if land > 0.5 * put_in:
+        return settled, 5
+    is_fed = pocket > 0.5 * put_in and pocket > last
+    if last <= WEAK * limits[DRIVE]:
+        return (ROLLS, 0) if is_fed and settled == SETTLES else (settled, 0)
+    if is_fed and stays(looks, end // 2, end):
+        return WHIRLS, 0
+    return (settled, 0) if limits[DRIVE] == 0.0 and not is_fed else (UNRESOLVED, 3)

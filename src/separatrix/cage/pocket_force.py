@@ -1,0 +1,63 @@
+r"""The force of a pocket on its ball: a rounded rectangle, and friction along the true sliding.
+
+Seen along the radius a pocket is a rectangle with half-lengths `apart` along the orbit and `beside` along the axis, and
+its wall stands `around` outside it: a bore is (0, 0, c), a slot (c - c_a, 0, c_a), a square pocket (c, c_z, 0); one that
+grips its ball is (0, ..., 0). The ball touches where it is more than `around` outside the rectangle.
+"""
+
+from __future__ import annotations
+
+import math
+
+from separatrix.cage.rows import ONE, TINY, ZERO
+from separatrix.compiled import inlined
+
+
+@inlined
+def pocket_depth(along, across, around, apart, beside):
+    """Depth of the wall in its ball, and direction (axial, along the orbit) in which the ball pushes it.
+
+    `along`, `across`: place of the pocket less that of its ball.
+    """
+    t = along - min(max(along, -apart), apart)
+    z = across - min(max(across, -beside), beside)
+    off = math.sqrt(t * t + z * z + TINY)
+    per = -ONE / off
+    return max(off - around, ZERO), per * z, per * t
+
+
+@inlined
+def pocket_depth_in_plane(along, play, lean_sine, lean_cosine):
+    """The same where the axial motion is held, so that the clearance along the orbit and the lean of the contact are."""
+    return lean_cosine * max(abs(along) - play, ZERO), lean_sine, math.copysign(lean_cosine, -along)
+
+
+@inlined
+def level_depth(along, play):
+    """The same of a contact that does not lean."""
+    return max(abs(along) - play, ZERO), math.copysign(ONE, -along)
+
+
+@inlined
+def pocket_friction(limit, nz, nt, lever, oz, o_r, ot, ball_speed, vz, vr, vt, pivot):
+    """Friction on the wall (axial, radial, along the orbit), and the speed of the sliding.
+
+    Along the sliding of the ball's surface, of spin (oz, o_r, ot), on the wall, of velocity (vz, vr, vt) at the point
+    that touches; in proportion to it well below the pivoting speed, whose square is `pivot` (Contensou).
+    """
+    sz = lever * o_r * nt - vz
+    sr = lever * (ot * nz - oz * nt) - vr
+    st = ball_speed - lever * o_r * nz - vt
+    sn = sz * nz + st * nt
+    sz, st = sz - sn * nz, st - sn * nt
+    slide = math.sqrt(sz * sz + sr * sr + st * st + pivot)
+    share = limit / slide
+    return share * sz, share * sr, share * st, slide
+
+
+@inlined
+def friction_in_plane(limit, nt, lever, oz, o_r, vr, pivot):
+    """The same of a contact that does not lean: only the outward friction moves a cage that is held along the axis."""
+    sz, sr = lever * o_r * nt, -lever * oz * nt - vr
+    slide = math.sqrt(sz * sz + sr * sr + pivot)
+    return limit / slide * sr, slide
