@@ -10,11 +10,8 @@ Only kernels that Python calls are cached, with all that they call in one file. 
 another name and then renames it, and a cached kernel has one signature only: processes that compile it at the
 same time write the same file, so that they can share a folder.
 
-Equal operations on numbers that lie side by side are done at once, in the order in which they are written:
-numba does so if `SLP_VECTORIZE` is set, and here it is set for kernels only.
-
-Of numba this uses `njit`, the settings CACHE_DIR and SLP_VECTORIZE (the variables NUMBA_CACHE_DIR and
-NUMBA_SLP_VECTORIZE), a dispatcher's `compile`, and one option that numba does not document, `_nrt`.
+Of numba this uses `njit`, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and one option that numba does not
+document, `_nrt`.
 """
 
 from __future__ import annotations
@@ -125,33 +122,12 @@ _FOLDER = cache_folder(Path(__file__).parent)
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a kernel that Python calls, always with arguments of the same types, and cache it."""
-    with _set("CACHE_DIR", str(_FOLDER or "")):
-        compiled = _compiled(function, cache=_FOLDER is not None)
-    build = compiled.compile  # type: ignore[attr-defined]
-
-    def compile_side_by_side(signature: object) -> object:
-        with _set("SLP_VECTORIZE", 1):
-            return build(signature)
-
-    compiled.compile = compile_side_by_side  # type: ignore[attr-defined]
-    return compiled
-
-
-@contextlib.contextmanager
-def _set(name: str, value: str | int) -> Iterator[None]:
-    """Change a setting of numba for a while."""
-    usual = CONFIG[name]
+    usual = CONFIG["CACHE_DIR"]
     try:
-        CONFIG[name] = value
-        yield
-    finally:
-        CONFIG[name] = usual
-
-
-def queue_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile a kernel whose innermost loops are over lanes: numba's own setting, which is five times faster there."""
-    with _set("CACHE_DIR", str(_FOLDER or "")):
+        CONFIG["CACHE_DIR"] = str(_FOLDER or "")
         return _compiled(function, cache=_FOLDER is not None)
+    finally:
+        CONFIG["CACHE_DIR"] = usual
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:
@@ -167,21 +143,8 @@ def unfolded(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled(function, inline="always")
 
 
-def inner_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile a part that makes no array, so that it need not count references to those it is given.
-
-    Called from a loop of a microsecond, the counting took a third of the time.
-    """
-    return _compiled(function, _nrt=False)
-
-
 def inlined(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a part into those that call it: the equations of the cage, in loops over lanes."""
-    return _compiled(function, _nrt=False, forceinline=True)
-
-
-def inlined_kernel(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile an inner kernel into those that call it."""
     return _compiled(function, _nrt=False, forceinline=True)
 
 

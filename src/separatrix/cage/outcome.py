@@ -41,7 +41,7 @@ HIGH, TEN = 10.0, 10
 TURNED_OVER = 3.0
 """How often friction has put in the energy of such a motion: one that only decays slowly has not been fed."""
 
-WEAK = 3.0
+WEAK = 1.0
 """Multiple of the drive energy below which a motion that lasts is no danger by itself: it ROLLS in its pockets."""
 
 FALLS = 0.8

@@ -17,7 +17,7 @@ from separatrix.cage.outcome import FROM, LEAST, MOST, RAMP_START, RAMP_TIME, TU
 from separatrix.cage.pocket_force import pocket_depth, pocket_depth_in_plane
 from separatrix.cage.rows import *  # noqa: F403
 from separatrix.cage.step import held_stage_end, hold, stage_end
-from separatrix.compiled import inlined, part, queue_kernel
+from separatrix.compiled import inlined, kernel, part
 
 OUTCOME, CAUSE, ENDED, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(8)
 EVIDENCE_COLUMNS = FIRST_EXTREME + EXTREMES_END - WATCHED
@@ -246,7 +246,7 @@ def queue(ball: int, space: bool, leans: bool = False, hertz: bool = False, lobe
                 if at[OUTCOME] != UNKNOWN and is_over:
                     look[l], live = -1, live - 1
 
-    return queue_kernel(run_queue)
+    return kernel(run_queue)
 
 
 @part

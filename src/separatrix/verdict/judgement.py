@@ -1,0 +1,373 @@
+"""From the runs of an ensemble to a verdict, its probability, its evidence and its reason."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from scipy.special import stdtrit
+
+from separatrix.cage import reason
+from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
+from separatrix.cage.reason import CageMotion, cage_motion, largest_room, left_pockets
+from separatrix.cage.space.ensemble import SpaceEnsemble
+from separatrix.units import (
+    Array,
+    Hertz,
+    Joule,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    PerSecond,
+    Radian,
+    Ratio,
+    Rows,
+    Second,
+    Watt,
+)
+
+if TYPE_CHECKING:
+    from separatrix.cage.ensemble import Ensemble
+
+
+CLEAR = 0.9
+FEW = 0.5
+NORMAL_95 = 1.959963984540054
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KickCount:
+    """Where the runs from one kick end.
+
+    Attributes
+    ----------
+    kick : float
+        Speed [m/s].
+    settles, whirls, drifts, unresolved : int
+        Runs of each outcome.
+    kept_by_land : int
+        Runs of those that settle in which friction on the land, not in the pockets, keeps up more motion than
+        frame and loads can give.
+    probability_stable, probability_low, probability_high : float
+        Share of the runs that settle, and its 95 % Wilson interval [-].
+    """
+
+    kick: MetrePerSecond
+    settles: int
+    whirls: int
+    drifts: int
+    unresolved: int
+    kept_by_land: int
+    probability_stable: Ratio
+    probability_low: Ratio
+    probability_high: Ratio
+
+    @property
+    def runs(self) -> int:
+        """Runs from this kick."""
+        return self.settles + self.whirls + self.drifts + self.unresolved
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judgement:
+    """Verdict on a cage with its evidence: that of the worst kick, but for what says "any run".
+
+    Attributes
+    ----------
+    verdict : Verdict
+        STABLE, UNSTABLE or UNDECIDED.
+    probability_stable, probability_low, probability_high : float
+        Share of the runs from the worst kick that settle, and its 95 % Wilson interval [-].
+    worst_kick : float
+        Of the kicks from which most runs whirl, if any, the one from which fewest settle [m/s].
+    by_kick : tuple of KickCount
+        Where the runs from every kick end.
+    reason : str
+        One sentence.
+    cage_motion : CageMotion or None
+        What most runs from the worst kick end in; None if most are unresolved.
+    growth_rate : float
+        Mean over all runs from the worst kick of half the logarithmic rate of the kinetic energy in their
+        second half [1/s].
+    growth_rate_low, growth_rate_high : float or None
+        Student's 95 % interval of that mean; None with fewer than two runs [1/s].
+    largest_offset : float
+        Largest offset of the cage centre in any run [m].
+    mean_offset : float
+        Median of the mean offset in the last part of the runs that end in `cage_motion`, or of all if that
+        is None [m].
+    orbit_evenness : float
+        Median of the offset's spread over its mean there, in the same runs: 0 on a circle about the axis,
+        0.52 in a motion without any preferred radius [-].
+    drift_rate, drift_rate_law : float
+        Median growth rate of the mean offset of the runs that do not whirl, and the linear law's for a
+        cage without a land; 0 with one [1/s].
+    largest_contact_force, largest_land_force : float
+        Largest force between a ball and its pocket, and of the land, in any run [N].
+    pocket_impact_shares : tuple of float
+        Share of each pocket in the impacts of balls, all runs, for each ball; zeros if there was none [-].
+    land_impact_share : float
+        Share of the land in all impacts [-].
+    whirl_frequency, whirl_direction
+        Medians over the same runs [Hz]; 1 forward, -1 backward, 0 none.
+    whirl_ratio : float or None
+        Speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's; median
+        over the same runs. 1 goes round with the balls. None if the ball set is at rest [-].
+    drive_energy, end_energy : float
+        Kinetic energy that frame and loads can give the cage without friction, and the median of what the
+        cage has in the last part of the same runs [J].
+    pocket_power, land_power : float
+        Median power that the friction of pockets and of the land feeds into the cage there; below 0 it
+        takes from it [W].
+    rubbing_force, rubbing_speed, rubbing_power : float
+        Medians over the same runs: mean force on the land [N], sliding speed there [m/s], and the power
+        that rubbing turns to heat [W]; 0 if none rubs.
+    energy_imbalance : float
+        The worst of all runs [-].
+    duration, longest_run : float
+        Asked for, and of the longest run [s].
+    runs : int
+        Runs at each kick.
+    largest_tilt, axial_travel : float or None
+        Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m], any run;
+        None in the plane.
+    cone_ratio, impact_rate : float or None
+        The same medians as of the whirl, in space: speed at which the lean of the axis goes round, in the
+        fixed frame, over the ball set's [-]; impacts of all pockets [1/s]. None in the plane.
+    """
+
+    verdict: Verdict
+    probability_stable: Ratio
+    probability_low: Ratio
+    probability_high: Ratio
+    worst_kick: MetrePerSecond
+    by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]
+    reason: str
+    cage_motion: CageMotion | None
+    growth_rate: PerSecond
+    growth_rate_low: PerSecond | None
+    growth_rate_high: PerSecond | None
+    largest_offset: Metre
+    mean_offset: Metre
+    orbit_evenness: Ratio
+    drift_rate: PerSecond
+    drift_rate_law: PerSecond
+    largest_contact_force: Newton
+    largest_land_force: Newton
+    pocket_impact_shares: Annotated[tuple[Ratio, ...], ("ball",)]
+    land_impact_share: Ratio
+    whirl_frequency: Hertz
+    whirl_direction: int
+    whirl_ratio: Ratio | None
+    drive_energy: Joule
+    end_energy: Joule
+    pocket_power: Watt
+    land_power: Watt
+    rubbing_force: Newton
+    rubbing_speed: MetrePerSecond
+    rubbing_power: Watt
+    energy_imbalance: Ratio
+    duration: Second
+    longest_run: Second
+    runs: int
+    largest_tilt: Radian | None = None
+    axial_travel: Metre | None = None
+    cone_ratio: Ratio | None = None
+    impact_rate: PerSecond | None = None
+
+
+def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
+    """Where the runs from each kick end."""
+    runs, found = ensemble.outcome.shape[1], []
+    counted = np.stack([ensemble.count(outcome) for outcome in RunOutcome], axis=1)
+    kept = np.count_nonzero(ensemble.cause == Cause.LAND_FRICTION, axis=1)
+    for kick, counts, land in zip(ensemble.kicks.tolist(), counted.tolist(), kept.tolist(), strict=True):
+        settles, whirls, drifting, unresolved = counts
+        low, high = wilson_interval(settles, runs)
+        found.append(
+            KickCount(
+                kick=kick,
+                settles=settles,
+                whirls=whirls,
+                drifts=drifting,
+                unresolved=unresolved,
+                kept_by_land=land,
+                probability_stable=settles / runs,
+                probability_low=low,
+                probability_high=high,
+            )
+        )
+    return tuple(found)
+
+
+def worst(counts: tuple[KickCount, ...]) -> int:
+    """Place of the worst kick: of those from which most runs whirl, if any, the one that settles least.
+
+    Of several it is the one with most whirls, then with most runs that the land keeps moving.
+    """
+    whirling = [i for i, count in enumerate(counts) if _mostly(count.whirls, count.runs)]
+
+    def goodness(i: int) -> tuple[int, int, int, int]:
+        return counts[i].settles, -counts[i].whirls, -counts[i].kept_by_land, i
+
+    return min(whirling or range(len(counts)), key=goodness)
+
+
+def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
+    """Judge a cage by its ensemble, at the worst kick.
+
+    UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
+    settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
+    ends outside its pockets nor left its room nor, in any run, the range of numbers, nor does friction on the
+    land keep it moving in more than a tenth of the runs from a kick. UNDECIDED otherwise. The rule is ours;
+    it asks more of a stable cage than of an unstable one.
+    """
+    counts = kick_counts(ensemble)
+    verdict, because = decide(cage, ensemble, counts)
+    at = worst(counts)
+    outcome = ensemble.outcome[at]
+    whirling, motion = outcome == RunOutcome.WHIRLS, cage_motion(ensemble, at)
+    ends = {CageMotion.WHIRLING: RunOutcome.WHIRLS, CageMotion.DRIFTING: RunOutcome.DRIFTS}
+    shown = np.ones_like(whirling) if motion is None else outcome == ends.get(motion, RunOutcome.SETTLES)
+    rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
+    pockets, land = _impact_shares(ensemble)
+
+    def median(name: str) -> float:
+        return float(np.median(getattr(ensemble, name)[at][shown]))
+
+    force, speed = ensemble.rubbing_force[at][shown], ensemble.rubbing_speed[at][shown]
+    return Judgement(
+        verdict=verdict,
+        probability_stable=counts[at].probability_stable,
+        probability_low=counts[at].probability_low,
+        probability_high=counts[at].probability_high,
+        worst_kick=counts[at].kick,
+        by_kick=counts,
+        reason=because,
+        cage_motion=motion,
+        growth_rate=rate,
+        growth_rate_low=rate_low,
+        growth_rate_high=rate_high,
+        largest_offset=float(ensemble.largest_offset.max()),
+        mean_offset=median("mean_offset"),
+        orbit_evenness=_evenness(ensemble, at, shown),
+        drift_rate=_median(ensemble.drift_rate[at][~whirling]),
+        drift_rate_law=drift_rate_law(cage),
+        largest_contact_force=float(ensemble.largest_contact_force.max()),
+        largest_land_force=float(ensemble.largest_land_force.max()),
+        pocket_impact_shares=tuple(pockets.tolist()),
+        land_impact_share=land,
+        whirl_frequency=median("whirl_frequency"),
+        whirl_direction=int(np.sign(median("whirl_direction"))),
+        whirl_ratio=_whirl_ratio(cage, median("orbit_speed")),
+        drive_energy=drive_energy(cage),
+        end_energy=median("end_energy"),
+        pocket_power=median("pocket_power"),
+        land_power=median("land_power"),
+        rubbing_force=_median(force),
+        rubbing_speed=_median(speed),
+        rubbing_power=cage.land_friction * _median(force * speed),
+        energy_imbalance=float(ensemble.energy_imbalance.max()),
+        duration=ensemble.duration,
+        longest_run=float(ensemble.followed.max()),
+        runs=ensemble.outcome.shape[1],
+        **(_in_space(cage, ensemble, median) if isinstance(ensemble, SpaceEnsemble) else {}),
+    )
+
+
+def _in_space(
+    cage: PlanarCage, ensemble: SpaceEnsemble, median: Callable[[str], float]
+) -> dict[str, float | None]:
+    """Evidence that only a cage in space has."""
+    return {
+        "largest_tilt": float(ensemble.largest_tilt.max()),
+        "axial_travel": float((ensemble.axial_high - ensemble.axial_low).max()),
+        "cone_ratio": _whirl_ratio(cage, median("cone_speed")),
+        "impact_rate": median("strike_rate"),
+    }
+
+
+def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:
+    """Wilson's interval of a share, 95 % or that of another normal quantile [-]; 0 to 1 without a trial."""
+    if count == 0:
+        return 0.0, 1.0
+    p, z2 = successes / count, normal**2
+    middle = (p + z2 / (2 * count)) / (1 + z2 / count)
+    half = normal / (1 + z2 / count) * math.sqrt(p * (1 - p) / count + z2 / (4 * count * count))
+    low, high = max(0.0, middle - half), min(1.0, middle + half)
+    return min(low, p), max(high, p)  # rounding would leave none and all just outside
+
+
+def mean_half_width(values: Array) -> float | None:
+    """Half the width of Student's 95 % interval of the mean; None where fewer than two values tell none."""
+    count = values.size
+    if count < 2:
+        return None
+    return float(stdtrit(count - 1, 0.975) * np.std(values, ddof=1) / math.sqrt(count))
+
+
+def _growth(rates: Array) -> tuple[float, float | None, float | None]:
+    """Mean growth rate of some runs, and its interval."""
+    mean, half = float(rates.mean()), mean_half_width(rates)
+    return (mean, None, None) if half is None else (mean, mean - half, mean + half)
+
+
+def _median(values: Array) -> float:
+    return float(np.median(values)) if values.size else 0.0
+
+
+def _evenness(ensemble: Ensemble, kick: int, shown: Array) -> Ratio:
+    """Median of spread over mean of the offset, over the runs shown that left the axis at all."""
+    mean, spread = ensemble.mean_offset[kick][shown], ensemble.offset_spread[kick][shown]
+    return _median(spread[mean > 0.0] / mean[mean > 0.0])
+
+
+def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:
+    """Share of each pocket in the impacts of pockets, and of the land in all."""
+    pockets, land = ensemble.pocket_impacts.sum(axis=(0, 1)), int(ensemble.land_impacts.sum())
+    met = int(pockets.sum())
+    return np.asarray(pockets / max(met, 1), dtype=np.float64), land / max(met + land, 1)
+
+
+def _whirl_ratio(cage: PlanarCage, orbit_speed: float) -> Ratio | None:
+    return orbit_speed / abs(cage.cage_speed) if cage.cage_speed != 0.0 else None  # runs are turned forward
+
+
+def decide(
+    cage: PlanarCage, ensemble: Ensemble, counts: tuple[KickCount, ...] | None = None
+) -> tuple[Verdict, str]:
+    """Verdict and the sentence that gives its reason: `judge` without the rest of the evidence."""
+    counts = counts or kick_counts(ensemble)
+    at = worst(counts)
+    count = counts[at]
+    if _mostly(count.whirls, count.runs):
+        return Verdict.UNSTABLE, reason.whirls(ensemble, at)
+    if wilson_interval(count.runs, count.runs)[0] <= FEW:
+        return Verdict.UNDECIDED, reason.too_few(count.runs)
+    if not _clear(count.settles + count.drifts, count.runs):
+        return Verdict.UNDECIDED, reason.mixed(ensemble, counts, at)
+    if (ensemble.cause == Cause.NOT_FINITE).any():
+        return Verdict.UNDECIDED, reason.not_finite(ensemble)
+    if drifts(cage) or not _clear(count.settles, count.runs):
+        return Verdict.UNDECIDED, reason.drift(cage, ensemble, at)
+    left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
+    if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
+        return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)
+    if any(not _clear(count.runs - count.kept_by_land, count.runs) for count in counts):
+        return Verdict.UNDECIDED, reason.kept_by_land(cage, ensemble)
+    if ensemble.largest_offset.max() > largest_room(cage):
+        return Verdict.UNDECIDED, reason.beyond_room(cage, ensemble)
+    return Verdict.STABLE, f"{reason.settles(cage, ensemble, at)}{reason.few_kept(cage, ensemble)}"
+
+
+def _mostly(count: int, runs: int) -> bool:
+    """Whether more than half of the runs do so, beyond the scatter of so few."""
+    return wilson_interval(count, runs)[0] > FEW
+
+
+def _clear(count: int, runs: int) -> bool:
+    return _mostly(count, runs) and count / runs >= CLEAR

@@ -1,0 +1,210 @@
+"""What the cage does at the end of its runs, and the sentences of reason behind a verdict."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from separatrix.cage.closed_forms import drift_rate_law, room
+from separatrix.cage.ending import GROWS_ON
+from separatrix.cage.planar import Cause, PlanarCage, RunOutcome
+from separatrix.units import Array, Metre, format_number, format_quantity
+
+if TYPE_CHECKING:
+    from separatrix.cage.ensemble import Ensemble
+    from separatrix.cage.verdict import KickCount
+
+Mask = NDArray[np.bool_]
+
+LEFT = 2.0
+"""Mean offset, in half clearances of the pockets, at which a cage with a land has left its pockets."""
+
+BEYOND = 2.0
+"""Offset that no cage survives, over the room of its centre (land or half pocket clearance, the larger)."""
+
+CAUSES = {
+    Cause.IMPACTS: "impacts accumulate without limit; raise [cage] land_restitution or soften the contacts",
+    Cause.NO_CONTACT: "nothing touches; raise [stability] duration or kicks",
+    Cause.FALLING: "the motion still loses energy at the end; raise [stability] duration",
+    Cause.LAND_FRICTION: "friction on the land, not in the pockets, keeps the cage moving",
+    Cause.NOT_FINITE: "the motion leaves the range of numbers; lower [stability] kicks or the stiffnesses",
+}
+
+
+class CageMotion(Enum):
+    """What the cage does at the end of the runs."""
+
+    CENTRED = "CENTRED"
+    ON_THE_LAND = "ON THE LAND"
+    WHIRLING = "WHIRLING"
+    DRIFTING = "DRIFTING"
+
+
+def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
+    """Class of the motion that most runs from one kick end in; None if most are unresolved.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+        The runs.
+    kick : int
+        Place of the kick in the ensemble.
+    """
+    outcome = ensemble.outcome[kick]
+    settled = outcome == RunOutcome.SETTLES
+    counts = {one: int(np.count_nonzero(outcome == one)) for one in RunOutcome}
+    unresolved = counts.pop(RunOutcome.UNRESOLVED)
+    most = max(counts, key=lambda one: (counts[one], one))
+    if counts[most] < max(1, unresolved):
+        return None
+    if most == RunOutcome.SETTLES:
+        rubs = 2 * np.count_nonzero(ensemble.rubbing_force[kick][settled] > 0.0) > counts[most]
+        return CageMotion.ON_THE_LAND if rubs else CageMotion.CENTRED
+    return CageMotion.WHIRLING if most == RunOutcome.WHIRLS else CageMotion.DRIFTING
+
+
+def left_pockets(cage: PlanarCage, ensemble: Ensemble) -> Mask:
+    """Runs whose centre ended beyond the clearance of the pockets, shape (kick, run)."""
+    limit = LEFT * cage.half_play if cage.half_play > 0.0 else math.inf
+    return np.asarray(ensemble.mean_offset > limit)
+
+
+def largest_room(cage: PlanarCage) -> Metre:
+    """Offset beyond which the model of land and pockets has no meaning [m]."""
+    wide = max(room(cage), cage.half_play)
+    return BEYOND * wide if wide > 0.0 else math.inf
+
+
+def too_few(runs: int) -> str:
+    """Return that no count of so few runs would decide."""
+    return f"Too few runs for a verdict: {runs} at each kick; set [stability] runs to 4 or more."
+
+
+def settles(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
+    """Return from which kick fewest runs settle, and what rubs then."""
+    settled = ensemble.outcome[kick] == RunOutcome.SETTLES
+    first = f"{_share(settled)} of the runs settle from the worst kick, {ensemble.kicks[kick]:g} m/s"
+    force = float(np.median(ensemble.rubbing_force[kick][settled]))
+    if force <= 0.0:
+        return f"{first}."
+    speed = float(np.median(ensemble.rubbing_speed[kick][settled]))
+    power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
+    rubs = f"{_three(force)} N at {_three(speed)} m/s ({_watt(power)})"
+    return f"{first}; the cage then rubs on its land with {rubs}."
+
+
+def whirls(ensemble: Ensemble, kick: int) -> str:
+    """Return what share whirls from the worst kick, how fast, and what friction feeds it."""
+    whirling = ensemble.outcome[kick] == RunOutcome.WHIRLS
+    pace = float(np.median(ensemble.whirl_frequency[kick][whirling]))
+    first = f"{_share(whirling)} of the runs from {ensemble.kicks[kick]:g} m/s whirl, at {_three(pace)} Hz"
+    fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
+    power = fed[whirling & (fed > 0.0)]
+    if not power.size:
+        return f"{first}; the energy passes {GROWS_ON:g} times that of kick and frame."
+    return f"{first}; friction feeds the cage {_watt(float(np.median(power)))}."
+
+
+def not_finite(ensemble: Ensemble) -> str:
+    """Return in how many runs the motion left the range of numbers."""
+    runs = ensemble.cause == Cause.NOT_FINITE
+    return f"In {int(runs.sum())} of {runs.size} runs {CAUSES[Cause.NOT_FINITE]}."
+
+
+def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
+    """Return what the runs from the worst kick do; of unresolved ones also why."""
+    count = counts[kick]
+    parts = [(count.settles, "settle"), (count.whirls, "whirl"), (count.drifts, "drift")]
+    said = ", ".join(f"{n} {word}" for n, word in parts if n)
+    if count.unresolved:
+        said = f"{said}{', ' if said else ''}{count.unresolved} are unresolved"
+        causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]
+        most = Cause(int(np.bincount(causes).argmax()))
+        followed = ensemble.followed[kick].max()
+        cure = f"{CAUSES[most]} (followed for {_three(followed)} s)"
+        return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {cure}."
+    return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
+
+
+def kept_by_land(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return in how many runs friction on the land keeps the cage moving, and how hard it then presses."""
+    kept = ensemble.cause == Cause.LAND_FRICTION
+    return (
+        f"Friction on the land, {cage.land_friction:g}, and not in the pockets, keeps the cage moving in "
+        f"{int(kept.sum())} of {kept.size} runs: {_lively(ensemble, kept)}. Pocket friction does not decide "
+        f"that; check [cage] land_friction."
+    )
+
+
+def few_kept(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return the same for the few runs of a stable cage; empty if there is none."""
+    kept = ensemble.cause == Cause.LAND_FRICTION
+    if not kept.any():
+        return ""
+    kicks = ", ".join(f"{kick:g}" for kick in ensemble.kicks[kept.any(axis=1)])
+    return (
+        f" From {kicks} m/s, {int(kept.sum())} of the runs that settle are kept moving by friction on the "
+        f"land, {cage.land_friction:g}: {_lively(ensemble, kept)}; friction in the pockets slows that motion."
+    )
+
+
+def _lively(ensemble: Ensemble, kept: Mask) -> str:
+    energy, power = (_median(values[kept]) for values in (ensemble.end_energy, ensemble.land_power))
+    force = float(ensemble.largest_land_force[kept].max())
+    return f"{_three(1e3 * energy)} mJ, fed {_watt(power)}, up to {_three(force)} N on the land"
+
+
+def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:
+    """Return how far off the centre ends."""
+    offset, play = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * cage.half_play
+    return (
+        f"The motion settles, but the cage centre ends up to {_three(offset)} mm off in {int(left.sum())} "
+        f"of {left.size} runs, more than {LEFT:g} times the half play of its pockets ({_three(play)} mm): "
+        f"the land is too wide to guide it."
+    )
+
+
+def beyond_room(cage: PlanarCage, ensemble: Ensemble) -> str:
+    """Return how far the centre went beyond what land and pockets leave."""
+    offset, clearance = 1e3 * float(ensemble.largest_offset.max()), 1e3 * room(cage)
+    return (
+        f"The motion settles, but the cage centre reached {_three(offset)} mm, more than "
+        f"{_three(1e3 * largest_room(cage))} mm (clearance {_three(clearance)} mm): no cage survives that; "
+        f"lower [stability] kicks or check [cage] land_stiffness."
+    )
+
+
+def drift(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
+    """Return how many runs left their pockets, and the rate of drift as measured and by the linear law."""
+    limit = 2.0 * cage.half_play
+    passed = int(np.count_nonzero(ensemble.largest_offset > limit))
+    seen = f"its offset passed {_three(1e3 * limit)} mm, the pocket clearance, in {passed} of "
+    seen += f"{ensemble.outcome.size} runs"
+    if limit == 0.0:
+        seen = "without pocket clearance nothing holds its centre"
+    rate = drift_rate_law(cage)
+    if rate > 0.0:
+        measured = _median(ensemble.drift_rate[kick][ensemble.outcome[kick] != RunOutcome.WHIRLS])
+        seen += f", and by the linear law it grows e-fold every {_three(1.0 / rate)} s"
+        seen += f" ({_three(rate)} 1/s; measured {_three(measured)} 1/s)"
+    return f"The cage has no land and drifts: {seen}."
+
+
+def _median(values: Array) -> float:
+    return float(np.median(values)) if values.size else 0.0
+
+
+def _share(runs: Mask) -> str:
+    return "All" if runs.all() else f"{100.0 * float(runs.mean()):.0f} %"
+
+
+def _three(value: float) -> str:
+    return format_number(value, 3)
+
+
+def _watt(power: float) -> str:
+    return format_quantity(power, "W", 3)
