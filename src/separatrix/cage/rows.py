@@ -60,8 +60,8 @@ LEAD, GROOVE = 0, 1
 (
     ENERGY, OFFSET_MEAN, OFFSET_SQUARE, SWEPT, CURL, SPEED_SQUARE, PRESSED, HEATED, STRIKES,
     TILT, TILT_SQUARE, CONE, LEAN_CROSS, LEAN_DOT, AXIAL, AXIAL_SQUARE, MEAN_X, MEAN_Y,
-    WORK_POCKET, WORK_LAND, WORK_BALL, WORK_FRAME, LOOK_COLUMNS,
-) = range(23)  # fmt: skip
+    WORK_POCKET, WORK_LAND, WORK_PRESS, WORK_BALL, WORK_FRAME, LOOK_COLUMNS,
+) = range(24)  # fmt: skip
 WATCHED = WORK_POCKET  # those before are summed up step by step
 
 # What is watched of a run as an extreme or a count over all of it; after the sums, in one array.

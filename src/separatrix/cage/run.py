@@ -220,12 +220,15 @@ def queue(ball: int, space: bool, leans: bool = False, hertz: bool = False, lobe
                 step = numbers[n, STEP]
                 found[STRIKES] /= step
                 found[WORK_POCKET], found[WORK_LAND] = s[POCKET_WORK * LANES + l], s[LAND_WORK * LANES + l]
-                found[WORK_BALL], found[WORK_FRAME] = s[BALL_WORK * LANES + l], s[FRAME_WORK * LANES + l]
-                pressed = s[LAND_PRESS_WORK * LANES + l]
-                works = float(found[WORK_POCKET]) + found[WORK_LAND] + found[WORK_BALL] + found[WORK_FRAME] + pressed
+                found[WORK_PRESS], found[WORK_BALL] = s[LAND_PRESS_WORK * LANES + l], s[BALL_WORK * LANES + l]
+                found[WORK_FRAME] = s[FRAME_WORK * LANES + l]
+                works = done = 0.0
+                for work in range(WORK_POCKET, WORK_FRAME + 1):
+                    works += found[work]
+                    done += abs(found[work])
                 kept = kinetic_energy(s, p, l, space) + spring_energy(s, a, p, places, l, balls, one, space, hertz) - had[l]
                 at[OPEN] += abs(kept - works)
-                at[DONE] += abs(found[WORK_POCKET]) + abs(found[WORK_LAND]) + abs(found[WORK_BALL]) + abs(found[WORK_FRAME]) + abs(pressed)
+                at[DONE] += done
                 touched = w[PEAK_FORCE * LANES + l] + w[PEAK_LAND * LANES + l] > ZERO
                 for e in range(EXTREMES_END - WATCHED):
                     at[FIRST_EXTREME + e] = w[(WATCHED + e) * LANES + l]
