@@ -13,8 +13,8 @@ _PUBLIC = {
     "api": "Answer ContactCases bearing check compare map mobility rank report restitution "
     "sensitivity simulate solve_contact stability sweep traction",
     "ball_traction": "BallTraction",
-    "cage": "Ensemble History Judgement PlanarCage RunOutcome Verdict judge linear_critical_friction "
-    "CageMotion linear_whirl_frequency run_ensemble run_hard_ensemble wilson_interval",
+    "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
+    "linear_whirl_frequency moving_cage run_ensemble",
     "chain.contacts": "BearingState RaceContact RaceTraction",
     "chain.creep": "Creep contact_creep",
     "chain.equilibrium": "Equilibrium contact",
@@ -41,9 +41,11 @@ _PUBLIC = {
     "ranking": "Ranking",
     "present": "dataset document load save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
-    "study": "BallBearing CageDesign Candidate ContactPressure Film Friction Guidance KinematicModel "
-    "Material Operation PocketContact PocketShape PressureSlip Race RankingQuestion StabilitySettings Study "
-    "TractionModel TractionSettings Wear Worn",
+    "study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
+    "KinematicModel Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
+    "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn",
+    "verdict.judgement": "Judgement Verdict judge wilson_interval",
+    "verdict.reasons": "CageMotion",
     "study_file": "read_study resolved shipped_studies template",
 }
 """Module -> the public names it holds."""

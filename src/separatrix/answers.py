@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from separatrix.cage import History, PlanarCage, SpaceAnalysis, SpaceHistory
+from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.film_curves import ExactFilms, WearCurve
@@ -21,7 +21,7 @@ from separatrix.explore.records import UncertainStudy
 from separatrix.limits.curve import StabilityCurve
 from separatrix.limits.map_records import StabilityMap
 from separatrix.ranking.records import Ranking
-from separatrix.units import Metre, MetrePerSecond, Ratio
+from separatrix.units import Metre, MetrePerSecond, Newton, Ratio
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +94,7 @@ class OfCage:
     """The chain, and the cage that an answer is for."""
 
     solution: Solution  # the chain
-    cage: PlanarCage  # the cage with its pockets, land and balls, as the runs use it
+    cage: MovingCage  # the cage with its pockets, land and balls, as the runs use it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,21 +113,27 @@ class MapAnswer(OfCage):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulationAnswer(OfCage):
-    """One run of the ensemble, from one kick."""
+    """One run of the ensemble, from one kick.
+
+    `force_limit` is the force of a pocket beyond which its ball has no meaning: None without one.
+    """
 
     history: History  # the motion, sampled
+    analysis: CourseAnalysis  # means, extremes, whirl and spectra
     kick: MetrePerSecond
     run: int  # number of the run in the ensemble, from 0
+    force_limit: Newton | None  # its friction is all that the races hold of a ball; null without such a limit
 
+    @property
+    def whirls(self) -> bool:
+        """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
+        lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
+        return lasts or self.history.cause is Cause.LAND_FRICTION
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SpaceSimulationAnswer(OfCage):
-    """One run of a cage in space, from one kick."""
-
-    history: SpaceHistory  # the motion, sampled
-    analysis: SpaceAnalysis  # means, extremes and spectra of the whole run
-    kick: MetrePerSecond
-    run: int  # number of the run in the ensemble, from 0
+    @property
+    def force_exceeds_races(self) -> bool:
+        """Whether a pocket force is beyond that limit."""
+        return self.force_limit is not None and self.history.largest_contact_force > self.force_limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,7 +17,6 @@ from separatrix.answers import (
     RestitutionAnswer,
     SensitivityAnswer,
     SimulationAnswer,
-    SpaceSimulationAnswer,
     StabilityAnswer,
     TractionAnswer,
 )
@@ -223,7 +222,7 @@ def simulate(
     kick: str | MetrePerSecond | None = None,
     run: int = 0,
     restitution_factor: str | Ratio | None = None,
-) -> Answer[SimulationAnswer | SpaceSimulationAnswer]:
+) -> Answer[SimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
     question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
     return _answer("simulate", study, question)

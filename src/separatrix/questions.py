@@ -68,8 +68,8 @@ VERBS: tuple[Verb, ...] = (
         help="Critical friction against restitution factor.",
         needs=("cage",),
         moves_a_cage=True,
-        epilog="Beside the curve: its sub-critical band, each kick's own curve, the linear and the "
-        "hard-impact limit, and the critical friction at the bearing's own restitution factor.",
+        epilog="Beside the curve: its sub-critical band, each kick's own curve, the linear limit, and the "
+        "critical friction at the bearing's own restitution factor.",
         keeps_runs=True,
     ),
     Verb(

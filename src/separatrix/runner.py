@@ -5,10 +5,9 @@ from __future__ import annotations
 import contextlib
 import signal
 import threading
-import time
 import zlib
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import fields
 from functools import partial
 from queue import Empty, SimpleQueue
@@ -16,10 +15,12 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from separatrix.cage import Ensemble, PlanarCage, SpaceEnsemble, run_ensemble
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.ensemble import BY_BALL, SPACE_ONLY, WHOLE_NUMBERS, Ensemble, Stop, run_ensemble
+from separatrix.cage.moving_cage import MovingCage
 from separatrix.ledger import Ledger, key_of
 from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond, Second
+from separatrix.units import MetrePerSecond, Ratio, Second
 
 Place = TypeVar("Place", bound=Hashable)
 Result = TypeVar("Result")
@@ -42,10 +43,11 @@ class Expecting(Progress, Protocol):
 
 
 LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
-PART = 16  # runs from each kick that the ledger keeps together
-SOON = 1.0  # time of the runs between two looks at whether to stop, if one run does not take longer [s]
-BY_BALL = ("pocket_impacts", "pocket_rubbing")
-WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts")
+PART = 64  # runs from each kick that the ledger keeps together
+GRACE = 1.0
+"""Time that an interrupt waits for the work under way [s]: runs end within it, a compilation is left behind."""
+
+NAMES = tuple(field.name for field in fields(Ensemble))
 
 
 class Interrupted(KeyboardInterrupt):
@@ -63,8 +65,8 @@ class Interrupted(KeyboardInterrupt):
 class Runner:
     """How a long job runs; its numbers do not depend on it.
 
-    An interrupt (Ctrl-C or SIGTERM) lets the runs under way end and starts no others; a second one does not
-    wait for them.
+    An interrupt (Ctrl-C or SIGTERM) ends the runs under way at their next look and starts no others; work that
+    does not end within `GRACE`, or before a second interrupt, is left behind.
 
     Parameters
     ----------
@@ -87,7 +89,7 @@ class Runner:
         executor: Executor | None = None,
     ) -> None:
         self.jobs, self.progress, self.ledger, self.executor = jobs, progress, ledger, executor
-        self.stop = threading.Event()
+        self.stop = Stop()
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Report what the work will take; at most that where an earlier call has kept runs."""
@@ -97,7 +99,7 @@ class Runner:
 
     def ensemble(
         self,
-        cage: PlanarCage,
+        cage: MovingCage,
         settings: StabilitySettings,
         *,
         kicks: Sequence[MetrePerSecond],
@@ -105,57 +107,68 @@ class Runner:
         first_run: int = 0,
     ) -> Ensemble:
         """Run a cage as `run_ensemble` does, unless the ledger has these runs; or raise `Interrupted`."""
-        piece = cage, settings, tuple(kicks), runs, first_run
+        asked = tuple(kicks), runs, first_run
+        run = partial(run_ensemble, cage, settings, kicks=kicks, runs=runs, first_run=first_run)
+        return self.kept(run, cage, (len(kicks), runs), cage, of_runs(settings), *asked)
+
+    def kept(
+        self, run: Callable[..., Ensemble], cage: MovingCage, shape: tuple[int, int], *key: object
+    ) -> Ensemble:
+        """Ensemble that `run` makes, given a `Stop`, unless the ledger has it; or raise `Interrupted`.
+
+        Parameters
+        ----------
+        run : callable
+            Makes the runs, here or elsewhere.
+        cage : MovingCage
+            One of the cages.
+        shape : tuple
+            Kicks and runs.
+        key
+            All that the runs depend on.
+        """
         if self.ledger is None:
-            return self._followed(*piece)
-        key = key_of(cage, (settings.seed, settings.duration, settings.ball_scatter), *piece[2:])
-        kind = Ensemble if cage.space is None else SpaceEnsemble
-        known = _unpacked(kind, self.ledger.get(key), (len(kicks), runs, cage.ball_count))
+            return self._followed(run)
+        known = _unpacked(self.ledger.get(key_of(*key)), cage, shape)
         if known is not None:
-            self.ledger.taken += len(kicks) * runs
+            self.ledger.taken += shape[0] * shape[1]
             return known
-        found = self._followed(*piece)
-        arrays = (np.asarray(getattr(found, field.name)) for field in fields(found))
-        self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
+        found = self._followed(run)
+        arrays = (np.asarray(getattr(found, name)) for name in _names(cage))
+        self.ledger.put(key_of(*key), zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
         return found
 
-    def _followed(
-        self,
-        cage: PlanarCage,
-        settings: StabilitySettings,
-        kicks: Sequence[MetrePerSecond],
-        runs: int,
-        first_run: int,
-    ) -> Ensemble:
-        """Follow runs: here as many at a time as end soon, so that an interrupt waits for no more."""
-        run = partial(run_ensemble, cage, settings, kicks=kicks)
-        if self.executor is not None and not self.stop.is_set():
-            return self._elsewhere(self.executor.submit(run, runs=runs, first_run=first_run))
-        parts: list[Ensemble] = []
-        begun, size = 0, 1
-        while begun < runs:
-            if self.stop.is_set():
-                raise Interrupted
-            start, size = time.perf_counter(), min(size, runs - begun)
-            parts.append(run(runs=size, first_run=first_run + begun))
-            begun += size
-            size = max(1, int(size * SOON / max(time.perf_counter() - start, 1e-3)))
-        return joined(parts)
+    def _followed(self, run: Callable[..., Ensemble]) -> Ensemble:
+        """Follow runs here or elsewhere; an interrupt ends them."""
+        if self.stop.is_set:
+            raise Interrupted
+        if self.executor is not None:
+            return self._elsewhere(self.executor.submit(run))
+        found = run(stop=self.stop)
+        if self.stop.is_set:  # it may have ended these runs
+            raise Interrupted
+        return found
 
     def _elsewhere(self, future: Future[Result]) -> Result:
         """Result of the executor, unless an interrupt comes first."""
-        while not self.stop.is_set():
+        while not self.stop.is_set:
             with contextlib.suppress(TimeoutError):
                 return future.result(timeout=LOOK)
         future.cancel()
         raise Interrupted
 
-    def whole_ensemble(self, cage: PlanarCage, settings: StabilitySettings) -> Ensemble:
-        """Every run of the settings, whose kicks are numbers, from every kick."""
-        kicks, runs = settings.kicks, settings.runs
+    def whole_ensemble(self, cage: MovingCage, settings: StabilitySettings) -> Ensemble:
+        """Every run of the settings from every kick."""
+        kicks, runs = settings_for(settings, cage).kicks, settings.runs
         parts = ((first, min(PART, runs - first)) for first in range(0, runs, PART))
         return joined(
             [self.ensemble(cage, settings, kicks=kicks, runs=n, first_run=first) for first, n in parts]
+        )
+
+    def alone(self, work: Callable[[], Answer]) -> Answer:
+        """Result of a single piece of work, in a thread so that an interrupt ends its runs."""
+        return self.work_out(
+            lambda _: work(), [None], into=lambda found: found[None], progress=lambda *_: None
         )
 
     def work_out(
@@ -189,19 +202,19 @@ class Runner:
         report = progress or self.progress
         results: dict[Place, Result] = {}
         done: SimpleQueue[tuple[Place, Future[Result]]] = SimpleQueue()
-        wanted: set[Place] = set()
+        wanted: dict[Place, Future[Result]] = {}
+        pool = ThreadPoolExecutor(max_workers=self.jobs)
 
         def submit(new: Iterable[Place]) -> None:
             for place in new:
                 if place not in wanted:
-                    wanted.add(place)
-                    future = pool.submit(compute, place)
-                    future.add_done_callback(lambda finished, at=place: done.put((at, finished)))  # type: ignore[misc]
+                    wanted[place] = pool.submit(compute, place)
+                    wanted[place].add_done_callback(lambda finished, at=place: done.put((at, finished)))  # type: ignore[misc]
 
-        with _noticed(self.stop), ThreadPoolExecutor(max_workers=self.jobs) as pool:
+        with _noticed(self.stop):
             try:
-                submit(() if self.stop.is_set() else places)
-                while len(results) < len(wanted) and not self.stop.is_set():
+                submit(() if self.stop.is_set else places)
+                while len(results) < len(wanted) and not self.stop.is_set:
                     with contextlib.suppress(Empty, Interrupted):
                         place, future = done.get(timeout=LOOK)
                         results[place] = future.result()
@@ -211,12 +224,14 @@ class Runner:
             except KeyboardInterrupt:
                 self.stop.set()
             finally:
-                pool.shutdown(wait=True, cancel_futures=True)
-            while self.stop.is_set() and not done.empty():
+                pool.shutdown(wait=not self.stop.is_set, cancel_futures=True)
+            if self.stop.is_set:
+                wait(wanted.values(), timeout=GRACE)
+            while self.stop.is_set and not done.empty():
                 place, future = done.get()
                 if not future.cancelled() and future.exception() is None:
                     results[place] = future.result()
-        if not self.stop.is_set():
+        if not self.stop.is_set:
             return into(results)
         raise Interrupted(into(results) if results else None)
 
@@ -230,11 +245,11 @@ def made_into(make: Callable[[Result], Answer], compute: Callable[[], Result]) -
 
 
 @contextlib.contextmanager
-def _noticed(stop: threading.Event) -> Iterator[None]:
+def _noticed(stop: Stop) -> Iterator[None]:
     """Let an interrupt set an event instead of breaking in anywhere; the second one breaks in."""
 
     def note(number: int, frame: object) -> None:  # noqa: ARG001 - as signals call it
-        if stop.is_set():
+        if stop.is_set:
             raise KeyboardInterrupt
         stop.set()
 
@@ -256,17 +271,24 @@ def joined(parts: Sequence[Ensemble]) -> Ensemble:
         values = [getattr(part, name) for part in parts]
         return np.concatenate(values, axis=1) if np.ndim(values[0]) > 1 else values[0]
 
-    kind = type(parts[0])
-    return kind(**{field.name: column(field.name) for field in fields(kind)})
+    return Ensemble(**{name: column(name) for name in NAMES})
 
 
-def _unpacked(kind: type[Ensemble], known: bytes | None, shape: tuple[int, int, int]) -> Ensemble | None:
-    """Ensemble of this kind and shape (kicks, runs, balls) from its bytes; None if they are of no use."""
-    names = [field.name for field in fields(kind)]
-    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(names, shape[:2])
-    by_ball = {name: shape for name in BY_BALL if name in names}
-    shapes |= {"kicks": shape[:1], "duration": (), **by_ball}
-    sizes = {name: int(np.prod(size)) for name, size in shapes.items()}
+def of_runs(settings: StabilitySettings) -> tuple[int, Second, Ratio]:
+    """What a run takes of the settings, besides disturbance and number."""
+    return settings.seed, settings.duration, settings.ball_scatter
+
+
+def _names(cage: MovingCage) -> list[str]:
+    """Fields of the ensemble of a cage; those of space are None in the plane."""
+    return [name for name in NAMES if cage.is_in_space or name not in SPACE_ONLY]
+
+
+def _unpacked(known: bytes | None, cage: MovingCage, runs: tuple[int, int]) -> Ensemble | None:
+    """Ensemble of a cage from its bytes, with so many kicks and runs; None if they are of no use."""
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(_names(cage), runs)
+    shapes |= dict.fromkeys(BY_BALL, (*runs, cage.ball_count)) | {"kicks": runs[:1], "duration": ()}
+    sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
     whole, data = 8 * sum(sizes.values()), b""
     with contextlib.suppress(zlib.error):
         data = b"" if known is None else zlib.decompressobj().decompress(known, whole + 1)
@@ -278,4 +300,4 @@ def _unpacked(kind: type[Ensemble], known: bytes | None, shape: tuple[int, int, 
         number = np.int64 if name in WHOLE_NUMBERS else np.float64
         values[name] = np.frombuffer(data, number, size, at).reshape(shapes[name])
         at += 8 * size
-    return kind(**values | {"duration": float(values["duration"])})
+    return Ensemble(**values | {"duration": float(values["duration"])})

@@ -7,18 +7,18 @@ import re
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from math import nan
+from math import isfinite, nan
 from pathlib import Path
-from typing import Any
 
 from separatrix import answers
-from separatrix.cage import PlanarCage, analyse, linear_whirl_frequency, simulate_in_space
+from separatrix.cage import MovingCage, analyse, moving_cage, settings_for
 from separatrix.cage import simulate as follow
 from separatrix.cage_choice import (
     cage_candidate,
     environment_of,
     ranking_question,
     reference_candidate,
+    require_friction,
     required_environment,
 )
 from separatrix.chain.contacts import BearingState, race_tracks
@@ -42,21 +42,19 @@ from separatrix.limits.map_records import KICK, MapQuestion
 from separatrix.limits.response import cage_at
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.rank import rank as rank_materials
-from separatrix.ranking.reason import Moved, beyond_motion, transmitted_force, within_a_turn
+from separatrix.ranking.reason import Moved, beyond_motion
 from separatrix.runner import Runner, made_into
 from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
 from separatrix.units import NUMBER, MetrePerSecond, Ratio, format_quantity, parse, printable
+from separatrix.verdict.reasons import force_limit
+from separatrix.verdict.which_ball import transmitted_force
 
 MOST_RUNS = 1_000_000
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 """Bearings that `sensitivity` draws."""
 
-SAMPLES_A_WHIRL = 15
-"""Samples of a simulated run in a period of the linear whirl."""
-
 MOST_SHOWN = 20_000
-FEWEST_SHOWN = (1000, 4000)
-"""Samples of a simulated run; the fewest in the plane, and in space, where axial impacts are shorter."""
+"""Samples of a simulated run, at most: every step of a short one."""
 
 
 def check(study: Study) -> answers.CheckAnswer:
@@ -176,7 +174,7 @@ def stability(study: Study, runner: Runner) -> answers.StabilityAnswer:
     """Critical friction against restitution factor."""
     solution = solve(study)
     warn_of_extrapolation(solution)
-    cage, settings = _cage_of(solution), solution.stability
+    cage, settings = _cage_of(solution), study.stability
     runner.expect(lambda: expected_curve(cage, settings, jobs=runner.jobs, band=True))
     return made_into(
         lambda curve: answers.StabilityAnswer(solution=solution, cage=cage, curve=curve),
@@ -221,11 +219,11 @@ def map(
     if kick is not None and KICK in names:
         raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
     solution = solve(study)
-    speed = solution.stability.middle_kick if kick is None else kick_speed(kick)
+    cage = _cage_of(solution)
+    speed = settings_for(study.stability, cage).middle_kick if kick is None else kick_speed(kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
     warn_of_extrapolation(solution)
-    cage = _cage_of(solution)
     runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
     return made_into(
         lambda found: answers.MapAnswer(solution=solution, cage=cage, map=found),
@@ -261,8 +259,8 @@ def simulate(
     kick: str | MetrePerSecond | None = None,
     run: int = 0,
     restitution_factor: str | Ratio | None = None,
-) -> answers.SimulationAnswer | answers.SpaceSimulationAnswer:
-    """Follow one run of the ensemble in plane or space, by default the first from the reference kick.
+) -> answers.SimulationAnswer:
+    """Follow one run of the ensemble, by default the first from the reference kick.
 
     Parameters
     ----------
@@ -277,7 +275,9 @@ def simulate(
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(run))
     given = None if kick is None else kick_speed(kick)
     solution = solve(study)
-    cage, settings = solution.cage, solution.stability
+    require_friction(study)
+    cage = _cage_of(solution)
+    settings = settings_for(study.stability, cage)
     if restitution_factor is not None:
         text = str(restitution_factor).strip()
         eta = float(text) if re.fullmatch(NUMBER, text) else nan
@@ -287,33 +287,30 @@ def simulate(
         cage = cage_at(cage, eta, cage.ball_cage_friction)
     warn_of_extrapolation(solution)
     speed = settings.middle_kick if given is None else given
-    samples = SAMPLES_A_WHIRL * linear_whirl_frequency(cage) * settings.duration
-    asked: dict[str, Any] = {
-        "kick": speed,
-        "run": run,
-        "seed": settings.seed,
-        "duration": settings.duration,
-        "ball_scatter": settings.ball_scatter,
-        "samples": int(min(max(samples, FEWEST_SHOWN[cage.space is not None]), MOST_SHOWN)),
-    }
-    answer: answers.SimulationAnswer | answers.SpaceSimulationAnswer
-    if cage.space is not None:
-        course = simulate_in_space(cage, **asked)
-        found = analyse(cage, course, capacity=transmitted_force(solution))
-        force, offset = course.largest_contact_force, found.largest_offset
-        answer = answers.SpaceSimulationAnswer(
-            solution=solution, cage=cage, history=course, analysis=found, kick=speed, run=run
-        )
-    else:
-        history = follow(cage, **asked)
-        force = float(abs(history.contact_force).max())
-        offset = float((history.position**2).sum(axis=1).max() ** 0.5)
-        answer = answers.SimulationAnswer(solution=solution, cage=cage, history=history, kick=speed, run=run)
+    history = follow(
+        cage,
+        kick=speed,
+        run=run,
+        seed=settings.seed,
+        duration=settings.duration,
+        ball_scatter=settings.ball_scatter,
+        samples=MOST_SHOWN,
+    )
     made_of = cage_candidate(study)
-    moved = [Moved(made_of.name if made_of else "The cage", force, offset)]
-    for note in (*within_a_turn(solution), *beyond_motion(solution, moved)):
+    name = made_of.name if made_of else "The cage"
+    moved = [Moved(name, history.largest_contact_force, history.largest_offset)]
+    for note in beyond_motion(solution, moved):
         warnings.warn(note, ValidityWarning, stacklevel=2)
-    return answer
+    limit = force_limit(cage, transmitted_force(solution))
+    return answers.SimulationAnswer(
+        solution=solution,
+        cage=cage,
+        history=history,
+        analysis=analyse(cage, history),
+        kick=speed,
+        run=run,
+        force_limit=limit if isfinite(limit) else None,
+    )
 
 
 def rank(study: Study, runner: Runner) -> answers.RankingAnswer:
@@ -327,17 +324,16 @@ def rank(study: Study, runner: Runner) -> answers.RankingAnswer:
     )
 
 
-def _reference(study: Study) -> tuple[Solution, PlanarCage]:
+def _reference(study: Study) -> tuple[Solution, MovingCage]:
     asked = ranking_question(study)
     required_environment(study, asked)
     solution = solve(study, reference_candidate(study, asked))
     return solution, _cage_of(solution)
 
 
-def _cage_of(solution: Solution) -> PlanarCage:
-    """Cage of an answer over many frictions; without friction where none is known."""
-    friction = solution.friction
-    return solution.cage_with(friction.mean if friction else 0.0)
+def _cage_of(solution: Solution) -> MovingCage:
+    """Cage of an answer; without friction where none is known."""
+    return moving_cage(solution, solution.friction.mean if solution.friction else 0.0)
 
 
 def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> answers.SensitivityAnswer:

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from separatrix.cage import Judgement
 from separatrix.present.nodes import field_units
 from separatrix.present.text.sentences import verdict
 from separatrix.ranking.records import Ranked
 from separatrix.study_file import inputs_of
+from separatrix.verdict.judgement import Judgement
 from separatrix.workbook_files import (
     BAND,
     HEADING,
@@ -184,7 +184,7 @@ def _others(rows: Sequence[Document]) -> Iterator[Column]:
     units = field_units(Judgement) | field_units(Ranked)
     for key in dict.fromkeys(key for row in rows for key in row if key not in known):
         if any(isinstance(row.get(key), str | int | float) for row in rows):
-            unit = units.get(key.removeprefix("uncertain_").removeprefix("other_ball_"))
+            unit = units.get(key.removeprefix("uncertain_"))
             heading = key.replace("_", " ") + (f" ({unit})" if unit else "")
             yield Column(key, heading, "0.000E+00" if unit != "-" else "0.000", 14)
 

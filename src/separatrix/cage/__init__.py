@@ -1,5 +1,6 @@
 """The motion of the cage among its balls, from the forces to the evidence of an ensemble."""
 
+from separatrix.cage.analysis import CourseAnalysis, analyse
 from separatrix.cage.closed_forms import (
     drift_law,
     impact_restitution,
@@ -14,11 +15,13 @@ from separatrix.cage.outcome import Cause, RunOutcome
 
 __all__ = [
     "Cause",
+    "CourseAnalysis",
     "Ensemble",
     "History",
     "MovingCage",
     "RunOutcome",
     "Stop",
+    "analyse",
     "drift_law",
     "follow",
     "impact_restitution",

@@ -72,7 +72,7 @@ def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
                 a[RUB * LANES + l] += ez * pz + er * pr + et * pt
             else:
                 pr = vr - lever * turning * nt
-                er, slide = friction_in_plane(p[FRICTION * LANES + l] * push, nt, lever, oz, o_r, pr, p[PIVOT * LANES + l])
+                ez, er, slide = friction_in_plane(p[FRICTION * LANES + l] * push, nt, lever, oz, o_r, pr, p[PIVOT * LANES + l])
                 ft = push * nt
                 a[RUB * LANES + l] += er * pr
             q[FORCE * LANES + l], q[HEAT * LANES + l] = push, push * slide
@@ -109,6 +109,6 @@ def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
                 base_r, base_t = ramp * p[SPIN_R * LANES + l], ramp * p[SPIN_T * LANES + l]
                 db[speed_row * LANES + l] = gain
                 db[(speed_row + 1) * LANES + l] = (lever * nt * er + zi + zo) * per_j - gain * per_r
-                couple_r, couple_t = (lever * (nz * et - nt * ez), -lever * nz * er) if space or leans else (ZERO, ZERO)
+                couple_r, couple_t = (lever * (nz * et - nt * ez), -lever * nz * er) if space or leans else (-lever * nt * ez, ZERO)
                 db[(speed_row + 2) * LANES + l] = (couple_r + ri + ro) * per_j + (om + w) * ot - om * base_t
                 db[(speed_row + 3) * LANES + l] = (ti + to + couple_t) * per_j - (om + w) * o_r + om * base_r

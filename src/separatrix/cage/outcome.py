@@ -6,8 +6,8 @@ in their order, after each look; the constants are shares and multiples of the d
 1. no number any more, or a ball at the edge of its pocket's wall: UNRESOLVED;
 2. more energy than `GROWN` times that of the initial disturbance and E together: WHIRLS;
 3. at rest for two looks: SETTLES;
-4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS, if the pockets give
-   most of the work; what the land maintains counts as settled, and is counted apart;
+4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS; but what friction on the
+   land maintains while the pockets take energy from it counts as settled, and is counted apart;
 5. driven: below E for twenty looks, no higher in the later ten, and pockets give less than half: SETTLES;
 6. at the end, by the last fifth: below `WEAK` E a motion that the pockets feed ROLLS in them, any other SETTLES;
    above, it WHIRLS if the pockets feed it and it does not fall, and is UNRESOLVED if it still falls.
@@ -111,7 +111,7 @@ def end_of_motion(looks, i, touched, limits):
     if not math.isfinite(energy):
         return UNRESOLVED, 4
     pocket, land, put_in = fed(looks, max(0, end - TEN), end)
-    by_land = land > 0.5 * put_in
+    by_land = land > 0.5 * put_in and pocket <= 0.0
     if energy > limits[GROWS]:
         return WHIRLS, 5 if by_land else 0
     seen = end - int(limits[FROM])
@@ -126,7 +126,7 @@ def end_of_motion(looks, i, touched, limits):
         for j in range(end - TEN, end):
             above = above and looks[j, ENERGY] > max(HIGH * drive, limits[RESTING])
         over = TURNED_OVER * mean(looks, ENERGY, end - TEN, end)
-        if above and stays(looks, end - TEN, end) and max(pocket, land) > max(over, 0.5 * put_in):
+        if above and stays(looks, end - TEN, end) and max(0.0, pocket) + max(0.0, land) > max(over, 0.5 * put_in):
             return (settled, 5) if by_land else (WHIRLS, 0)
     if touched and seen >= 2 * TEN and drive > 0.0 and limits[IS_ADRIFT] == 0.0:
         below = True
@@ -152,9 +152,10 @@ def end_by_last_fifth(looks, end, touched, settled, limits):
         return UNRESOLVED, 2
     if last <= limits[RESTING]:
         return settled, 0
-    if land > 0.5 * put_in:
+    if land > 0.5 * put_in and pocket <= 0.0:
         return settled, 5
-    is_fed = pocket > 0.5 * put_in and pocket > last
+    friction = max(0.0, pocket) + max(0.0, land)
+    is_fed = friction > 0.5 * put_in and friction > last
     if last <= WEAK * limits[DRIVE]:
         return (ROLLS, 0) if is_fed and settled == SETTLES else (settled, 0)
     if is_fed and stays(looks, end // 2, end):

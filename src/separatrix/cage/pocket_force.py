@@ -57,7 +57,8 @@ def pocket_friction(limit, nz, nt, lever, oz, o_r, ot, ball_speed, vz, vr, vt, p
 
 @inlined
 def friction_in_plane(limit, nt, lever, oz, o_r, vr, pivot):
-    """The same of a contact that does not lean: only the outward friction moves a cage that is held along the axis."""
+    """Friction (axial, radial) of a contact that does not lean, on a cage that is held along the axis; speed of sliding."""
     sz, sr = lever * o_r * nt, -lever * oz * nt - vr
     slide = math.sqrt(sz * sz + sr * sr + pivot)
-    return limit / slide * sr, slide
+    share = limit / slide
+    return share * sz, share * sr, slide

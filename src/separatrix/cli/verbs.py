@@ -74,7 +74,7 @@ OPTIONS: dict[str, tuple[object, object]] = {
     "kick": (Annotated[str | None, typer.Option(metavar="SPEED", help=KICK_HELP)], None),
     "adaptive": (Annotated[bool, typer.Option("--adaptive", help=ADAPTIVE_HELP)], False),
     "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
-    "ball": (Annotated[str | None, typer.Option(metavar="damper|traction", help=BALL_HELP)], None),
+    "ball": (Annotated[str | None, typer.Option(metavar="damper|traction|free|auto", help=BALL_HELP)], None),
     "run": (Annotated[int, whole_number("Which run of the ensemble.")], 0),
     "restitution_factor": (Annotated[str | None, typer.Option(metavar="ETA", help=ETA_HELP)], None),
     "animate": (Annotated[str | None, typer.Option(metavar="gif|mp4", help=ANIMATE_HELP)], None),

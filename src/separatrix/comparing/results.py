@@ -18,12 +18,11 @@ from typing import TYPE_CHECKING, get_args, get_type_hints
 import numpy as np
 
 from separatrix import answers
-from separatrix.cage import Judgement, KickCount
-from separatrix.cage.verdict import NORMAL_95
 from separatrix.comparing.records import Noise, Plain, Row, Value, is_number
 from separatrix.explore.sweep import Sweep
 from separatrix.present.nodes import field_units
 from separatrix.units import printable
+from separatrix.verdict.judgement import NORMAL_95, Judgement, KickCount
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,7 +43,6 @@ INTERVALS = {
     "probability_stable": PROBABILITY,
     "probability_whirl": PROBABILITY,
     "uncertain_probability_stable": ("uncertain_probability_low", "uncertain_probability_high"),
-    "other_ball_probability_stable": ("other_ball_probability_low", "other_ball_probability_high"),
     "critical_friction": ("scatter_low", "scatter_high"),
     "critical_friction_low": ("low_scatter_low", "low_scatter_high"),
     "critical_friction_high": ("high_scatter_low", "high_scatter_high"),
@@ -62,7 +60,7 @@ UNCOUNTED_NAMES = frozenset(
 FROM_RUNS = {one.name for record in (Judgement, KickCount) for one in fields(record)}
 BY_LABEL = ("ball", "case", "kick", "restitution_factor")
 BARE = ("environments", "materials")
-GRIDS = ("curve", "linear_limit", "hard_limit", "by_kick")
+GRIDS = ("curve", "linear_limit", "by_kick")
 """Lists whose rows need not be at the same values in two answers."""
 
 MOST_ON_AXIS, MOST_VALUES = 200, 200_000

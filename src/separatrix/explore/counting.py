@@ -12,17 +12,8 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from separatrix.cage import (
-    Ensemble,
-    Judgement,
-    KickCount,
-    PlanarCage,
-    RunOutcome,
-    Verdict,
-    judge,
-    wilson_interval,
-)
-from separatrix.cage.verdict import CLEAR, FEW
+from separatrix.cage.ensemble import Ensemble
+from separatrix.cage.moving_cage import MovingCage
 from separatrix.chain.lubrication import LubricationCurve
 from separatrix.distribution import LogNormal
 from separatrix.draws import Case
@@ -35,10 +26,13 @@ from separatrix.limits.response import (
     Side,
     ends_of,
     race_damping_at,
+    with_damping,
 )
 from separatrix.ranking.drawn import DrawnBearings
 from separatrix.runner import Runner, joined
+from separatrix.study import BallModel
 from separatrix.units import Array, MetrePerSecond, Ratio
+from separatrix.verdict.judgement import CLEAR, FEW, Judgement, KickCount, Verdict, is_calm, wilson_interval
 
 BLOCK = 64  # bearings after which a case is judged
 RISK: Ratio = 1e-3
@@ -48,6 +42,20 @@ NORMAL = 3.2905  # normal quantile of that probability, on both sides together
 
 
 def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgement, Ensemble]:
+    """Verdict on a case by the ball that decides, and the runs behind it: see `counted_among`."""
+    ran: list[Ensemble] = []
+
+    def judged(ball: BallModel | None) -> Judgement:
+        found, runs = counted_among(bearings, case, runner, ball)
+        ran.append(runs)
+        return found
+
+    return bearings.by_ball(case, judged), ran[-1]
+
+
+def counted_among(
+    bearings: DrawnBearings, case: Case, runner: Runner, ball: BallModel | None
+) -> tuple[Judgement, Ensemble]:
     """Run the bearings of a case in blocks, until all have run or the verdict is decided.
 
     A kick from which significantly more bearings settle than from the worst is not run further; its count
@@ -57,9 +65,10 @@ def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgem
     left_out: list[KickCount] = []
     total, kicks = len(bearings.runs), list(bearings.kicks)
     for first in range(0, total, BLOCK):
-        parts.append(bearings.ensemble(case, kicks, range(first, min(first + BLOCK, total)), runner))
+        places = range(first, min(first + BLOCK, total))
+        parts.append(bearings.ensemble(case, kicks, places, runner, ball=ball))
         found = joined(parts)
-        judged = judge(bearings.cage(case), found)
+        judged = bearings.judged(case, found, ball)
         if is_plain(judged):
             break
         better = [one for one in judged.by_kick if settles_more(one, judged)]
@@ -69,17 +78,17 @@ def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> tuple[Judgem
             kicks = [kicks[i] for i in kept]
             by_kick = {f.name for f in fields(found) if np.ndim(getattr(found, f.name)) > 0}
             found = replace(found, **{name: getattr(found, name)[kept] for name in by_kick})
-            judged, parts = judge(bearings.cage(case), found), [found]
+            judged, parts = bearings.judged(case, found, ball), [found]
     counts = sorted((*left_out, *judged.by_kick), key=lambda one: one.kick)
     return replace(judged, by_kick=tuple(counts)), found
 
 
 def settles_more(count: KickCount, judged: Judgement) -> bool:
-    """Whether significantly more settle from a kick than from the worst, most do, and in their pockets."""
+    """Whether significantly more settle or roll from a kick than from the worst, most do, and in their pockets."""
     worst = next(one for one in judged.by_kick if one.kick == judged.worst_kick)
-    low = wilson_interval(count.settles, count.runs, NORMAL)[0]
+    low = wilson_interval(count.calm, count.runs, NORMAL)[0]
     return 2 * count.kept_by_land <= count.runs and low > max(
-        FEW, wilson_interval(worst.settles, worst.runs, NORMAL)[1]
+        FEW, wilson_interval(worst.calm, worst.runs, NORMAL)[1]
     )
 
 
@@ -87,20 +96,20 @@ def is_plain(judged: Judgement) -> bool:
     """Whether the shares behind a verdict lie beyond its limits by more than `RISK` leaves open."""
     worst = next(count for count in judged.by_kick if count.kick == judged.worst_kick)
     if judged.verdict is Verdict.STABLE:
-        return all(wilson_interval(one.settles, one.runs, NORMAL)[0] >= CLEAR for one in judged.by_kick)
+        return all(wilson_interval(one.calm, one.runs, NORMAL)[0] >= CLEAR for one in judged.by_kick)
     return judged.verdict is Verdict.UNSTABLE and wilson_interval(worst.whirls, worst.runs, NORMAL)[0] > FEW
 
 
 def settles(found: Ensemble, judged: Judgement) -> Array:
-    """1 for each bearing that settles from the worst kick, else 0; shape (bearing,)."""
+    """1 for each bearing that settles or rolls from the worst kick, else 0; shape (bearing,)."""
     at = found.kicks.tolist().index(judged.worst_kick)
-    return np.asarray(found.outcome[at] == RunOutcome.SETTLES, dtype=np.float64)
+    return is_calm(found.outcome[at]).astype(np.float64)
 
 
 PROBABILITY: Ratio = 0.95  # wanted share of bearings that settle
 RUNS = 96  # bearings counted near the answer
 # cage of a bearing at a value that is searched, by its place
-Changed = Callable[[Ratio, int, PlanarCage], PlanarCage]
+Changed = Callable[[Ratio, int, MovingCage], MovingCage]
 
 
 def allowed_friction(
@@ -114,7 +123,7 @@ def allowed_friction(
     places = (random.permutation(total) + 0.5) / total
     shares = np.ones(total) if law is None else law.quantile(places)
 
-    def at(friction: Ratio, place: int, cage: PlanarCage) -> PlanarCage:
+    def at(friction: Ratio, place: int, cage: MovingCage) -> MovingCage:
         return replace(cage, ball_cage_friction=friction * float(shares[place]))
 
     found = _worst_crossing(bearings, own, at, 0.1, runner)
@@ -145,9 +154,9 @@ def allowed_film(
     central = bearings.cage(case)
     own = bearings.central[case.candidate].restitution.restitution_factor
 
-    def at(eta: Ratio, _place: int, cage: PlanarCage) -> PlanarCage:
+    def at(eta: Ratio, _place: int, cage: MovingCage) -> MovingCage:
         ratio = race_damping_at(central, eta) / central.race_damping  # infinite at eta = 1
-        return replace(cage, race_damping=cage.race_damping * ratio)
+        return with_damping(cage, cage.race_damping * ratio)
 
     found = _worst_crossing(bearings, case, at, max(own, 0.05), runner)
     value, low, high = ends_of(found)
@@ -182,7 +191,7 @@ def _worst_crossing(
         def look(value: Ratio, first: int, runs: int, kick: MetrePerSecond = kick) -> Count:
             places = [place % total for place in range(first, first + runs)]
             ran = bearings.ensemble(case, (kick,), places, runner, lambda place, cage: at(value, place, cage))
-            return Count(runs - int(ran.count(RunOutcome.SETTLES)[0]), runs)
+            return Count(int(np.count_nonzero(~is_calm(ran.outcome))), runs)
 
         found.append(Response(look, RUNS).crossing(1.0 - PROBABILITY, RUNS, guess))
     if Side.ABOVE in found:

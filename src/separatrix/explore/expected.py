@@ -1,155 +1,95 @@
-"""What a long verb will take: a few runs of its points are timed before it starts, and scaled."""
+"""What a long verb will take: some of its runs are timed before it starts, and counted."""
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from separatrix.cage import PlanarCage, run_ensemble, settings_for
-from separatrix.cage_choice import ranking_question, required_environment
-from separatrix.chain.contacts import race_tracks
-from separatrix.chain.race_curve import exact_slope, strips
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import MovingCage, moving_cage
+from separatrix.cage.rows import LANES
+from separatrix.cage_choice import ranking_question
 from separatrix.chain.solution import Solution, solve
 from separatrix.limits.map import PointFinder, require_cage_friction
 from separatrix.limits.map_records import MapQuestion
 from separatrix.limits.point import linear_guess
 from separatrix.limits.response import GrowthCounter
-from separatrix.ranking.reason import (
-    NOTICED,
-    Pocket,
-    no_second,
-    pocket_of,
-    transmitted_force,
-    with_other_ball,
-)
-from separatrix.runner import PART, Runner
-from separatrix.study import StabilitySettings, Study, TractionModel
+from separatrix.ranking.reason import pocket_of
+from separatrix.runner import Runner
+from separatrix.study import StabilitySettings, Study
 from separatrix.units import Ratio, Second
 
-LONGEST_SAMPLE = 5.0  # time after which no further friction is timed [s]
-SHARES = (1e-3, 1e-2, 1e-1, 1.0)
-"""Parts of the duration for which one run from each kick is timed. The first is timed twice, for it may wait
-for compiled code to be loaded. More runs at a friction take longer and tell no more."""
-
-SLOW = 0.1  # part of `LONGEST_SAMPLE` from which on the time of a brief run is scaled up
-DAMPINGS = (None, 0.0, 0.5, 1.0)
-"""Restitution factors at which runs of a curve are timed; None is the cage's own damping."""
-
-FACTORS = (0.0, 0.7, 1.5)
-"""Frictions at which runs of a curve are timed, as multiples of the linear limit: the work is done below it
-and about it, for runs far above end soon."""
-
-QUARTERS = 4
-"""Parts into which the frictions of verdicts are divided by those that are timed: runs near the critical
-friction may take ten times as long as those far from it."""
+LONGEST_SAMPLE = 0.5  # time after which nothing more is timed [s]
+FACTORS = (0.7, 1.5)
+"""Frictions at which runs of a curve are timed, as multiples of the linear limit."""
 
 MAP_POINTS_NOT_TIMED = 30  # a map of so few points needs no estimate
 PICTURES = 5.0  # time of a ranking's figures and files [s]
-CURVE_POINTS = 16.0
-"""Points of a curve whose restitution factors are chosen where it bends: 5 to 18, 9 on average. Where
-it bends more, its points take longer, too."""
+CURVE_POINTS = 16.0  # of a curve whose restitution factors are chosen where it bends: 5 to 18
+SOBOL_DRAWS = 256  # draws of each matrix behind the shares of what the chain computes smoothly (`shares`)
+SHARE_RUN = 0.7  # of the runs of all cases, those that are made, with what the inverse questions take
 
 
-def expected_curve(cage: PlanarCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
+def expected_curve(cage: MovingCage, settings: StabilitySettings, *, jobs: int, band: bool) -> Second:
     """Time of a stability curve, with its band at every point or only at the cage's own damping."""
     counts = GrowthCounter(cage, settings)
-    some = [counts.cage_at(eta, factor * linear_guess(counts, eta)) for eta in DAMPINGS for factor in FACTORS]
-    each = _mean(_time_of_a_run(one, settings) for one in some)
+    some = (counts.cage_at(None, factor * linear_guess(counts, None)) for factor in FACTORS)
     points = float(len(settings.restitution_factors)) or CURVE_POINTS
-    banded = points + 1.0 if band else 1.0
     # of a critical friction: both ends of the ladder, the bracket, and those near the crossing
-    of_a_point = 32.0 + (1.5 if band else 0.75) * settings.runs
+    runs = points * (4.0 * LANES + (1.5 if band else 0.75) * settings.runs)
     # of a band: a first look at three crossings of every kick, and more at the ends
-    of_a_band = len(settings.kicks) * (16.0 + 1.5 * settings.runs)
-    runs = points * of_a_point + banded * of_a_band
-    return each * runs / jobs
-
-
-def expected_verdicts(
-    cage: PlanarCage, settings: StabilitySettings, frictions: Iterable[Ratio], *, jobs: int
-) -> Second:
-    """Time of the whole ensembles at these frictions, by the least, the quartiles and the largest."""
-    asked = sorted(frictions)
-    if not asked:
-        return 0.0
-    some = {asked[n * (len(asked) - 1) // QUARTERS] for n in range(QUARTERS + 1)}
-    each = _mean(_time_of_a_run(replace(cage, ball_cage_friction=f), settings) for f in sorted(some))
-    return each * len(asked) * len(settings.kicks) * settings.runs / jobs
+    runs += (points + 1.0 if band else 1.0) * len(counts.settings.kicks) * (2.0 * LANES + 1.5 * settings.runs)
+    return _time_of_a_run(some, counts.settings) * runs / jobs
 
 
 def expected_ranking(study: Study, *, jobs: int) -> Second:
     """Time of a ranking: a curve for every pocket, and a verdict for every friction.
 
-    Timed is the middle cage, by mass and stiffness, for all: to time each took a tenth of the ranking.
+    Timed is the middle cage, by mass and stiffness, for all.
     """
-    asked = ranking_question(study)
-    environment = required_environment(study, asked)
-    keys: set[tuple[Pocket, Ratio]] = set()
-    own: set[tuple[Pocket, Ratio]] = set()
-    solutions: dict[Pocket, Solution] = {}
-    for candidate in asked.candidates:
-        solution = solve(study, candidate)
-        pocket = pocket_of(solution)
-        solutions[pocket] = solution
-        keys |= {(pocket, found.mean) for found in solution.frictions.values() if found is not None}
-        here = solution.frictions.get(environment)
-        own |= {(pocket, here.mean)} if here is not None else set()
-    middle = solutions[sorted(solutions)[len(solutions) // 2]]
-    cage, settings = middle.cage_with(0.0), middle.stability
-    curves = len(solutions) * expected_curve(cage, settings, jobs=jobs, band=False)
-    verdicts = expected_verdicts(cage, settings, [friction for _, friction in keys], jobs=jobs)
-    verdicts += _expected_seconds(middle, [friction for _, friction in own], jobs=jobs)
-    if not study.distributions:
-        return PICTURES + curves + verdicts
-    return PICTURES + curves + 2.0 * verdicts + _expected_chains(study, settings.runs)
-
-
-def _expected_seconds(solution: Solution, frictions: Collection[Ratio], *, jobs: int) -> Second:
-    """Time of the verdicts by the other model of a ball; none if the races transmit the kick's impact."""
-    cage = solution.cage_with(0.0)
-    settings = settings_for(solution.stability, cage)
-    force = max(settings.kicks) * math.sqrt(cage.ball_cage_stiffness * cage.mass / 2.0)
-    if force < NOTICED * transmitted_force(solution) or no_second(solution):
-        return 0.0
-    few = replace(settings, runs=min(PART, settings.runs))
-    other = with_other_ball(solution, 0.0)
-    asked = sorted(frictions)
-    some = asked[len(asked) // 2 :: max(1, (len(asked) - 1) // 2)]  # two: such runs may take long to time
-    return expected_verdicts(other, few, some, jobs=jobs) * len(asked) / max(1, len(some))
+    solutions = [solve(study, candidate) for candidate in ranking_question(study).candidates]
+    pockets = {pocket_of(one): one for one in solutions}
+    middle = pockets[sorted(pockets)[len(pockets) // 2]]
+    curve = expected_curve(moving_cage(middle, 0.0), study.stability, jobs=jobs, band=False)
+    verdicts = _of_verdicts(middle, _frictions(solutions), study.stability.runs, jobs=jobs)
+    total = PICTURES + len(pockets) * curve + verdicts
+    return total + verdicts + _of_chains(study, study.stability.runs) if study.distributions else total
 
 
 def expected_uncertain(study: Study, bearings: int, *, jobs: int) -> Second:
     """Time of an uncertain study: half the cases run all bearings, and the inverse questions a third more."""
-    asked = ranking_question(study)
+    solutions = [solve(study, candidate) for candidate in ranking_question(study).candidates]
+    known = _frictions(solutions)
     smooth = SOBOL_DRAWS * (2 + sum(1 for key in study.distributions if not key.startswith("ranking.")))
-    total = PICTURES + _expected_chains(study, bearings + smooth)
-    for candidate in asked.candidates:
-        solution = solve(study, candidate)
-        known = [found.mean for found in solution.frictions.values() if found is not None]
-        settings = replace(solution.stability, runs=bearings)
-        whole = expected_verdicts(solution.cage_with(0.0), settings, known, jobs=jobs)
-        total += SHARE_RUN * whole
-    return total
+    whole = SHARE_RUN * _of_verdicts(solutions[0], known, bearings, jobs=jobs)
+    return PICTURES + _of_chains(study, bearings + smooth) + whole
 
 
-def _expected_chains(study: Study, count: int) -> Second:
-    """Time of the chains of as many drawn bearings; none where only frictions are drawn."""
+def _frictions(solutions: Iterable[Solution]) -> list[Ratio]:
+    """Friction of every candidate in every environment, rising."""
+    return sorted(found.mean for one in solutions for found in one.frictions.values() if found is not None)
+
+
+def _of_verdicts(solution: Solution, frictions: Sequence[Ratio], runs: int, *, jobs: int) -> Second:
+    """Time of the whole ensembles at rising frictions, by the least, the quartiles and the largest."""
+    if not frictions:
+        return 0.0
+    some = {frictions[n * (len(frictions) - 1) // 4] for n in range(5)}
+    cages = (moving_cage(solution, friction) for friction in sorted(some))
+    settings = settings_for(solution.study.stability, moving_cage(solution, 0.0))
+    return _time_of_a_run(cages, settings) * len(frictions) * len(settings.kicks) * runs / jobs
+
+
+def _of_chains(study: Study, count: int) -> Second:
+    """Time of the chains of as many drawn bearings, by one; none where only frictions are drawn."""
     if all(key.startswith("ranking.") for key in study.distributions):
         return 0.0
-    tracks = race_tracks(study.bearing, study.film, solve(study).bearing)
+    _ = solve(study).restitution  # loads compiled code
+    bearing = replace(study.bearing, ball_diameter=study.bearing.ball_diameter * (1.0 + 1e-6))
     start = time.perf_counter()
-    for track in tracks:
-        if study.traction.model is TractionModel.STRIPS:
-            strips(track, study.traction.pressure)
-        else:
-            exact_slope.__wrapped__(track, study.traction)  # not the one that is remembered
+    _ = solve(replace(study, bearing=bearing)).restitution
     return count * (time.perf_counter() - start)
-
-
-SOBOL_DRAWS = 256  # draws of each matrix behind the shares of what the chain computes smoothly (`shares`)
-SHARE_RUN = 0.7  # of the runs of all cases, those that are made, with what the inverse questions take
 
 
 def expected_map(question: MapQuestion, *, jobs: int) -> Second:
@@ -163,18 +103,22 @@ def expected_map(question: MapQuestion, *, jobs: int) -> Second:
     points = len(question.x.values) * len(question.y.values)
     if points <= MAP_POINTS_NOT_TIMED:
         return 0.0
-    finder = PointFinder(question, Runner())
-    for x in xs:
-        finder((x, ys[0]))
-    for y in ys[1:]:
-        finder((xs[0], y))
+    runner = Runner()
+    finder = PointFinder(question, runner)
 
     def timed(x: float, y: float) -> Second:
         begun = time.perf_counter()
         finder((x, y))
         return time.perf_counter() - begun
 
-    return _mean(timed(x, y) for x in xs[1:] for y in ys[1:]) * points / jobs
+    def each() -> Second:
+        for x in xs:
+            finder((x, ys[0]))
+        for y in ys[1:]:
+            finder((xs[0], y))
+        return _mean(timed(x, y) for x in xs[1:] for y in ys[1:])
+
+    return runner.alone(each) * points / jobs
 
 
 def _some(values: Sequence[float]) -> list[float]:
@@ -184,32 +128,22 @@ def _some(values: Sequence[float]) -> list[float]:
 
 def _mean(times: Iterable[Second]) -> Second:
     """Mean of times, of which no more is taken once they have taken long themselves."""
-    begun, found = time.monotonic(), []
+    begun, found = time.perf_counter(), list[Second]()
     for one in times:
         found.append(one)
-        if time.monotonic() - begun > LONGEST_SAMPLE:
+        if time.perf_counter() - begun > LONGEST_SAMPLE:
             break
     return sum(found) / len(found)
 
 
-def _time_of_a_run(cage: PlanarCage, settings: StabilitySettings) -> Second:
-    """Time of a run, the mean over the kicks; the compiled code is loaded beforehand.
+def _time_of_a_run(cages: Iterable[MovingCage], settings: StabilitySettings) -> Second:
+    """Mean time of a run from the reference kick, by some of each cage side by side."""
+    runner, cages = Runner(), list(cages)
 
-    Where runs are slow, as of balls that the races of a slow bearing stop within nanoseconds, a brief one is
-    timed in place of the whole.
-    """
-
-    def taken(share: Ratio) -> Second:
-        some = replace(settings, duration=share * settings.duration)
+    def run(cage: MovingCage, runs: int) -> Second:
         begun = time.perf_counter()
-        run_ensemble(cage, some, runs=1)
-        return (time.perf_counter() - begun) / len(settings.kicks)
+        runner.ensemble(cage, settings, kicks=(settings.middle_kick,), runs=runs)
+        return time.perf_counter() - begun
 
-    taken(SHARES[0])
-    whole = 0.0
-    for share in SHARES:
-        brief = taken(share)
-        whole = brief / share
-        if brief * len(settings.kicks) > SLOW * LONGEST_SAMPLE:
-            break
-    return whole
+    runner.alone(lambda: run(cages[0], 1))  # loads compiled code
+    return runner.alone(lambda: _mean(run(cage, LANES) for cage in cages)) / LANES

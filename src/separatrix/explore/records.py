@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from separatrix.cage import Judgement
 from separatrix.units import Array, MetrePerSecond, Ratio, Rows
+from separatrix.verdict.judgement import Judgement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

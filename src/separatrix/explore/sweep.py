@@ -6,8 +6,10 @@ import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
-from separatrix.cage import CageMotion, Judgement, judge, linear_whirl_frequency
+from separatrix.cage.closed_forms import linear_whirl_frequency
+from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage_choice import require_friction
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
@@ -28,6 +30,9 @@ from separatrix.units import (
     RadianPerSecond,
     Ratio,
 )
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.reasons import CageMotion
+from separatrix.verdict.which_ball import judge_solution
 
 ROUNDING = 1e-9  # share of their value by which cases that are alike may differ
 
@@ -294,10 +299,11 @@ def _swept(
             restitution_factor=eta.restitution_factor,
             pocket_clearance=design.pocket_clearance,
             land_clearance=design.land_clearance,
-            linear_whirl_frequency=linear_whirl_frequency(solution.cage_with(0.0)),
+            linear_whirl_frequency=linear_whirl_frequency(moving_cage(solution, 0.0)),
+            ball_cage_friction=None if solution.friction is None else solution.friction.mean,
         )
-        friction = solution.friction
-        found = replace(found, ball_cage_friction=None if friction is None else friction.mean)
+        if margins or verdicts:
+            require_friction(asked)
         if margins:
             found = _with_margin(found, solution, runner)
         return _with_verdict(found, solution, runner) if verdicts else found
@@ -307,9 +313,8 @@ def _swept(
 
 def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
     """The case with the threshold at the pocket's friction, and the distance to it."""
-    require_friction(solution.study)
-    friction, eta = solution.cage.ball_cage_friction, solution.restitution.restitution_factor
-    threshold = own_threshold(solution.cage_with(0.0), solution.stability, friction, runner)
+    friction, eta = found.ball_cage_friction or 0.0, solution.restitution.restitution_factor
+    threshold = own_threshold(moving_cage(solution, 0.0), solution.study.stability, friction, runner)
     return replace(
         found,
         restitution_threshold=threshold.value,
@@ -321,8 +326,8 @@ def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptC
 
 def _with_verdict(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
     """The case with the verdict of its whole ensemble; an orbit where most runs whirl."""
-    cage = solution.cage
-    judged = judge(cage, runner.whole_ensemble(cage, solution.stability))
+    run = partial(runner.whole_ensemble, settings=solution.study.stability)
+    judged = judge_solution(solution, found.ball_cage_friction or 0.0, run)
     if judged.cage_motion is CageMotion.WHIRLING and judged.whirl_ratio is not None:
         orbit = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
         found = replace(found, orbit_frequency=orbit)

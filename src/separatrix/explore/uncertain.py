@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from separatrix.cage import Ensemble, Judgement, Verdict, wilson_interval
+from separatrix.cage.ensemble import Ensemble
 from separatrix.cage_choice import ranking_question, reference_candidate, required_environment
 from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
@@ -43,13 +43,13 @@ from separatrix.ranking.reason import (
     not_finite,
     not_measured,
     pocket_of,
-    within_a_turn,
 )
 from separatrix.ranking.records import MeanFriction, lowest_among, overall
 from separatrix.runner import Interrupted, Runner
 from separatrix.study import Study
 from separatrix.study_numbers import setter, study_numbers
 from separatrix.units import Array, Ratio
+from separatrix.verdict.judgement import Judgement, Verdict, wilson_interval
 
 FEWEST = 64  # bearings below which no probability is worth a table
 CLOUD = 256  # bearings of a case that are kept for the pictures
@@ -132,7 +132,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=(*notes, *within_a_turn(central), *beyond_motion(central, moved)),
+        notes=(*notes, *beyond_motion(central, moved)),
         complete=True,
     )
 
@@ -304,7 +304,7 @@ def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothS
         values = np.column_stack([one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)])
         rows = []
         for row in values.tolist():
-            if runner.stop.is_set():
+            if runner.stop.is_set:
                 raise Interrupted
             found = central
             with suppress(SeparatrixError):  # a draw that makes no bearing counts as the central one

@@ -17,7 +17,6 @@ from separatrix.figures.stability import (
     ETA_LABEL,
     FRICTION_LABEL,
     band_ends,
-    hard_limit,
     has_band,
     highest,
     linear_limit,
@@ -27,7 +26,6 @@ from separatrix.figures.style import (
     BLACK,
     BLUE,
     CYCLE,
-    GREEN,
     GREY,
     VERDICT_COLOURS,
     VERMILION,
@@ -128,8 +126,6 @@ def _curve(data: xr.Dataset) -> Iterator[Series]:
     fine = np.linspace(1e-3, 1.0, 100)
     limit = linear_limit(fine, int(data["cage_ball_count"]))
     yield Series(name="linear limit", kind="line", x=floats(fine), y=floats(limit), colour=GREY)
-    if (hard := hard_limit(data)) is not None:
-        yield Series(name="hard-impact limit", kind="line", x=floats(eta), y=floats(hard), colour=GREEN)
 
 
 def _own_point(data: xr.Dataset) -> Iterator[Series]:

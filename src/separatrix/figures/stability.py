@@ -13,7 +13,6 @@ from separatrix.figures.style import (
     BLACK,
     BLUE,
     CYCLE,
-    GREEN,
     GREY,
     MARKERS,
     PAGE,
@@ -118,12 +117,6 @@ def draw_linear_limit(axes: Axes, ball_count: int, *, swapped: bool = False, hal
     axes.plot(*points, label="linear limit: no clearance, balls at rest", **look)
 
 
-def hard_limit(data: xr.Dataset) -> Array | None:
-    """Return the critical friction of hard impacts at each restitution factor; None if it is unknown."""
-    found = np.asarray(data.get("hard_limit_critical_friction", np.nan), dtype=float)
-    return found if np.isfinite(found).any() else None
-
-
 def own_point(data: xr.Dataset) -> list[float]:
     """Return the restitution factor of the bearing and its critical friction with both ends; else NaN."""
     names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
@@ -141,9 +134,6 @@ def draw_curve(axes: Axes, data: xr.Dataset, top: float) -> None:
     if has_band(data):
         _band(axes, data, top)
     draw_linear_limit(axes, int(data["cage_ball_count"]))
-    if (hard := hard_limit(data)) is not None:
-        label = "hard-impact limit: walls, no land, balls at rest"
-        axes.plot(eta, hard, color=GREEN, lw=1.0, ls=(0, (6, 1.5, 1, 1.5)), label=label)
     draw_chain(axes, data)
     at, middle, low, high = own_point(data)
     if np.isfinite([at, middle, low, high]).all():
@@ -165,7 +155,7 @@ def _band(axes: Axes, data: xr.Dataset, top: float) -> None:
     few, most = float(data["band_few"]), float(data["band_most"])
     every = "every kick" if several else "that kick"
     above = rf"$f_{{high}}$: above it {100 * most:.0f} % or more whirl from {every}"
-    below = rf"$f_{{low}}$: below it {100 - 100 * few:.0f} % or more settle from {every}"
+    below = rf"$f_{{low}}$: below it {100 - 100 * few:.0f} % or more settle or roll, from {every}"
     for end, style, text in ((high, "-.", above), (low, ":", below)):
         axes.plot(eta, np.where(end > top, np.nan, end), color=BLUE, lw=0.8, ls=style, label=text)
     if several and "kick_critical_friction" in data:

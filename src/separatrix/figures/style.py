@@ -89,6 +89,7 @@ RANDOM = ("stability", "map", "rank", "sensitivity", "sweep")
 
 OUTCOMES = {
     "SETTLES": "the cage settles",
+    "ROLLS": "the cage rolls in its pockets",
     "WHIRLS": "the cage whirls",
     "DRIFTS": "the cage drifts off",
     "UNRESOLVED": "unresolved",

@@ -7,17 +7,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, TypeVar
 
-from separatrix.cage import PlanarCage, settings_for
 from separatrix.cage.closed_forms import drift_rate_law, drifts
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import MovingCage
 from separatrix.limits.point import (
     BAND_FEW,
     BAND_MOST,
     CriticalFriction,
-    HardLimit,
     LinearLimit,
-    closed_hard_limit,
     critical_friction,
-    hard_limit,
     linear_limit,
 )
 from separatrix.limits.response import SEARCHED_FRICTION, GrowthCounter, Side
@@ -76,10 +74,6 @@ class StabilityCurve:
     """The same at the cage's own race damping; None if an interrupt left it out."""
     linear_limit: Annotated[tuple[LinearLimit, ...], Rows(ETA, "linear_limit_", label=ETA)]
     """Beside each point: without clearance, ball set at rest, in closed form."""
-    hard_limit: Annotated[tuple[HardLimit, ...], Rows(ETA, "hard_limit_", label=ETA)] = ()
-    """Beside each point: walls for springs, ball set at rest, even pockets; empty without clearance."""
-    hard_limit_closed: Ratio | None = None
-    """Friction from which dead hard impacts whirl, tan(pi/2Z) for odd Z, tan(pi/Z) for even."""
     band_few: Ratio  # share of whirling runs at the lower end of the band
     band_most: Ratio  # share of whirling runs at the upper end of the band
     band: bool  # whether the points of `curve` have their band; `here` always has
@@ -96,7 +90,7 @@ class StabilityCurve:
 
 
 def stability_curve(
-    cage: PlanarCage, settings: StabilitySettings, *, runner: Runner | None = None
+    cage: MovingCage, settings: StabilitySettings, *, runner: Runner | None = None
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 
@@ -222,7 +216,7 @@ def _or(value: Ratio | None, other: Ratio) -> Ratio:
 
 
 def curve_of_points(
-    cage: PlanarCage,
+    cage: MovingCage,
     settings: StabilitySettings,
     points: Iterable[CriticalFriction],
     *,
@@ -233,14 +227,10 @@ def curve_of_points(
     """Return the curve of the finished points, rising restitution factors first, with its limits."""
     settings = settings_for(settings, cage)
     ordered = rising(points)
-    etas = [point.restitution_factor for point in ordered]
-    hard = [hard_limit(cage, eta, settings) for eta in etas]
     return StabilityCurve(
         curve=tuple(ordered),
         here=here,
-        linear_limit=tuple(linear_limit(cage, eta) for eta in etas),
-        hard_limit=tuple(limit for limit in hard if limit is not None),
-        hard_limit_closed=closed_hard_limit(cage.ball_count),
+        linear_limit=tuple(linear_limit(cage, point.restitution_factor) for point in ordered),
         band_few=BAND_FEW,
         band_most=BAND_MOST,
         band=band,
@@ -301,7 +291,7 @@ def _first_below(
 
 
 def own_threshold(
-    cage: PlanarCage, settings: StabilitySettings, friction: Ratio, runner: Runner
+    cage: MovingCage, settings: StabilitySettings, friction: Ratio, runner: Runner
 ) -> RestitutionThreshold:
     """Threshold of one friction: the curve is followed, here and now, as finely as that needs."""
     tracer = Tracer(

@@ -9,9 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from separatrix.cage import Ensemble, PlanarCage, RunOutcome, Verdict, wilson_interval
-from separatrix.cage.verdict import decide
+from separatrix.cage.disturbance import with_kicks
+from separatrix.cage.ensemble import Ensemble
+from separatrix.cage.moving_cage import MovingCage, moving_cage
+from separatrix.cage.outcome import RunOutcome
 from separatrix.cage_choice import require_friction
+from separatrix.chain.pocket import pocket_speed
 from separatrix.chain.solution import Solution, solve
 from separatrix.errors import ConvergenceError, InputError
 from separatrix.limits.map_fill import (
@@ -45,6 +48,7 @@ from separatrix.limits.response import cage_at
 from separatrix.runner import Runner, joined, made_into
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
+from separatrix.verdict.judgement import Verdict, decide, is_calm, wilson_interval
 
 MOST_LINKS = 1024  # links of the chain that are remembered
 OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)  # parameters that change nothing before the cage itself
@@ -109,10 +113,11 @@ class PointFinder:
         else:
             cage = cage_at(cage, eta, friction)
         kick = values.get(KICK, self.question.kick)
-        ensemble = _decided_ensemble(cage, solution.stability, kick, self.question.runs, self.runner)
+        settings = solution.study.stability
+        ensemble = _decided_ensemble(cage, settings, kick, self.question.runs, self.runner)
         return _judged(x, y, cage, eta, ensemble)
 
-    def _find_state(self, values: Values) -> tuple[Solution, PlanarCage] | str:
+    def _find_state(self, values: Values) -> tuple[Solution, MovingCage] | str:
         """Chain and cage of a study, or why there is none: a refusal is worth remembering too.
 
         A study without a pocket friction gets one where that is an axis.
@@ -120,13 +125,14 @@ class PointFinder:
         pocket = {FRICTION: 0.0} if FRICTION in self._names else {}
         try:
             solution = solve(varied(self.question.study, {**dict(values), **pocket}))
-            return solution, solution.cage
+            require_friction(solution.study)
+            return solution, moving_cage(solution, solution.friction.mean if solution.friction else 0.0)
         except (InputError, ConvergenceError) as error:
             return str(error)
 
 
 def _decided_ensemble(
-    cage: PlanarCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int, runner: Runner
+    cage: MovingCage, settings: StabilitySettings, kick: MetrePerSecond, runs: int, runner: Runner
 ) -> Ensemble:
     """Runs from one kick: the first few, and unless those agree as many as could change the answer."""
 
@@ -134,7 +140,8 @@ def _decided_ensemble(
         return runner.ensemble(cage, settings, kicks=(kick,), runs=count, first_run=first)
 
     ensemble = run(0, first_look(runs))
-    if (ensemble.outcome == ensemble.outcome[0, 0]).all():  # all end alike
+    ends = np.where(is_calm(ensemble.outcome), RunOutcome.SETTLES, ensemble.outcome)
+    if (ends == ends[0, 0]).all():
         return ensemble
     while not settled(now := _tally(ensemble), runs) and now.runs < runs:
         ensemble = joined([ensemble, run(now.runs, further(now.runs, runs))])
@@ -142,11 +149,11 @@ def _decided_ensemble(
 
 
 def _tally(ensemble: Ensemble) -> Tally:
-    whirls, settles = (int(ensemble.count(end)[0]) for end in (RunOutcome.WHIRLS, RunOutcome.SETTLES))
-    return Tally(runs=ensemble.outcome.shape[1], whirls=whirls, settles=settles)
+    whirls, calm = int(ensemble.count(RunOutcome.WHIRLS)[0]), np.count_nonzero(is_calm(ensemble.outcome))
+    return Tally(runs=ensemble.outcome.shape[1], whirls=whirls, settles=calm)
 
 
-def _judged(x: float, y: float, cage: PlanarCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
+def _judged(x: float, y: float, cage: MovingCage, eta: Ratio, ensemble: Ensemble) -> MapPoint:
     decision, reason = decide(cage, ensemble)
     now = _tally(ensemble)
     low, high = wilson_interval(now.whirls, now.runs)
@@ -256,4 +263,7 @@ def value_here(solution: Solution, name: str) -> float | None:
         return solution.restitution.restitution_factor
     if name == FRICTION:
         return solution.friction.mean if solution.friction else None
-    return solution.stability.middle_kick if name == KICK else value_in(solution.study, name)
+    if name != KICK:
+        return value_in(solution.study, name)
+    speed = pocket_speed(solution.bearing.cage_speed, solution.design.pocket_clearance)
+    return with_kicks(solution.study.stability, speed).middle_kick

@@ -11,11 +11,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import comb
 
-from separatrix.cage import Verdict, wilson_interval
-from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.limits.map_records import EITHER, MapPoint, MapQuestion, side
 from separatrix.runner import Interrupted, Runner
 from separatrix.units import Ratio
+from separatrix.verdict.judgement import CLEAR, FEW, Verdict, wilson_interval
 
 AGREEING = 6
 """A point is decided once this number of runs agree from the first on; otherwise when it is settled."""
@@ -77,7 +76,7 @@ def _is_wild(whirls: int, runs: int) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tally:
-    """What the runs of a point did: how many were made, whirl, and settle."""
+    """What the runs of a point did: how many were made, whirl, and settle or roll."""
 
     runs: int
     whirls: int

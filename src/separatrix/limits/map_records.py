@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
-from separatrix.cage import Verdict
 from separatrix.errors import InputError
 from separatrix.study import Film, Study, Wear
 from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
 from separatrix.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
+from separatrix.verdict.judgement import Verdict
 
 RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
 RACE_FRICTION = "film.race_friction"

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated
 
-from separatrix.cage import PlanarCage, RunOutcome, linear_critical_friction, run_hard_ensemble, settings_for
+from separatrix.cage.closed_forms import linear_critical_friction
+from separatrix.cage.moving_cage import MovingCage
 from separatrix.chain.restitution import damping_ratio
 from separatrix.chain.restitution import restitution_factor as nominal
 from separatrix.limits.response import (
-    LADDER,
     SEARCHED_FRICTION,
     Count,
     Crossing,
@@ -22,18 +22,8 @@ from separatrix.limits.response import (
     cage_at,
     ends_of,
 )
-from separatrix.study import Guidance, StabilitySettings
+from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
-
-CROSSINGS, ANY_KICK = 3000, 1.0
-"""Length of a run of hard impacts, in times that the kick takes to cross a pocket's clearance. There is no
-other time in it, so that any kick [m/s] gives the same."""
-
-OF_A_HARD_CAGE = (
-    *("mass", "moment_of_inertia", "ball_count", "pitch_radius", "inner_speed", "outer_speed"),
-    *("pocket_clearance", "ball_cage_stiffness", "race_damping"),
-)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinearLimit:
@@ -43,58 +33,10 @@ class LinearLimit:
     critical_friction: Ratio  # above which every disturbance grows
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HardLimit:
-    """Friction at which half the runs whirl in hard impacts; None if less than half whirl anywhere.
-
-    Pockets are walls at even places, the ball set is at rest, the cage has no land and does not turn, so
-    that every impact returns just the restitution factor. What it is the limit of: kicks so weak that the
-    pocket's spring gives by far less than the clearance.
-    """
-
-    restitution_factor: Ratio  # of every impact
-    critical_friction: Ratio | None  # at which half the runs whirl; null if less than half do
-
-
-def linear_limit(cage: PlanarCage, restitution_factor: Ratio) -> LinearLimit:
+def linear_limit(cage: MovingCage, restitution_factor: Ratio) -> LinearLimit:
     """Critical friction of the linear law, 2 zeta sqrt(2/Z), at one restitution factor."""
     critical = linear_critical_friction(cage_at(cage, restitution_factor, 0.0))
     return LinearLimit(restitution_factor=restitution_factor, critical_friction=critical)
-
-
-def closed_hard_limit(ball_count: int) -> Ratio | None:
-    """Friction from which dead hard impacts whirl: tan(pi/2Z) for odd Z, tan(pi/Z) for even; None below 3."""
-    if ball_count < 3:
-        return None
-    return math.tan(math.pi / (2 * ball_count if ball_count % 2 else ball_count))
-
-
-def hard_limit(cage: PlanarCage, restitution_factor: Ratio, settings: StabilitySettings) -> HardLimit | None:
-    """Critical friction in hard impacts at one restitution factor; None for a cage without clearance."""
-    if cage.pocket_clearance == 0.0:
-        return None
-    if restitution_factor >= 1.0:
-        return HardLimit(restitution_factor=restitution_factor, critical_friction=0.0)
-    settings = settings_for(settings, cage)
-    lasting = CROSSINGS * cage.pocket_clearance / ANY_KICK
-    # without land, gravity, unbalance or anything uneven
-    kept = {name: getattr(cage, name) for name in OF_A_HARD_CAGE}
-    still = PlanarCage(**kept, cage_speed=0.0, ball_cage_friction=0.0, guidance=Guidance.BALL)
-    even = replace(settings, ball_scatter=0.0, duration=lasting)
-
-    def look(friction: Ratio, first_run: int, runs: int) -> Count:
-        rubbing = cage_at(still, restitution_factor, friction)
-        found = run_hard_ensemble(
-            rubbing, even, kicks=(ANY_KICK,), runs=runs, first_run=first_run, may_turn=False,
-            restitution=restitution_factor,
-        )  # fmt: skip
-        return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
-
-    found = Response(look, settings.runs).crossing(0.5, settings.runs, LADDER[-24])
-    return HardLimit(
-        restitution_factor=restitution_factor,
-        critical_friction=found.value if isinstance(found, Crossing) else None,
-    )
 
 
 BAND_FEW, BAND_MOST = 0.1, 0.9  # shares of whirling runs at which a kick counts as settling, and as whirling
@@ -133,7 +75,7 @@ class CriticalFriction:
 
 
 def critical_friction(
-    cage: PlanarCage,
+    cage: MovingCage,
     restitution_factor: Ratio | None,
     settings: StabilitySettings,
     *,
@@ -177,7 +119,7 @@ def critical_friction(
     return _point(eta, settings, found, lows, middles, highs)
 
 
-def own_restitution_factor(cage: PlanarCage) -> Ratio:
+def own_restitution_factor(cage: MovingCage) -> Ratio:
     """Nominal restitution factor of a cage's own race damping."""
     if not math.isfinite(cage.race_damping):
         return 1.0

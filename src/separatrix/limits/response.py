@@ -16,12 +16,17 @@ from math import inf
 
 import numpy as np
 
-from separatrix.cage import Cause, PlanarCage, RunOutcome, settings_for, wilson_interval
+from separatrix.ball_traction import FreeBall, SlipField
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import MovingCage
+from separatrix.cage.outcome import Cause, RunOutcome
+from separatrix.cage.rows import LANES
 from separatrix.chain.restitution import damping_for
 from separatrix.errors import ValidityWarning
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
+from separatrix.verdict.judgement import wilson_interval
 
 UNRESOLVED = (
     "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
@@ -57,20 +62,42 @@ class Count:
         return Count(self.whirling + other.whirling, self.runs + other.runs)
 
 
-def cage_at(cage: PlanarCage, restitution_factor: Ratio, friction: Ratio) -> PlanarCage:
-    """Return the same cage with the race damping of this restitution factor, and this pocket friction.
+def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> MovingCage:
+    """Return the same cage with the race damping of this restitution factor, and this pocket friction."""
+    changed = with_damping(cage, race_damping_at(cage, restitution_factor))
+    return replace(changed, ball_cage_friction=friction)
 
-    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at eta
-    = 1 their races grip them.
+
+def with_damping(cage: MovingCage, damping: NewtonSecondPerMetre) -> MovingCage:
+    """Return the same cage with another race damping [N s/m].
+
+    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; with an
+    infinite damping their races grip them.
     """
-    damping = race_damping_at(cage, restitution_factor)
-    law = cage.traction
-    if law is not None:
-        law = law.stiffened(damping / cage.race_damping) if damping < inf else None
-    return replace(cage, race_damping=damping, ball_cage_friction=friction, traction=law)
+    if damping == inf:
+        return replace(cage, race_damping=inf, traction=None, free_ball=None)
+    ratio = damping / cage.race_damping
+    law, ball = cage.traction, cage.free_ball
+    return replace(
+        cage,
+        race_damping=damping,
+        traction=law and law.stiffened(ratio),
+        free_ball=ball and _stiffened(ball, ratio),
+    )
 
 
-def race_damping_at(cage: PlanarCage, restitution_factor: Ratio) -> NewtonSecondPerMetre:
+def _stiffened(ball: FreeBall, ratio: Ratio) -> FreeBall:
+    """Return a free ball whose races reach the same tractions at slips this many times smaller."""
+
+    def race(one: SlipField) -> SlipField:
+        slips = ("slip", "pivoting", "heathcote", "elastic_slip")
+        return replace(one, **{name: getattr(one, name) / ratio for name in slips})
+
+    rate = ball.fastest_rate * ratio
+    return replace(ball, inner=race(ball.inner), outer=race(ball.outer), fastest_rate=rate)
+
+
+def race_damping_at(cage: MovingCage, restitution_factor: Ratio) -> NewtonSecondPerMetre:
     """C_mu of a nominal restitution factor; infinite for 1: the races grip the balls."""
     if restitution_factor >= 1.0:
         return inf
@@ -83,10 +110,10 @@ class GrowthCounter:
     Run number r begins alike at every point, whatever eta, f and kick are (common random numbers).
     """
 
-    def __init__(self, cage: PlanarCage, settings: StabilitySettings, runner: Runner | None = None) -> None:
+    def __init__(self, cage: MovingCage, settings: StabilitySettings, runner: Runner | None = None) -> None:
         self.cage, self.settings, self.runner = cage, settings_for(settings, cage), runner or Runner()
 
-    def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> PlanarCage:
+    def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> MovingCage:
         """Return the cage with this pocket friction, and the race damping of an eta, or its own for None."""
         if restitution_factor is None:
             return replace(self.cage, ball_cage_friction=friction)
@@ -122,7 +149,7 @@ LADDER: tuple[Ratio, ...] = (
 
 LAST = len(LADDER) - 1
 STEP = math.log(10.0) / _STEPS_A_DECADE
-BATCH = 8  # runs counted at a time, or a twelfth of all if that is more
+BATCH = LANES  # runs counted at a time, which the engine has side by side, or a twelfth of all if that is more
 TURNS = 40
 """Counts for one crossing at most, where a dozen do: a centre may move away from what was counted before."""
 

@@ -12,10 +12,10 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 import numpy as np
 
 from separatrix import study
-from separatrix.cage import CageMotion
 from separatrix.chain.mobility import SlipLaw
 from separatrix.errors import SeparatrixError
 from separatrix.units import Rows
+from separatrix.verdict.reasons import CageMotion
 
 
 class Leaf(NamedTuple):
@@ -121,9 +121,9 @@ Document = dict[str, Any]
 """Plain data of an answer, of a study, or of a part of one: text, numbers, None, lists and dictionaries."""
 
 SPELLED = (
-    *(CageMotion, study.ClearanceState, study.ContactPressure, study.Guidance, study.KinematicModel),
-    *(study.PocketContact, study.PocketShape, study.PressureSlip, study.Race, SlipLaw),
-    *(study.TractionModel, study.Worn),
+    *(CageMotion, study.BallModel, study.ClearanceState, study.ContactPressure, study.Guidance),
+    *(study.KinematicModel, study.MotionModel, study.PocketContact, study.PocketShape, study.PressureSlip),
+    *(study.Race, SlipLaw, study.TractionModel, study.Worn),
 )
 """Enumerations whose values are shown; of the others the names."""
 

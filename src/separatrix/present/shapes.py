@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import isfinite
+from math import inf
 from typing import TypeVar
 
 import numpy as np
@@ -17,14 +17,11 @@ from separatrix.answers import (
     RestitutionAnswer,
     SensitivityAnswer,
     SimulationAnswer,
-    SpaceSimulationAnswer,
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.cage import History, Judgement, PlanarCage, SpaceHistory
-from separatrix.cage.closed_forms import drift_rate_law
-from separatrix.cage.planar import OUTCOME_SENTENCES, Cause
-from separatrix.cage.reason import CAUSES
+from separatrix.cage import Cause, MovingCage, RunOutcome
+from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
@@ -35,8 +32,12 @@ from separatrix.explore.records import NotDrawn, UncertainMaterial
 from separatrix.explore.sweep import Sweep
 from separatrix.present.nodes import Group, Leaf, Node, Table, absent, fields_of
 from separatrix.present.nodes import shape as shape
-from separatrix.ranking.records import NotFinished, NotMeasured, Ranked
-from separatrix.units import Rows
+from separatrix.present.text.sentences import pocket_force
+from separatrix.present.text.tables import quantity
+from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, Ranking
+from separatrix.units import Rows, Watt
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
 
 Key = TypeVar("Key")
 Record = TypeVar("Record")
@@ -167,10 +168,13 @@ def _(found: MobilityAnswer) -> Node:
 
 
 @shape.register
-def _(found: PlanarCage) -> Node:
-    """The race damping of balls that their races grip, which is infinite, is None."""
-    node = fields_of(found)
-    return node if isfinite(found.race_damping) else node | {"race_damping": Leaf(None, "N s/m")}
+def _(found: MovingCage) -> Node:
+    """What is infinite, as the damping of balls that their races grip, is None."""
+    node: Node = {
+        name: item._replace(value=None) if isinstance(item, Leaf) and item.value == inf else item
+        for name, item in fields_of(found).items()
+    }
+    return node | {"axial_half_play": Leaf(axial_half_play(found) if found.is_in_space else None, "m")}
 
 
 @shape.register
@@ -194,40 +198,51 @@ def _(found: MapAnswer) -> Node:
     return shape(found.map) | _cage(found)
 
 
-def outcome_sentence(history: History | SpaceHistory) -> str:
-    """Return in words where the motion of a run ends."""
+def outcome_sentence(found: SimulationAnswer) -> str:
+    """Return in words where the motion of a run ends, and how the cage then moves, rolls or rubs."""
+    history, outcome = found.history, found.history.outcome
+    cause = CAUSES.get(history.cause, "")
+    said = OUTCOME_SENTENCES[outcome] + (f" Cause: {cause}." if cause else "")
     if history.cause is Cause.LAND_FRICTION:
-        return "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
-    cause = CAUSES.get(history.cause)
-    return OUTCOME_SENTENCES[history.outcome] + (f" Cause: {cause}." if cause else "")
+        said = "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
+        if outcome is RunOutcome.WHIRLS:
+            said = "Friction on the land, not in the pockets, makes the motion grow without limit."
+    if history.cause is Cause.LEFT_POCKET:
+        when = quantity(history.left_time, "s", 3)
+        said = f"Ball {history.left_ball} reaches the edge of its pocket's wall at {when}: the model ends."
+    if outcome is RunOutcome.ROLLS:
+        force, power = pocket_force(history.largest_contact_force, found.force_limit), history.pocket_power
+        pace = f"{history.whirl_frequency:.3g} Hz, fed {quantity(power, 'W', 3)}"
+        said += f" It whirls at {pace}; the largest force in a pocket is {force}."
+    if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and found.analysis.mean_offset > 0.0:
+        said += f" Its centre is {quantity(found.analysis.mean_offset, 'm', 3)} from the axis on average"
+        force, power = quantity(history.rubbing_force, "N", 3), quantity(rubbing_power(found), "W", 3)
+        said += f", and it rubs on its land with {force}, {power}." if history.rubbing_force > 0.0 else "."
+    return said
+
+
+def rubbing_power(found: SimulationAnswer) -> Watt:
+    """Power that rubbing on the land turns into heat at the end of a run [W]."""
+    return found.cage.land_friction * found.history.rubbing_force * found.history.rubbing_speed
 
 
 @shape.register
 def _(found: SimulationAnswer) -> Node:
-    history, cage = found.history, found.cage
-    rubbing = cage.land_friction * history.rubbing_force * history.rubbing_speed
+    analysis, pace = shape(found.analysis), found.history.whirl_frequency if found.whirls else None
+    first = {name: analysis.pop(name) for name in ("whirl_speed", "largest_axial", "largest_tilt")}
     node: Node = {
         "kick": Leaf(found.kick, "m/s"),
         "run": Leaf(found.run),
-        "outcome_sentence": Leaf(outcome_sentence(history)),
-        "largest_offset": Leaf(np.hypot(*history.position.T).max(), "m"),
-        "largest_contact_force": Leaf(np.abs(history.contact_force).max(), "N"),
-        "drift_rate_law": Leaf(drift_rate_law(cage), "1/s"),
-        "rubbing_power": Leaf(rubbing, "W"),
+        "outcome_sentence": Leaf(outcome_sentence(found)),
+        "force_limit": Leaf(found.force_limit, "N"),
+        "force_exceeds_races": Leaf(found.force_exceeds_races),
+        "drift_rate_law": Leaf(drift_rate_law(found.cage), "1/s"),
+        "rubbing_power": Leaf(rubbing_power(found), "W"),
     }
-    return node | shape(history) | _cage(found)
-
-
-@shape.register
-def _(found: SpaceSimulationAnswer) -> Node:
-    history, analysis = shape(found.history), shape(found.analysis)
-    node: Node = {
-        "kick": Leaf(found.kick, "m/s"),
-        "run": Leaf(found.run),
-        "outcome_sentence": Leaf(outcome_sentence(found.history)),
-    }
-    largest = {name: analysis.pop(name) for name in ("largest_offset", "largest_axial", "largest_tilt")}
-    return node | largest | history | {"analysis": Group(analysis)} | _cage(found)
+    node |= shape(found.history) | first | {"whirl_frequency": Leaf(pace, "Hz")}
+    if not found.whirls:
+        node["whirl_speed"] = Leaf(None, "m/s")
+    return node | {"analysis": Group(analysis)} | _cage(found)
 
 
 # Rankings. Every row has the keys of a ranked one, None where it has no value.
@@ -238,13 +253,12 @@ def _(found: SpaceSimulationAnswer) -> Node:
 @shape.register(NotMeasured)
 def _(row: Ranked | NotFinished | NotMeasured) -> Node:
     """The evidence on the level of the row."""
-    all_three = (getattr(row, name, None) for name in ("judgement", "over_inputs", "other_ball"))
-    evidence, over, other = (absent(Judgement) if one is None else shape(one) for one in all_three)
+    both = (getattr(row, name, None) for name in ("judgement", "over_inputs"))
+    evidence, over = (absent(Judgement) if one is None else shape(one) for one in both)
     names = ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
     node = evidence | absent(Ranked) | {"extrapolation": Leaf(())} | fields_of(row)
-    del node["judgement"], node["over_inputs"], node["other_ball"]
-    more = {f"other_ball_{name}": other[name] for name in (*names, "largest_contact_force")}
-    return node | {f"uncertain_{name}": over[name] for name in names} | more
+    del node["judgement"], node["over_inputs"]
+    return node | {f"uncertain_{name}": over[name] for name in names}
 
 
 @shape.register(UncertainMaterial)
@@ -288,11 +302,21 @@ def _(found: Sweep) -> Node:
     return {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case")), **rest}
 
 
+def free_balls_decided(found: Ranking) -> list[str]:
+    """Return for which candidates free balls decided in the bearing's own environment; empty if for none."""
+    rows = next(one.materials for one in found.environments if one.name == found.environment)
+    judged = ((row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured))
+    free = [name for name, one in judged if one is not None and one.ball == "free" and one.ball_reason]
+    if not free:
+        return []
+    return [f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."]
+
+
 def all_notes(answer: object, notes: Iterable[str]) -> list[str]:
     """Return warnings with those that an answer has itself, each once."""
     own: tuple[str, ...] = ()
     if isinstance(answer, RankingAnswer):
-        own = answer.ranking.notes
+        own = (*free_balls_decided(answer.ranking), *answer.ranking.notes)
     elif isinstance(answer, SensitivityAnswer):
         own = answer.uncertain.notes
     return list(dict.fromkeys([*notes, *own]))

@@ -9,21 +9,27 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
-from separatrix.cage import Ensemble, Judgement, PlanarCage, judge
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.ensemble import BY_BALL, Ensemble, Stop, check_length, follow, other_way_round, piece_of
+from separatrix.cage.moving_cage import MovingCage, moving_cage, turned_forward
 from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction.fit import TestedFriction
-from separatrix.runner import Runner, joined
-from separatrix.study import Friction, Study
+from separatrix.runner import Runner, of_runs
+from separatrix.study import BallModel, Friction, StabilitySettings, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import Array, MetrePerSecond, Ratio
+from separatrix.verdict.judgement import Judgement, judge
+from separatrix.verdict.which_ball import asks_free_balls, transmitted_force, whirl_share, with_reason
 
-Change = Callable[[int, PlanarCage], PlanarCage]  # from the cage of a bearing, by its place, to another
+Change = Callable[[int, MovingCage], MovingCage]  # from the cage of a bearing, by its place, to another
 Solutions = Mapping[str, Solution]  # by the name of the candidate
 
 
@@ -43,17 +49,39 @@ class DrawnBearings:
     failures: tuple[str, ...]  # why the other draws make no bearing, one reason each
 
     def judge(self, case: Case, kicks: Sequence[MetrePerSecond], runner: Runner) -> Judgement:
-        """Judge all the runs of a case, offsets by the central cage: see `ensemble`."""
-        return judge(self.cage(case), self.ensemble(case, kicks, range(len(self.runs)), runner))
+        """Judge all the runs of a case by the ball that decides: see `ensemble`."""
+        every = range(len(self.runs))
+
+        def judged(ball: BallModel | None) -> Judgement:
+            return self.judged(case, self.ensemble(case, kicks, every, runner, ball=ball), ball)
+
+        return self.by_ball(case, judged)
+
+    def judged(self, case: Case, found: Ensemble, ball: BallModel | None) -> Judgement:
+        """Judge runs of a case, offsets by the central cage among such balls."""
+        capacity = transmitted_force(self.central[case.candidate])
+        return judge(self.cage(case, ball), found, capacity=capacity)
+
+    def by_ball(self, case: Case, judged: Callable[[BallModel | None], Judgement]) -> Judgement:
+        """Verdict on a case by the ball of the study, or by free balls where they have to be asked."""
+        solution = self.central[case.candidate]
+        level, share = solution.design.ball, whirl_share(self.cage(case), transmitted_force(solution))
+        first = judged(None)
+        if not asks_free_balls(level, first, share):
+            return with_reason(level, first, share)
+        return with_reason(level, judged(BallModel.FREE), share, first)
 
     @property
     def kicks(self) -> tuple[MetrePerSecond, ...]:
         """Kicks of the central cages [m/s]."""
-        return next(iter(self.central.values())).stability.kicks
+        cage = moving_cage(next(iter(self.central.values())), 0.0)
+        return settings_for(self.study.stability, cage).kicks
 
-    def cage(self, case: Case) -> PlanarCage:
-        """Cage of a case with every input at its central value, without friction."""
-        return self.central[case.candidate].cage_with(0.0)
+    def cage(self, case: Case, ball: BallModel | None = None) -> MovingCage:
+        """Cage of a case with every input at its central value, and its stated friction."""
+        own = [self.stated[one].mean for one in self.stated if one.candidate == case.candidate]
+        friction = self.stated[case].mean if case.environment else float(np.mean(own))
+        return moving_cage(self.central[case.candidate], friction, ball)
 
     def ensemble(
         self,
@@ -62,20 +90,50 @@ class DrawnBearings:
         places: Iterable[int],
         runner: Runner,
         change: Change | None = None,
+        ball: BallModel | None = None,
     ) -> Ensemble:
         """Run the bearings at these places once from each kick [m/s], perhaps each with a changed cage.
 
         `Interrupted` if the work was interrupted before the last run.
         """
-        parts = []
+        bearings = []
         for place in places:
             own = self.solved[place][case.candidate]
-            cage = own.cage_with(float(self.friction[case][place]))
+            cage = moving_cage(own, float(self.friction[case][place]), ball)
             cage = cage if change is None else change(place, cage)
-            parts.append(
-                runner.ensemble(cage, own.stability, kicks=kicks, runs=1, first_run=self.runs[place])
-            )
-        return joined(parts)
+            bearings.append(Bearing(cage, own.study.stability, self.runs[place]))
+        key = [(one.cage, of_runs(one.settings), one.run) for one in bearings]
+        run = partial(run_bearings, bearings, kicks)
+        return runner.kept(run, bearings[0].cage, (len(kicks), len(bearings)), key, tuple(kicks))
+
+
+class Bearing(NamedTuple):
+    """A bearing of its own for one run: its cage, the settings of the run, and its number."""
+
+    cage: MovingCage
+    settings: StabilitySettings
+    run: int
+
+
+def run_bearings(
+    bearings: Sequence[Bearing], kicks: Sequence[MetrePerSecond], *, stop: Stop | None = None
+) -> Ensemble:
+    """Run each bearing once from every kick, all side by side; as `run_ensemble` does by itself."""
+    for one in bearings:
+        check_length(one.settings.duration, one.cage)
+    forward = [turned_forward(one.cage) for one in bearings]
+    each = list(zip(forward, bearings, strict=True))
+    found = follow(
+        [piece_of(cage, kick, one.settings, one.run, 1) for kick in kicks for cage, one in each], stop=stop
+    )
+    backward = np.tile([one.cage.rotation_sense < 0 for one in bearings], len(kicks))
+    for name in BY_BALL:
+        found[name][backward] = other_way_round(found[name][backward])
+    shape = len(kicks), len(bearings)
+    left, count = found["left_ball"], bearings[0].cage.ball_count
+    found["left_ball"] = np.where(backward & (left > 1), count + 2 - left, left)
+    shaped = {name: values.reshape(*shape, *values.shape[1:]) for name, values in found.items()}
+    return Ensemble(kicks=np.array(kicks), duration=bearings[0].settings.duration, **shaped)
 
 
 def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
@@ -103,7 +161,7 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
                 drawn = put(row)
                 own = central if alike else _solutions(drawn)
                 for one in own.values():
-                    one.cage_with(0.0)  # refused here, not in a thread
+                    moving_cage(one, 0.0)  # refused here, not in a thread
                 made.append((run, drawn, own))
             except SeparatrixError as error:
                 failures.append(str(error))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
 import numpy as np
 
-from separatrix.cage import Judgement, judge
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import moving_cage
 from separatrix.cage_choice import (
     other_than_candidates,
     ranking_question,
@@ -37,18 +39,11 @@ from separatrix.ranking.reason import (
     PAPER_STATEMENT,
     Moved,
     Pocket,
-    Second,
     beyond_motion,
-    is_beyond,
-    needs_second,
-    no_second,
     not_finite,
     not_measured,
     pocket_of,
     reason,
-    second_verdict,
-    transmitted_force,
-    within_a_turn,
 )
 from separatrix.ranking.records import (
     MeanFriction,
@@ -69,10 +64,12 @@ from separatrix.ranking.records import (
 from separatrix.runner import Runner
 from separatrix.study import RankingQuestion, StabilitySettings, Study
 from separatrix.units import Ratio
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.which_ball import judge_solution, transmitted_force
 
 Key = tuple[Pocket, Ratio]  # a pocket, and a friction: what a verdict is about
-Piece = tuple[Pocket, Ratio | Node] | Case | Second
-"""A verdict, or with the pocket a node of its curve; of drawn bearings; a second verdict."""
+Piece = tuple[Pocket, Ratio | Node] | Case
+"""A verdict, or with the pocket a node of its curve; or a verdict on drawn bearings."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +83,6 @@ class _Question:
     reference: Pocket
     drawn: DrawnBearings | None
     keys: Sequence[Key]  # of all verdicts
-    own: frozenset[Key]  # of those in the bearing's own environment
     runner: Runner
 
 
@@ -98,7 +94,6 @@ class _Findings:
     here: CriticalFriction | None
     judgements: Mapping[Key, Judgement]
     drawn: Mapping[Case, Judgement]
-    seconds: Mapping[Key, Judgement]
     traced: Mapping[Pocket, bool]
     complete: bool
 
@@ -128,7 +123,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
         for place in asked.environments
     }
     means = {name: overall(map(one.frictions.get, asked.environments)) for name, one in solved.items()}
-    question = _question(study, asked, solved, [frictions[environment], *frictions.values(), means], runner)
+    question = _question(study, asked, solved, [*frictions.values(), means], runner)
 
     def ranking(found: _Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
@@ -171,8 +166,7 @@ def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequ
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
     moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
     reference = question.cages[question.reference]
-    notes += [no_second(reference)] if any(is_beyond(reference, one) for _, one in judged) else []
-    return (*filter(None, notes), *within_a_turn(reference), *beyond_motion(reference, moved))
+    return (*filter(None, notes), *beyond_motion(reference, moved))
 
 
 def _question(
@@ -182,33 +176,33 @@ def _question(
     tables: Sequence[Mapping[str, MeanFriction | None]],
     runner: Runner | None,
 ) -> _Question:
-    """What a ranking computes for tables of mean frictions, the first that of the bearing's own environment.
+    """What a ranking computes for tables of mean frictions.
 
     The curve of the reference pocket is shown; of the others only the thresholds count.
     """
     pockets = {name: pocket_of(one) for name, one in solved.items()}
     cages = {pockets[name]: one for name, one in solved.items()}
     reference = pockets[reference_candidate(study, asked).name]
-    each = [{(pockets[n], f.mean) for n, f in table.items() if f is not None} for table in tables]
-    keys, runner = sorted(set[Key]().union(*each)), runner or Runner()
+    keys = sorted({(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None})
+    runner = runner or Runner()
+    empty = {pocket: moving_cage(one, 0.0) for pocket, one in cages.items()}
     tracers = {
         pocket: Tracer(
-            GrowthCounter(one.cage_with(0.0), study.stability, runner),
+            GrowthCounter(empty[pocket], study.stability, runner),
             threshold_factors(study.stability),
             band=False,
             frictions=None if pocket == reference else [f for other, f in keys if other == pocket],
         )
-        for pocket, one in cages.items()
+        for pocket in cages
     }
     return _Question(
-        settings=cages[reference].stability,
+        settings=settings_for(study.stability, empty[reference]),
         cages=cages,
         tracers=tracers,
         pockets=pockets,
         reference=reference,
         drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
         keys=keys,
-        own=frozenset(each[0]),
         runner=runner,
     )
 
@@ -224,17 +218,14 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
         verdicts = {piece: found for piece, found in results.items() if isinstance(found, Judgement)}
         judged = {key: verdicts[key] for key in keys if key in verdicts}
         drawn = {case: verdicts[case] for case in cases if case in verdicts}
-        wanted = [key for key, found in judged.items() if _wants_second(question, key, found)]
-        seconds = {key: verdicts[Second(*key)] for key in wanted if Second(*key) in verdicts}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-        every = (len(judged), len(drawn), len(seconds)) == (len(keys), len(cases), len(wanted))
+        every = (len(judged), len(drawn)) == (len(keys), len(cases))
         return ranking(
             _Findings(
                 points={k: rising(found.values()) for k, found in points.items()},
                 here=here,
                 judgements=judged,
                 drawn=drawn,
-                seconds=seconds,
                 traced=traced,
                 complete=here is not None and all(traced.values()) and every,
             )
@@ -254,34 +245,22 @@ def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement
         if question.drawn is None:
             raise LookupError(piece)
         return question.drawn.judge(piece, question.settings.kicks, question.runner)
-    if isinstance(piece, Second):
-        solution = question.cages[piece.pocket]
-        return second_verdict(solution, piece.friction, question.settings, question.runner)
     pocket, what = piece
     if isinstance(what, tuple):
         return question.tracers[pocket].point(what)
-    cage = question.cages[pocket].cage_with(what)
-    return judge(cage, question.runner.whole_ensemble(cage, question.settings))
+    run = partial(question.runner.whole_ensemble, settings=question.settings)
+    return judge_solution(question.cages[pocket], what, run)
 
 
 def _more(
     question: _Question, piece: Piece, results: Mapping[Piece, CriticalFriction | Judgement]
 ) -> list[Piece]:
-    """Nodes of the same curve that are wanted once this one is known, or a second verdict."""
-    if isinstance(piece, Case | Second):
+    """Nodes of the same curve that are wanted once this one is known."""
+    if isinstance(piece, Case) or not isinstance(piece[1], tuple):
         return []
     pocket, node = piece
-    found = results[piece]
-    if not isinstance(node, tuple):
-        second = isinstance(found, Judgement) and _wants_second(question, (pocket, node), found)
-        return [Second(pocket, node)] if second else []
     wanted = question.tracers[pocket].more(node, _points_of(results, pocket))
     return [(pocket, node) for node in wanted]
-
-
-def _wants_second(question: _Question, key: Key, found: Judgement) -> bool:
-    """Whether a verdict of the bearing's own environment needs one by the other model of a ball."""
-    return key in question.own and needs_second(question.cages[key[0]], found)
 
 
 def _points_of(
@@ -291,7 +270,7 @@ def _points_of(
     return {
         what: found
         for piece, found in results.items()
-        if isinstance(found, CriticalFriction) and not isinstance(piece, Case | Second)
+        if isinstance(found, CriticalFriction) and not isinstance(piece, Case)
         for k, what in [piece]
         if k == pocket and isinstance(what, tuple)
     }
@@ -303,7 +282,7 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     points = [point for point in points if not shown or point.restitution_factor in shown]
     if not points:
         return None
-    cage, complete = question.cages[question.reference].cage_with(0.0), found.traced[question.reference]
+    cage, complete = question.tracers[question.reference].counter.cage, found.traced[question.reference]
     return curve_of_points(cage, question.settings, points, band=False, here=found.here, complete=complete)
 
 
@@ -371,8 +350,7 @@ def _row(
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
-    second = found.seconds.get((pocket, friction.mean))
-    row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case), other_ball=second)
+    row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case))
     threshold = _threshold(found, pocket, friction)
     if threshold is None:
         return replace(row, reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.")

@@ -1,31 +1,21 @@
-"""Sentences beside the verdicts: what decides them, and where the motion leaves the range of its model.
-
-Where the models of a ball may differ, a second verdict is computed by the other one.
-"""
+"""Sentences beside the verdicts: what decides them, and where the motion leaves the range of its model."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields
 from typing import NamedTuple
 
-from separatrix.cage import Judgement, KickCount, PlanarCage, Verdict, judge, longest_duration
-from separatrix.chain.pocket import contact_radius
+from separatrix.cage.disturbance import with_kicks
+from separatrix.chain.pocket import contact_radius, pocket_speed
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
-from separatrix.chain.solution import Solution, solve
+from separatrix.chain.solution import Solution
 from separatrix.limits.curve import RestitutionThreshold
-from separatrix.runner import PART, Runner
-from separatrix.study import (
-    BallBearing,
-    BallModel,
-    Material,
-    MotionModel,
-    PocketShape,
-    StabilitySettings,
-    Study,
-)
-from separatrix.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity, shown
+from separatrix.study import BallBearing, BallModel, Guidance, Material, MotionModel, PocketShape, Study
+from separatrix.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
+from separatrix.verdict.judgement import Judgement, KickCount, Verdict
+from separatrix.verdict.which_ball import transmitted_force
 
 STRONG: Ratio = 1.0
 """Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
@@ -48,12 +38,6 @@ class Moved(NamedTuple):
     by_kick: tuple[KickCount, ...] = ()
 
 
-def transmitted_force(solution: Solution) -> Newton:
-    """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
-    contacts = solution.bearing
-    return solution.study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
-
-
 def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
     if not rows:
@@ -65,13 +49,12 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
             f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
             "the ball slides, and the linear race damping is outside its range. It then returns too much "
-            "speed to the cage: `--ball traction` gives the answer with the ball's inertia and traction."
+            "speed to the cage: `--ball auto` gives the answer with the ball's inertia and traction."
         )
-    if design.motion is MotionModel.PLANE:
-        yield from _beyond_plane(solution)
+    if design.motion is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
+        yield from _tilts(solution)
     yield from _beyond_strength(solution.study, rows)
-    cage = solution.cage_with(0.0)
-    gap = cage.land_gap
+    gap = (design.land_clearance or math.inf) / 2.0 if design.guidance is not Guidance.BALL else math.inf
     far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
     if far:
         worst = max(row.largest_offset for row in far)
@@ -84,43 +67,22 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     kept = {row.name: text for row in rows if (text := _kept_by_land(row))}
     if kept:
         yield (
-            f"Friction on the land, {cage.land_friction:g}, keeps the cage whirling in some runs: "
+            f"Friction on the land, {design.land_friction:g}, keeps the cage whirling in some runs: "
             f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
             "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
         )
 
 
-def _beyond_plane(solution: Solution) -> Iterator[str]:
-    """Sentences where a cage is kicked so hard that friction would turn round, or that it tilts."""
-    kick, sliding = max(solution.stability.kicks), solution.pocket.slip_speed
+def _tilts(solution: Solution) -> Iterator[str]:
+    """A sentence where a cage with round pockets is kicked so hard that it tilts."""
     speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
-    tilts = solution.design.pocket_shape is not PocketShape.SQUARE and kick > STRONG * speed
-    if kick > sliding:
-        yield (
-            f"The strongest kick, {kick:.3g} m/s, is faster than the balls slide in their pockets, "
-            f"{sliding:.3g} m/s. Friction then brakes the cage, but in the plane it always acts along the "
-            "ball's spin: it drives the cage too much. With `--motion space` it follows the true sliding"
-            + (", and the cage may tilt in its round pockets, which makes it whirl sooner." if tilts else ".")
-        )
-    elif tilts:
+    at = pocket_speed(solution.bearing.cage_speed, solution.design.pocket_clearance)
+    kick = max(with_kicks(solution.study.stability, at).kicks)
+    if kick > STRONG * speed:
         yield (
             f"The pockets are round, and the strongest kick, {kick:.3g} m/s, exceeds {speed:.3g} m/s, the "
             "speed of a cage half a pocket clearance off the axis. So disturbed a cage tilts, and may "
             "whirl in space at up to half less friction: `--motion space`."
-        )
-
-
-def within_a_turn(solution: Solution) -> Iterator[str]:
-    """A sentence where runs end before the cage has turned once."""
-    duration = solution.stability.duration
-    turns = duration * abs(solution.bearing.cage_speed) / math.tau
-    if 0.0 < turns < 1.0:
-        turn = format_quantity(duration / turns, "s", 3)
-        yield (
-            f"Runs of {format_quantity(duration, 's', 3)} are {turns:.2g} turns of the cage: they may "
-            "not show where its motion ends, and what comes once a turn, by gravity, unbalance or an uneven "
-            "land, is not judged. Whole turns need [stability] "
-            f'duration = "{turn}" or longer.'
         )
 
 
@@ -205,11 +167,6 @@ def disagreement(threshold: Ratio, verdict: Verdict) -> str:
     return ""
 
 
-NOTICED: Ratio = 0.1
-"""Pocket force over the races' capacity from which the models of a ball may differ: there the law of
-traction still has its slope, and at the capacity itself a fifth less."""
-
-
 class Pocket(NamedTuple):
     """What the cages of candidates differ in besides friction; 0 without a land."""
 
@@ -223,50 +180,3 @@ def pocket_of(solution: Solution) -> Pocket:
     """Mass, stiffness and running clearances of the cage."""
     design, land = solution.design, solution.design.land_clearance or 0.0
     return Pocket(solution.inertia.mass, solution.ball_cage_stiffness, design.pocket_clearance, land)
-
-
-@dataclass(frozen=True, slots=True)
-class Second:
-    """What a second verdict is about."""
-
-    pocket: Pocket
-    friction: Ratio
-
-
-def is_beyond(solution: Solution, judgement: Judgement) -> bool:
-    """Whether a run pressed a pocket with more than a tenth of what the races can transmit to its ball."""
-    return judgement.largest_contact_force > NOTICED * transmitted_force(solution)
-
-
-def needs_second(solution: Solution, judgement: Judgement) -> bool:
-    """Whether a verdict rests on forces beyond the range of its ball, and the other model can be followed."""
-    return is_beyond(solution, judgement) and not no_second(solution)
-
-
-def no_second(solution: Solution) -> str:
-    """Return why there is no verdict by the other model of a ball; empty if there can be one."""
-    longest, duration = longest_duration(with_other_ball(solution, 0.0)), solution.stability.duration
-    if duration <= longest:
-        return ""
-    model = "traction" if solution.design.ball is BallModel.DAMPER else "damper"
-    return (
-        f"There is no second verdict, with ball = {shown(model)}: its balls move so fast between pocket and "
-        f"races that runs longer than {format_quantity(longest, 's', 3)} would take too many steps."
-    )
-
-
-def with_other_ball(solution: Solution, friction: Ratio) -> PlanarCage:
-    """Return the cage with the model of a ball that its study does not use."""
-    design = solution.stated_design
-    other = BallModel.TRACTION if design.ball is BallModel.DAMPER else BallModel.DAMPER
-    study = replace(solution.study, cage=replace(design, ball=other))
-    return solve(study, solution.candidate).cage_with(friction)
-
-
-def second_verdict(
-    solution: Solution, friction: Ratio, settings: StabilitySettings, runner: Runner
-) -> Judgement:
-    """Verdict by the other model of a ball, of the first 16 runs from each kick."""
-    cage = with_other_ball(solution, friction)
-    few = replace(settings, runs=min(PART, settings.runs))
-    return judge(cage, runner.whole_ensemble(cage, few))

@@ -9,11 +9,11 @@ from typing import Annotated
 
 import numpy as np
 
-from separatrix.cage import Judgement
 from separatrix.chain.pocket import PocketConditions, standard_error
 from separatrix.limits.curve import StabilityCurve
 from separatrix.study import BallModel, Friction, MotionModel
 from separatrix.units import Kilogram, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
+from separatrix.verdict.judgement import Judgement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +50,6 @@ class NotFinished(MeasuredCandidate):
 
     judgement: Judgement | None = None  # null if it has no verdict either
     over_inputs: Judgement | None = None  # with uncertain inputs drawn; null without
-    other_ball: Judgement | None = None  # by the other model of a ball; null without
     reason: str  # what is missing
 
 
@@ -67,9 +66,6 @@ class Ranked(MeasuredCandidate):
     judgement: Judgement  # verdict and evidence at the central values of the study
     over_inputs: Judgement | None = None
     """Each run with its own bearing drawn from the uncertain inputs; null without them."""
-    other_ball: Judgement | None = None
-    """By the other model of a ball, where a pocket is pressed with more than a tenth of the races'
-    capacity."""
     reason: str  # a sentence with the numbers
 
 
@@ -101,8 +97,7 @@ class RankedEnvironment:
 class Ranking:
     """Answer of a ranking, with the chain and the stability curve of `candidate`.
 
-    That is the cage's material, or the first candidate where the study does not name it. Beyond a tenth of
-    `capacity` each candidate has a second verdict, by the other model of the ball.
+    That is the cage's material, or the first candidate where the study does not name it.
     """
 
     environment: str  # the bearing's own, of the headline
@@ -126,7 +121,7 @@ class Ranking:
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int  # from each kick
     duration: Second  # of a run
-    ball_model: BallModel  # damper or traction
+    ball_model: BallModel  # that the study asks for; a verdict states the one that decided
     motion_model: MotionModel  # plane or space
     capacity: Newton  # most that the races can transmit to the most loaded ball
     notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each

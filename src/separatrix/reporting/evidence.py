@@ -46,17 +46,19 @@ def evidence(rank: Kept) -> Section:
 
 def _evidence(rank: Row) -> Iterator[Block]:
     rows = own_rows(rank)
-    words = "A verdict counts the runs that settle, from each disturbance; the worst one decides."
+    words = (
+        "A verdict counts the runs in which the cage settles, or rolls in its pockets with less energy than its "
+        "loads can give it, from each disturbance; the worst one decides."
+    )
     yield Paragraph(words)
     yield Table(
-        ("candidate", "friction", "threshold (95 %)", "runs that settle, from each disturbance", "verdict"),
+        ("candidate", "friction", "threshold (95 %)", "runs that settle or roll, from each disturbance", "verdict"),
         tuple(
             (
                 str(row["name"]),
                 _friction(row),
                 threshold(row),
-                ", ".join(f"{one['settles']} at {one['kick']:g} m/s" for one in row.get("by_kick") or ())
-                or ABSENT,
+                ", ".join(map(_calm, row.get("by_kick") or ())) or ABSENT,
                 verdict(row),
             )
             for row in rows
@@ -74,8 +76,6 @@ def _evidence(rank: Row) -> Iterator[Block]:
     )
     if any(row.get("largest_tilt") is not None for row in rows):
         yield _in_space(rows)
-    if any(row.get("other_ball_verdict") for row in rows):
-        yield _other_ball(rank, rows)
     yield facts(
         *((", ".join(who), reason) for reason, who in grouped((r["reason"], r["name"]) for r in rows).items())
     )
@@ -87,6 +87,12 @@ def _evidence(rank: Row) -> Iterator[Block]:
     for name, each in [*((one["name"], one["materials"]) for one in others), ("overall", rank["overall"])]:
         if others:
             yield _short(name, each)
+
+
+def _calm(count: Row) -> str:
+    """Return how many runs from a disturbance settle or roll, and how many of them roll."""
+    rolls = f" ({count['rolls']} roll)" if count["rolls"] else ""
+    return f"{count['settles'] + count['rolls']} at {count['kick']:g} m/s{rolls}"
 
 
 def _in_space(rows: list[Row]) -> Table:
@@ -104,25 +110,6 @@ def _in_space(rows: list[Row]) -> Table:
         ),
         "Motion out of the plane. Travel: along the axis from end to end; cone ratio: speed at which the "
         "lean of the cage's axis goes round over the speed of the ball set.",
-    )
-
-
-def _other_ball(rank: Row, rows: list[Row]) -> Table:
-    """Return the verdicts by the model of the ball that the study does not ask for."""
-    inertial = rank["ball_model"] == "DAMPER"
-    model = "with its inertia and traction" if inertial else "without mass, held by a damper"
-    return Table(
-        ("candidate", "verdict", "P(stable) (95 %)", "pocket force", "runs"),
-        tuple(
-            (
-                *(str(row["name"]), str(row["other_ball_verdict"]), probability(row, "other_ball_")),
-                *(quantity(row["other_ball_largest_contact_force"], "N", 3), str(row["other_ball_runs"])),
-            )
-            for row in rows
-            if row.get("other_ball_verdict")
-        ),
-        f"The same with a ball {model}, from fewer runs: a check of the model above.",
-        left=2,
     )
 
 

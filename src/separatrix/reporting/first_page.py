@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from separatrix.present.text.sentences import (
-    by_verdict,
     drift,
     drift_sentence,
     margin,
@@ -14,7 +13,7 @@ from separatrix.present.text.sentences import (
     verdict,
     verdict_sentences,
 )
-from separatrix.present.text.tables import ABSENT, grouped, number, significant
+from separatrix.present.text.tables import ABSENT, number, significant
 from separatrix.reporting.pictures import own_candidates, picture
 from separatrix.reporting.record import (
     Block,
@@ -34,7 +33,7 @@ HEAD = (
 )
 EXPLAINED = (
     "Margin: largest stable restitution factor less the bearing's own. P(stable): share of the runs that "
-    "settle from the worst disturbance, with its 95 % interval. Offset of the cage centre and forces: "
+    "settle or roll from the worst disturbance, with its 95 % interval. Offset of the cage centre and forces: "
     "largest of all runs. Drift: median growth rate of the mean offset. Runs: from each disturbance, up to "
     "this length."
 )
@@ -153,23 +152,11 @@ def _without_cage(kept: Mapping[str, Kept]) -> Iterator[Block]:
         yield Paragraph(f"The slopes of its traction curves are {slopes} race.", "lead")
 
 
-def _by_the_other_ball(rank: Row) -> Iterator[str]:
-    """Yield which verdicts the other model of the ball changes."""
-    rows = [row for row in own_rows(rank) if row.get("other_ball_verdict") not in (None, row["verdict"])]
-    if rows:
-        each = grouped((row["other_ball_verdict"], row["name"]) for row in rows)
-        inertial = rank["ball_model"] == "DAMPER"
-        model = "a ball with inertia and traction" if inertial else "a ball without mass, held by a damper"
-        yield f"With {model} ({rows[0]['other_ball_runs']} runs), verdicts differ: {by_verdict(each)}."
-
-
 def _caveats(main: Row, about: Sequence[str]) -> Iterator[Block]:
     """Yield what a reader of the first page must know; the rest has a section of its own."""
     found = [*about]
     if main.get("complete") is False:
         found.append("The computation was interrupted: this answer has only what was finished.")
-    if main["verb"] == "rank":
-        found += _by_the_other_ball(main)
     found += main["warnings"]
     if main["verb"] == "rank":
         rows = [row for row in own_rows(main) if row.get("friction") is not None]

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from separatrix.cage import reason
 from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
-from separatrix.cage.planar import Cause, PlanarCage, RunOutcome, Verdict
-from separatrix.cage.reason import CageMotion, cage_motion, largest_room, left_pockets
-from separatrix.cage.space.ensemble import SpaceEnsemble
+from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.units import (
     Array,
     Hertz,
@@ -29,13 +27,28 @@ from separatrix.units import (
     Second,
     Watt,
 )
+from separatrix.verdict import reasons
+from separatrix.verdict.reasons import CageMotion, cage_motion, kept_by_land, largest_room, left_pockets
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
+    from separatrix.cage.moving_cage import MovingCage
+
+
+class Verdict(Enum):
+    """What an ensemble of runs says of the cage."""
+
+    STABLE = "The cage is stable."
+    UNSTABLE = "The cage is unstable."
+    UNDECIDED = "The runs do not decide."
 
 
 CLEAR = 0.9
+"""Share of runs that settle or roll, at least, of a stable cage."""
+
 FEW = 0.5
+"""Share that the interval of whirling runs lies above, of an unstable cage."""
+
 NORMAL_95 = 1.959963984540054
 
 
@@ -47,17 +60,18 @@ class KickCount:
     ----------
     kick : float
         Speed [m/s].
-    settles, whirls, drifts, unresolved : int
+    settles, rolls, whirls, drifts, unresolved : int
         Runs of each outcome.
     kept_by_land : int
         Runs of those that settle in which friction on the land, not in the pockets, keeps up more motion than
         frame and loads can give.
     probability_stable, probability_low, probability_high : float
-        Share of the runs that settle, and its 95 % Wilson interval [-].
+        Share of the runs that settle or roll, and its 95 % Wilson interval [-].
     """
 
     kick: MetrePerSecond
     settles: int
+    rolls: int
     whirls: int
     drifts: int
     unresolved: int
@@ -69,7 +83,12 @@ class KickCount:
     @property
     def runs(self) -> int:
         """Runs from this kick."""
-        return self.settles + self.whirls + self.drifts + self.unresolved
+        return self.calm + self.whirls + self.drifts + self.unresolved
+
+    @property
+    def calm(self) -> int:
+        """Runs that settle or roll."""
+        return self.settles + self.rolls
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,13 +100,17 @@ class Judgement:
     verdict : Verdict
         STABLE, UNSTABLE or UNDECIDED.
     probability_stable, probability_low, probability_high : float
-        Share of the runs from the worst kick that settle, and its 95 % Wilson interval [-].
+        Share of the runs from the worst kick that settle or roll, and its 95 % Wilson interval [-].
     worst_kick : float
-        Of the kicks from which most runs whirl, if any, the one from which fewest settle [m/s].
+        Of the kicks from which most runs whirl, if any, the one from which fewest settle or roll [m/s].
     by_kick : tuple of KickCount
         Where the runs from every kick end.
     reason : str
         One sentence.
+    ball : str
+        The ball that decided: "damper", "one state" or "free".
+    ball_reason : str or None
+        Why that ball decided; None where the study forces it.
     cage_motion : CageMotion or None
         What most runs from the worst kick end in; None if most are unresolved.
     growth_rate : float
@@ -108,6 +131,13 @@ class Judgement:
         cage without a land; 0 with one [1/s].
     largest_contact_force, largest_land_force : float
         Largest force between a ball and its pocket, and of the land, in any run [N].
+    force_limit : float or None
+        Force of a pocket whose friction is all that the races hold, beyond which this ball has no meaning; None without
+        one [N].
+    force_exceeds_races : bool
+        Whether `largest_contact_force` is beyond that.
+    left_pocket : int
+        Runs, of all, in which a ball reached the edge of its pocket's wall.
     pocket_impact_shares : tuple of float
         Share of each pocket in the impacts of balls, all runs, for each ball; zeros if there was none [-].
     land_impact_share : float
@@ -132,12 +162,14 @@ class Judgement:
         Asked for, and of the longest run [s].
     runs : int
         Runs at each kick.
+    impact_rate : float
+        Impacts of all pockets, the same median as of the whirl [1/s].
     largest_tilt, axial_travel : float or None
         Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m], any run;
         None in the plane.
-    cone_ratio, impact_rate : float or None
-        The same medians as of the whirl, in space: speed at which the lean of the axis goes round, in the
-        fixed frame, over the ball set's [-]; impacts of all pockets [1/s]. None in the plane.
+    cone_ratio : float or None
+        The same median, in space: speed at which the lean of the axis goes round, in the fixed frame, over the ball
+        set's [-]; None in the plane.
     """
 
     verdict: Verdict
@@ -147,6 +179,8 @@ class Judgement:
     worst_kick: MetrePerSecond
     by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]
     reason: str
+    ball: str
+    ball_reason: str | None = None
     cage_motion: CageMotion | None
     growth_rate: PerSecond
     growth_rate_low: PerSecond | None
@@ -158,6 +192,9 @@ class Judgement:
     drift_rate_law: PerSecond
     largest_contact_force: Newton
     largest_land_force: Newton
+    force_limit: Newton | None
+    force_exceeds_races: bool
+    left_pocket: int
     pocket_impact_shares: Annotated[tuple[Ratio, ...], ("ball",)]
     land_impact_share: Ratio
     whirl_frequency: Hertz
@@ -174,29 +211,35 @@ class Judgement:
     duration: Second
     longest_run: Second
     runs: int
+    impact_rate: PerSecond
     largest_tilt: Radian | None = None
     axial_travel: Metre | None = None
     cone_ratio: Ratio | None = None
-    impact_rate: PerSecond | None = None
+
+
+def is_calm(outcome: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether each run settles, or rolls in its pockets; same shape."""
+    return np.asarray((outcome == RunOutcome.SETTLES) | (outcome == RunOutcome.ROLLS))
 
 
 def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
     """Where the runs from each kick end."""
     runs, found = ensemble.outcome.shape[1], []
     counted = np.stack([ensemble.count(outcome) for outcome in RunOutcome], axis=1)
-    kept = np.count_nonzero(ensemble.cause == Cause.LAND_FRICTION, axis=1)
+    kept = np.count_nonzero(kept_by_land(ensemble), axis=1)
     for kick, counts, land in zip(ensemble.kicks.tolist(), counted.tolist(), kept.tolist(), strict=True):
-        settles, whirls, drifting, unresolved = counts
-        low, high = wilson_interval(settles, runs)
+        settles, whirls, drifting, unresolved, rolls = counts
+        low, high = wilson_interval(settles + rolls, runs)
         found.append(
             KickCount(
                 kick=kick,
                 settles=settles,
+                rolls=rolls,
                 whirls=whirls,
                 drifts=drifting,
                 unresolved=unresolved,
                 kept_by_land=land,
-                probability_stable=settles / runs,
+                probability_stable=(settles + rolls) / runs,
                 probability_low=low,
                 probability_high=high,
             )
@@ -205,34 +248,43 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
 
 
 def worst(counts: tuple[KickCount, ...]) -> int:
-    """Place of the worst kick: of those from which most runs whirl, if any, the one that settles least.
+    """Place of the worst kick: of those from which most runs whirl, if any, the one with fewest that settle or roll.
 
-    Of several it is the one with most whirls, then with most runs that the land keeps moving.
+    Of several it is the one with most whirls, then with most runs that the land keeps moving, then with most that roll.
     """
     whirling = [i for i, count in enumerate(counts) if _mostly(count.whirls, count.runs)]
 
-    def goodness(i: int) -> tuple[int, int, int, int]:
-        return counts[i].settles, -counts[i].whirls, -counts[i].kept_by_land, i
+    def goodness(i: int) -> tuple[int, int, int, int, int]:
+        one = counts[i]
+        return one.calm, -one.whirls, -one.kept_by_land, -one.rolls, i
 
     return min(whirling or range(len(counts)), key=goodness)
 
 
-def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
+def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = None) -> Judgement:
     """Judge a cage by its ensemble, at the worst kick.
 
     UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
-    settle, the lower end of that share's 95 % interval is above one half, and the cage neither drifts nor
-    ends outside its pockets nor left its room nor, in any run, the range of numbers, nor does friction on the
+    settle or roll in their pockets, the lower end of that share's 95 % interval is above one half, and the cage neither
+    drifts nor ends outside its pockets nor left its room nor, in any run, the range of numbers, nor does friction on the
     land keep it moving in more than a tenth of the runs from a kick. UNDECIDED otherwise. The rule is ours;
     it asks more of a stable cage than of an unstable one.
+
+    Parameters
+    ----------
+    cage : MovingCage
+        Whose runs these are.
+    ensemble : Ensemble
+        The runs.
+    capacity : float, optional
+        Largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N]; by default what its law of traction has.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)
     at = worst(counts)
     outcome = ensemble.outcome[at]
     whirling, motion = outcome == RunOutcome.WHIRLS, cage_motion(ensemble, at)
-    ends = {CageMotion.WHIRLING: RunOutcome.WHIRLS, CageMotion.DRIFTING: RunOutcome.DRIFTS}
-    shown = np.ones_like(whirling) if motion is None else outcome == ends.get(motion, RunOutcome.SETTLES)
+    shown = np.ones_like(whirling) if motion is None else outcome == ENDS[motion]
     rate, rate_low, rate_high = _growth(ensemble.growth_rate[at])
     pockets, land = _impact_shares(ensemble)
 
@@ -240,6 +292,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         return float(np.median(getattr(ensemble, name)[at][shown]))
 
     force, speed = ensemble.rubbing_force[at][shown], ensemble.rubbing_speed[at][shown]
+    largest, limit = float(ensemble.largest_contact_force.max()), reasons.force_limit(cage, capacity)
     return Judgement(
         verdict=verdict,
         probability_stable=counts[at].probability_stable,
@@ -248,6 +301,7 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         worst_kick=counts[at].kick,
         by_kick=counts,
         reason=because,
+        ball=reasons.ball_words(cage),
         cage_motion=motion,
         growth_rate=rate,
         growth_rate_low=rate_low,
@@ -257,8 +311,11 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         orbit_evenness=_evenness(ensemble, at, shown),
         drift_rate=_median(ensemble.drift_rate[at][~whirling]),
         drift_rate_law=drift_rate_law(cage),
-        largest_contact_force=float(ensemble.largest_contact_force.max()),
+        largest_contact_force=largest,
         largest_land_force=float(ensemble.largest_land_force.max()),
+        force_limit=limit if math.isfinite(limit) else None,
+        force_exceeds_races=largest > limit,
+        left_pocket=int(np.count_nonzero(ensemble.left_ball)),
         pocket_impact_shares=tuple(pockets.tolist()),
         land_impact_share=land,
         whirl_frequency=median("whirl_frequency"),
@@ -275,20 +332,28 @@ def judge(cage: PlanarCage, ensemble: Ensemble) -> Judgement:
         duration=ensemble.duration,
         longest_run=float(ensemble.followed.max()),
         runs=ensemble.outcome.shape[1],
-        **(_in_space(cage, ensemble, median) if isinstance(ensemble, SpaceEnsemble) else {}),
+        impact_rate=median("strike_rate"),
+        largest_tilt=None if ensemble.largest_tilt is None else float(ensemble.largest_tilt.max()),
+        axial_travel=_travel(ensemble),
+        cone_ratio=None if ensemble.cone_speed is None else _whirl_ratio(cage, median("cone_speed")),
     )
 
 
-def _in_space(
-    cage: PlanarCage, ensemble: SpaceEnsemble, median: Callable[[str], float]
-) -> dict[str, float | None]:
-    """Evidence that only a cage in space has."""
-    return {
-        "largest_tilt": float(ensemble.largest_tilt.max()),
-        "axial_travel": float((ensemble.axial_high - ensemble.axial_low).max()),
-        "cone_ratio": _whirl_ratio(cage, median("cone_speed")),
-        "impact_rate": median("strike_rate"),
-    }
+ENDS = {
+    CageMotion.WHIRLING: RunOutcome.WHIRLS,
+    CageMotion.DRIFTING: RunOutcome.DRIFTS,
+    CageMotion.ROLLING: RunOutcome.ROLLS,
+    CageMotion.CENTRED: RunOutcome.SETTLES,
+    CageMotion.ON_THE_LAND: RunOutcome.SETTLES,
+}
+"""Outcome of the runs that end in a motion."""
+
+
+def _travel(ensemble: Ensemble) -> Metre | None:
+    """Largest way between the ends of the axial motion of a run; None in the plane."""
+    if ensemble.axial_high is None or ensemble.axial_low is None:
+        return None
+    return float((ensemble.axial_high - ensemble.axial_low).max())
 
 
 def wilson_interval(successes: int, count: int, normal: float = NORMAL_95) -> tuple[Ratio, Ratio]:
@@ -333,35 +398,35 @@ def _impact_shares(ensemble: Ensemble) -> tuple[Array, Ratio]:
     return np.asarray(pockets / max(met, 1), dtype=np.float64), land / max(met + land, 1)
 
 
-def _whirl_ratio(cage: PlanarCage, orbit_speed: float) -> Ratio | None:
+def _whirl_ratio(cage: MovingCage, orbit_speed: float) -> Ratio | None:
     return orbit_speed / abs(cage.cage_speed) if cage.cage_speed != 0.0 else None  # runs are turned forward
 
 
 def decide(
-    cage: PlanarCage, ensemble: Ensemble, counts: tuple[KickCount, ...] | None = None
+    cage: MovingCage, ensemble: Ensemble, counts: tuple[KickCount, ...] | None = None
 ) -> tuple[Verdict, str]:
     """Verdict and the sentence that gives its reason: `judge` without the rest of the evidence."""
     counts = counts or kick_counts(ensemble)
     at = worst(counts)
     count = counts[at]
     if _mostly(count.whirls, count.runs):
-        return Verdict.UNSTABLE, reason.whirls(ensemble, at)
+        return Verdict.UNSTABLE, reasons.whirls(ensemble, at)
     if wilson_interval(count.runs, count.runs)[0] <= FEW:
-        return Verdict.UNDECIDED, reason.too_few(count.runs)
-    if not _clear(count.settles + count.drifts, count.runs):
-        return Verdict.UNDECIDED, reason.mixed(ensemble, counts, at)
+        return Verdict.UNDECIDED, reasons.too_few(count.runs)
+    if not _clear(count.calm + count.drifts, count.runs):
+        return Verdict.UNDECIDED, reasons.mixed(ensemble, counts, at)
     if (ensemble.cause == Cause.NOT_FINITE).any():
-        return Verdict.UNDECIDED, reason.not_finite(ensemble)
-    if drifts(cage) or not _clear(count.settles, count.runs):
-        return Verdict.UNDECIDED, reason.drift(cage, ensemble, at)
-    left = left_pockets(cage, ensemble) & (ensemble.outcome == RunOutcome.SETTLES)
+        return Verdict.UNDECIDED, reasons.not_finite(ensemble)
+    if drifts(cage) or not _clear(count.calm, count.runs):
+        return Verdict.UNDECIDED, reasons.drift(cage, ensemble, at)
+    left = left_pockets(cage, ensemble) & is_calm(ensemble.outcome)
     if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
-        return Verdict.UNDECIDED, reason.out_of_pockets(cage, ensemble, left)
+        return Verdict.UNDECIDED, reasons.out_of_pockets(cage, ensemble, left)
     if any(not _clear(count.runs - count.kept_by_land, count.runs) for count in counts):
-        return Verdict.UNDECIDED, reason.kept_by_land(cage, ensemble)
+        return Verdict.UNDECIDED, reasons.kept_moving(cage, ensemble)
     if ensemble.largest_offset.max() > largest_room(cage):
-        return Verdict.UNDECIDED, reason.beyond_room(cage, ensemble)
-    return Verdict.STABLE, f"{reason.settles(cage, ensemble, at)}{reason.few_kept(cage, ensemble)}"
+        return Verdict.UNDECIDED, reasons.beyond_room(cage, ensemble)
+    return Verdict.STABLE, reasons.settles(cage, ensemble, at)
 
 
 def _mostly(count: int, runs: int) -> bool:

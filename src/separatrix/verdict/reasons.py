@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.cage.closed_forms import drift_rate_law, room
-from separatrix.cage.ending import GROWS_ON
-from separatrix.cage.planar import Cause, PlanarCage, RunOutcome
-from separatrix.units import Array, Metre, format_number, format_quantity
+from separatrix.cage.outcome import GROWN, Cause, RunOutcome
+from separatrix.units import Array, Metre, Newton, format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
-    from separatrix.cage.verdict import KickCount
+    from separatrix.cage.moving_cage import MovingCage
+    from separatrix.verdict.judgement import KickCount
 
 Mask = NDArray[np.bool_]
 
@@ -26,8 +26,16 @@ LEFT = 2.0
 BEYOND = 2.0
 """Offset that no cage survives, over the room of its centre (land or half pocket clearance, the larger)."""
 
+OUTCOME_SENTENCES = {
+    RunOutcome.SETTLES: "The cage comes to rest relative to the ball set, but for what its loads maintain.",
+    RunOutcome.ROLLS: "The cage rolls in its pockets: a weak whirl, below what frame and loads can give it.",
+    RunOutcome.WHIRLS: "Friction in the pockets sustains the motion, or makes it grow.",
+    RunOutcome.DRIFTS: "The cage has no land, and nothing holds its centre.",
+    RunOutcome.UNRESOLVED: "The run does not show where the motion ends.",
+}
+
 CAUSES = {
-    Cause.IMPACTS: "impacts accumulate without limit; raise [cage] land_restitution or soften the contacts",
+    Cause.LEFT_POCKET: "a ball reaches the edge of its pocket's wall; check the diameters and clearances of [cage]",
     Cause.NO_CONTACT: "nothing touches; raise [stability] duration or kicks",
     Cause.FALLING: "the motion still loses energy at the end; raise [stability] duration",
     Cause.LAND_FRICTION: "friction on the land, not in the pockets, keeps the cage moving",
@@ -36,9 +44,10 @@ CAUSES = {
 
 
 class CageMotion(Enum):
-    """What the cage does at the end of the runs."""
+    """What the cage does at the end of the runs; ROLLING: in its pockets."""
 
     CENTRED = "CENTRED"
+    ROLLING = "ROLLING"
     ON_THE_LAND = "ON THE LAND"
     WHIRLING = "WHIRLING"
     DRIFTING = "DRIFTING"
@@ -55,25 +64,52 @@ def cage_motion(ensemble: Ensemble, kick: int) -> CageMotion | None:
         Place of the kick in the ensemble.
     """
     outcome = ensemble.outcome[kick]
-    settled = outcome == RunOutcome.SETTLES
     counts = {one: int(np.count_nonzero(outcome == one)) for one in RunOutcome}
-    unresolved = counts.pop(RunOutcome.UNRESOLVED)
+    unresolved, rolls = counts.pop(RunOutcome.UNRESOLVED), counts.pop(RunOutcome.ROLLS)
+    counts[RunOutcome.SETTLES] += rolls
     most = max(counts, key=lambda one: (counts[one], one))
     if counts[most] < max(1, unresolved):
         return None
-    if most == RunOutcome.SETTLES:
-        rubs = 2 * np.count_nonzero(ensemble.rubbing_force[kick][settled] > 0.0) > counts[most]
-        return CageMotion.ON_THE_LAND if rubs else CageMotion.CENTRED
-    return CageMotion.WHIRLING if most == RunOutcome.WHIRLS else CageMotion.DRIFTING
+    if most != RunOutcome.SETTLES:
+        return CageMotion.WHIRLING if most == RunOutcome.WHIRLS else CageMotion.DRIFTING
+    settles = counts[most] - rolls
+    if rolls > settles:
+        return CageMotion.ROLLING
+    rubs = ensemble.rubbing_force[kick][outcome == RunOutcome.SETTLES] > 0.0
+    return CageMotion.ON_THE_LAND if 2 * np.count_nonzero(rubs) > settles else CageMotion.CENTRED
 
 
-def left_pockets(cage: PlanarCage, ensemble: Ensemble) -> Mask:
+def ball_words(cage: MovingCage) -> str:
+    """Ball of a cage, in words."""
+    if cage.free_ball is not None:
+        return "free"
+    return "damper" if cage.traction is None else "one state"
+
+
+def force_limit(cage: MovingCage, capacity: Newton | None = None) -> Newton:
+    """Force of a pocket whose friction is all that the races hold of a ball [N]; beyond it the ball has no meaning.
+
+    Infinite among free balls, which slide as they do, without friction, and where nothing says what the races hold:
+    `capacity`, f_BT (Q_i + Q_o) [N], or the law of traction.
+    """
+    held = cage.traction.capacity if cage.traction is not None else math.inf
+    if cage.free_ball is not None or cage.ball_cage_friction == 0.0:
+        return math.inf
+    return (held if capacity is None else capacity) / cage.ball_cage_friction
+
+
+def kept_by_land(ensemble: Ensemble) -> Mask:
+    """Runs that count as settled and that friction on the land keeps moving, shape (kick, run)."""
+    return np.asarray((ensemble.cause == Cause.LAND_FRICTION) & (ensemble.outcome != RunOutcome.WHIRLS))
+
+
+def left_pockets(cage: MovingCage, ensemble: Ensemble) -> Mask:
     """Runs whose centre ended beyond the clearance of the pockets, shape (kick, run)."""
     limit = LEFT * cage.half_play if cage.half_play > 0.0 else math.inf
     return np.asarray(ensemble.mean_offset > limit)
 
 
-def largest_room(cage: PlanarCage) -> Metre:
+def largest_room(cage: MovingCage) -> Metre:
     """Offset beyond which the model of land and pockets has no meaning [m]."""
     wide = max(room(cage), cage.half_play)
     return BEYOND * wide if wide > 0.0 else math.inf
@@ -84,17 +120,22 @@ def too_few(runs: int) -> str:
     return f"Too few runs for a verdict: {runs} at each kick; set [stability] runs to 4 or more."
 
 
-def settles(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
-    """Return from which kick fewest runs settle, and what rubs then."""
-    settled = ensemble.outcome[kick] == RunOutcome.SETTLES
-    first = f"{_share(settled)} of the runs settle from the worst kick, {ensemble.kicks[kick]:g} m/s"
-    force = float(np.median(ensemble.rubbing_force[kick][settled]))
-    if force <= 0.0:
-        return f"{first}."
-    speed = float(np.median(ensemble.rubbing_speed[kick][settled]))
-    power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
-    rubs = f"{_three(force)} N at {_three(speed)} m/s ({_watt(power)})"
-    return f"{first}; the cage then rubs on its land with {rubs}."
+def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
+    """Return what share of the runs from the worst kick settles or rolls, and how hard the cage then rolls or rubs."""
+    outcome = ensemble.outcome[kick]
+    settled, rolling = outcome == RunOutcome.SETTLES, outcome == RunOutcome.ROLLS
+    ends = "settle or roll in their pockets" if rolling.any() else "settle"
+    said = f"{_share(settled | rolling)} of the runs {ends} from the worst kick, {ensemble.kicks[kick]:g} m/s"
+    if np.count_nonzero(rolling) > np.count_nonzero(settled):
+        force, power = (_median(x[kick][rolling]) for x in (ensemble.largest_contact_force, ensemble.pocket_power))
+        many = f"{100.0 * float(rolling.mean()):.0f} %"
+        said += f"; {many} roll, with up to {_three(force)} N in a pocket, fed {_watt(power)} (medians)"
+    elif (force := _median(ensemble.rubbing_force[kick][settled])) > 0.0:
+        speed = _median(ensemble.rubbing_speed[kick][settled])
+        power = cage.land_friction * _median((ensemble.rubbing_force * ensemble.rubbing_speed)[kick][settled])
+        rubs = f"{_three(force)} N at {_three(speed)} m/s ({_watt(power)})"
+        said += f"; the cage then rubs on its land with {rubs}"
+    return f"{said}.{few_kept(cage, ensemble)}{few_left(ensemble)}"
 
 
 def whirls(ensemble: Ensemble, kick: int) -> str:
@@ -105,8 +146,10 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
-        return f"{first}; the energy passes {GROWS_ON:g} times that of kick and frame."
-    return f"{first}; friction feeds the cage {_watt(float(np.median(power)))}."
+        return f"{first}; the energy passes {GROWN:g} times that of kick and frame."
+    by_land = 2 * np.count_nonzero(ensemble.cause[kick][whirling] == Cause.LAND_FRICTION) > np.count_nonzero(whirling)
+    what = "friction on the land, more than that in the pockets," if by_land else "friction"
+    return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}."
 
 
 def not_finite(ensemble: Ensemble) -> str:
@@ -118,21 +161,38 @@ def not_finite(ensemble: Ensemble) -> str:
 def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
     """Return what the runs from the worst kick do; of unresolved ones also why."""
     count = counts[kick]
-    parts = [(count.settles, "settle"), (count.whirls, "whirl"), (count.drifts, "drift")]
+    parts = [(count.settles, "settle"), (count.rolls, "roll"), (count.whirls, "whirl"), (count.drifts, "drift")]
     said = ", ".join(f"{n} {word}" for n, word in parts if n)
     if count.unresolved:
         said = f"{said}{', ' if said else ''}{count.unresolved} are unresolved"
         causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]
         most = Cause(int(np.bincount(causes).argmax()))
-        followed = ensemble.followed[kick].max()
-        cure = f"{CAUSES[most]} (followed for {_three(followed)} s)"
-        return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {cure}."
+        seen = f"followed for {_three(ensemble.followed[kick].max())} s"
+        if most == Cause.LEFT_POCKET:
+            seen = _first_left(ensemble)
+        return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {CAUSES[most]} ({seen})."
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
 
 
-def kept_by_land(cage: PlanarCage, ensemble: Ensemble) -> str:
+def few_left(ensemble: Ensemble) -> str:
+    """Return in how many runs of a stable cage a ball reached the edge of its wall; empty if in none."""
+    count = np.count_nonzero(ensemble.left_ball)
+    if not count:
+        return ""
+    where = f"In {count} of {ensemble.outcome.size} runs a ball reached the edge of its pocket's wall"
+    return f" {where} ({_first_left(ensemble)})."
+
+
+def _first_left(ensemble: Ensemble) -> str:
+    """The first ball, of all runs, at the edge of its wall, and when."""
+    at = np.where(ensemble.left_ball > 0, ensemble.left_time, np.inf).argmin()
+    ball, time = ensemble.left_ball.flat[at], float(ensemble.left_time.flat[at])
+    return f"first ball {ball} after {format_quantity(time, 's', 3)}"
+
+
+def kept_moving(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return in how many runs friction on the land keeps the cage moving, and how hard it then presses."""
-    kept = ensemble.cause == Cause.LAND_FRICTION
+    kept = kept_by_land(ensemble)
     return (
         f"Friction on the land, {cage.land_friction:g}, and not in the pockets, keeps the cage moving in "
         f"{int(kept.sum())} of {kept.size} runs: {_lively(ensemble, kept)}. Pocket friction does not decide "
@@ -140,9 +200,9 @@ def kept_by_land(cage: PlanarCage, ensemble: Ensemble) -> str:
     )
 
 
-def few_kept(cage: PlanarCage, ensemble: Ensemble) -> str:
+def few_kept(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return the same for the few runs of a stable cage; empty if there is none."""
-    kept = ensemble.cause == Cause.LAND_FRICTION
+    kept = kept_by_land(ensemble)
     if not kept.any():
         return ""
     kicks = ", ".join(f"{kick:g}" for kick in ensemble.kicks[kept.any(axis=1)])
@@ -158,7 +218,7 @@ def _lively(ensemble: Ensemble, kept: Mask) -> str:
     return f"{_three(1e3 * energy)} mJ, fed {_watt(power)}, up to {_three(force)} N on the land"
 
 
-def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:
+def out_of_pockets(cage: MovingCage, ensemble: Ensemble, left: Mask) -> str:
     """Return how far off the centre ends."""
     offset, play = 1e3 * float(ensemble.mean_offset[left].max()), 1e3 * cage.half_play
     return (
@@ -168,7 +228,7 @@ def out_of_pockets(cage: PlanarCage, ensemble: Ensemble, left: Mask) -> str:
     )
 
 
-def beyond_room(cage: PlanarCage, ensemble: Ensemble) -> str:
+def beyond_room(cage: MovingCage, ensemble: Ensemble) -> str:
     """Return how far the centre went beyond what land and pockets leave."""
     offset, clearance = 1e3 * float(ensemble.largest_offset.max()), 1e3 * room(cage)
     return (
@@ -178,7 +238,7 @@ def beyond_room(cage: PlanarCage, ensemble: Ensemble) -> str:
     )
 
 
-def drift(cage: PlanarCage, ensemble: Ensemble, kick: int) -> str:
+def drift(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     """Return how many runs left their pockets, and the rate of drift as measured and by the linear law."""
     limit = 2.0 * cage.half_play
     passed = int(np.count_nonzero(ensemble.largest_offset > limit))

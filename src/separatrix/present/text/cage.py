@@ -1,22 +1,19 @@
-"""Text for the moving cage: runs in the plane and in space, and the evidence of a verdict."""
+"""Text for the moving cage: one run, and the evidence of a verdict."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
-import numpy as np
-
-from separatrix.answers import SimulationAnswer, SpaceSimulationAnswer
-from separatrix.cage import CageMotion, History, Judgement, PlanarCage, SpaceAnalysis
+from separatrix.answers import SimulationAnswer
+from separatrix.cage import History, MovingCage
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.limits.point import own_restitution_factor
-from separatrix.present.shapes import outcome_sentence
+from separatrix.present.shapes import outcome_sentence, rubbing_power
 from separatrix.present.text.chain import basis, running_clearances
+from separatrix.present.text.sentences import pocket_force
 from separatrix.present.text.tables import (
     facts,
-    interval,
     number,
     paragraph,
     quantity,
@@ -24,10 +21,10 @@ from separatrix.present.text.tables import (
     section,
     significant,
     stated,
-    table,
 )
-from separatrix.ranking.records import NotMeasured, Ranking, Row
-from separatrix.study import BallModel, Guidance, Study
+from separatrix.study import Guidance, Study
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.reasons import CageMotion, ball_words
 
 DIRECTIONS = {1: "forward", -1: "backward", 0: "none"}
 
@@ -36,6 +33,7 @@ MOTIONS = {
     CageMotion.ON_THE_LAND: (
         "the cage rests on its land, or moves on it as loads and the land's friction make it"
     ),
+    CageMotion.ROLLING: "a whirl in the pockets, weaker than what frame and loads can give the cage",
     CageMotion.WHIRLING: "friction in the pockets sustains the motion, or makes it grow",
     CageMotion.DRIFTING: "the cage has no land, and nothing holds its centre",
 }
@@ -46,43 +44,35 @@ SINGLE = paragraph(
 )
 
 BASIS = 3
-"""Facts of the chain that leave the text of a run in space on a screen: bearing, operation, film."""
+"""Facts of the chain that leave the text of a run on a screen: bearing, operation, film."""
 
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
 
 
-def simulate(answer: SimulationAnswer | SpaceSimulationAnswer, study: Study) -> list[str]:
-    """How one run ended, where its centre went, its largest forces, and the work that drove it."""
-    if isinstance(answer, SpaceSimulationAnswer):
-        return _simulate_in_space(answer, study)
-    history, cage = answer.history, answer.cage
+def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
+    """How one run ended, how its cage moved, its largest forces, and the work that drove it."""
+    history, found = answer.history, answer.analysis
     span = " to ".join(stated(history, f"judged_{at}") for at in ("from", "until"))
-    outcome = f"{history.outcome.name}, judged from {span}. {outcome_sentence(history)}"
-    rubbing = cage.land_friction * history.rubbing_force * history.rubbing_speed
-    ended = [*_start(answer, study), ("Outcome", outcome), *_power_facts(history, rubbing)]
-    peaks = np.abs(history.contact_force).max(axis=0)
-    forces = [
-        ("Pocket", f"{quantity(float(peaks.max()), 'N')}, pocket {peaks.argmax() + 1}"),
-        ("Land", quantity(float(history.land_force.max()), "N")),
+    ended = [
+        ("Outcome", f"{history.outcome.name}. {outcome_sentence(answer)}"),
+        ("Judged", f"from {span}; the run has {stated(found, 'run_length')}"),
+        *_start(answer, study),
+        ("Drift rate", _drift_text(history.drift_rate, drift_rate_law(answer.cage))),
+        ("Energy balance", f"closes to {history.energy_imbalance:.0e} of the work done"),
     ]
-    energies = {name: getattr(history, name) for name in ("kinetic_energy", "spring_energy", "land_energy")}
-    ledger = [
-        (name.replace("_", " "), quantity(float(values[-1]), "J"))
-        for name, values in (history.work | energies).items()
-        if values.any()
-    ]
+    part = "of the whole run" if found.whole_run else "of the judged part"
+    running = running_clearances(answer.solution.clearances)
     return [
         section("The run", facts(ended)),
-        section("Centre of the cage", facts([*orbit_facts(history, cage), clearance_fact(cage)])),
-        section("Largest forces", facts(forces)),
-        section("Work done on the cage; energy at the end", facts(ledger)),
-        section("Basis of this answer", facts(basis(study, answer))),
+        section(f"Motion: means {part}", facts([*_motion(answer), clearance_fact(answer.cage)])),
+        section("Forces, rubbing and work", facts(_forces(answer))),
+        section("Basis of this answer", facts([*basis(study, answer)[:BASIS], *running])),
         SINGLE,
     ]
 
 
-def friction_text(cage: PlanarCage, study: Study) -> str:
+def friction_text(cage: MovingCage, study: Study) -> str:
     """Return the pocket friction, and where it comes from if not from the study's cage."""
     own = study.cage is not None and study.cage.ball_cage_friction is not None
     candidate = None if own else cage_candidate(study)
@@ -91,12 +81,12 @@ def friction_text(cage: PlanarCage, study: Study) -> str:
     return number(cage.ball_cage_friction) + whose
 
 
-def _start(answer: SimulationAnswer | SpaceSimulationAnswer, study: Study) -> list[tuple[str, str]]:
+def _start(answer: SimulationAnswer, study: Study) -> list[tuple[str, str]]:
     """Return what a run starts from; its race damping only if it is not that of the study."""
     cage = answer.cage
     found = [
         ("Kick, run, seed", f"{answer.kick:g} m/s, {answer.run}, {study.stability.seed}"),
-        ("Pocket friction", friction_text(cage, study)),
+        ("Pocket friction; ball", f"{friction_text(cage, study)}; {ball_words(cage)}"),
     ]
     if cage.race_damping != answer.solution.restitution.race_damping:
         size = quantity(cage.race_damping, "N s/m") if math.isfinite(cage.race_damping) else "infinite"
@@ -107,22 +97,7 @@ def _start(answer: SimulationAnswer | SpaceSimulationAnswer, study: Study) -> li
     return found
 
 
-def orbit_facts(history: History, cage: PlanarCage) -> list[tuple[str, str]]:
-    """Return how far the centre went, and how it moved in the part of the run by which it is judged."""
-    start = min(history.judged_from, float(history.time[-1]))
-    offset = np.hypot(*history.position.T)
-    at_end = offset[history.time >= start]
-    mean, spread = float(at_end.mean()), float(at_end.std())
-    evenness = f"{number(spread / mean, 2)} (0: a circle about the axis)" if mean > 0.0 else "none"
-    return [
-        ("Largest offset", quantity(float(offset.max()), "m")),
-        ("Mean offset", f"{quantity(mean, 'm')}, from {quantity(start, 's')} to the end"),
-        ("Relative spread", evenness),
-        ("Drift rate", _drift_text(history.drift_rate, drift_rate_law(cage))),
-    ]
-
-
-def clearance_fact(cage: PlanarCage) -> tuple[str, str]:
+def clearance_fact(cage: MovingCage) -> tuple[str, str]:
     """Return the clearances that the offset compares with: of the pockets, and of the land."""
     pockets = f"pockets {quantity(cage.half_play, 'm')} each way"
     if cage.guidance is Guidance.BALL or cage.land_clearance is None:
@@ -136,7 +111,7 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
     motion = found.cage_motion
     ends = f"(95 %: {number(found.probability_low, 2)} to {number(found.probability_high, 2)})"
     mean = f"{stated(found, 'mean_offset')} at the end, relative spread {number(found.orbit_evenness, 2)}"
-    forces = f"{stated(found, 'largest_contact_force')} at a pocket, {stated(found, 'largest_land_force')}"
+    forces = f"{pocket_force(found.largest_contact_force, found.force_limit)}, at a pocket"
     energy = (
         f"{quantity(found.end_energy, 'J', 3)}; frame and loads alone can supply "
         f"{quantity(found.drive_energy, 'J', 3)}"
@@ -149,11 +124,13 @@ def judgement_facts(found: Judgement, reason: str) -> list[tuple[str, str]]:
         ("Verdict", f"{found.verdict.name}. {reason}"),
         ("Motion", f"{motion.value}: {MOTIONS[motion]}" if motion else "unresolved in most runs"),
         ("P(stable)", f"{number(found.probability_stable, 2)} {ends}"),
+        ("Ball", f"{found.ball}. {found.ball_reason or 'The study asks for it.'}"),
         ("Growth rate", f"{growth}, from {found.worst_kick:g} m/s, the worst kick"),
         ("Offset", f"{stated(found, 'largest_offset')} at most; {mean}"),
         *_space_facts(found),
         ("Drift rate", _drift_text(found.drift_rate, found.drift_rate_law)),
-        ("Largest forces", f"{forces} at the land"),
+        ("Largest forces", f"{forces}; {stated(found, 'largest_land_force')} at the land"),
+        *_left_facts(found),
         ("Impacts", _impacts_text(found)),
         ("Whirl", _whirl_text(found)),
         ("Energy at the end", energy),
@@ -171,6 +148,13 @@ def _space_facts(found: Judgement) -> list[tuple[str, str]]:
         ("Axial motion", f"{stated(found, 'axial_travel')} from end to end"),
         ("Impacts at pockets", f"{number(found.impact_rate or 0.0, 0)} 1/s in the last part"),
     ]
+
+
+def _left_facts(found: Judgement) -> list[tuple[str, str]]:
+    """Return in how many runs a ball reached the edge of its pocket's wall; empty if in none."""
+    every = found.runs * len(found.by_kick)
+    where = f"in {found.left_pocket} of {every} runs a ball reached the edge of its pocket's wall"
+    return [("Left its pocket", where)] if found.left_pocket else []
 
 
 def motion_words(motion: CageMotion | None) -> str:
@@ -212,136 +196,61 @@ def _whirl_text(found: Judgement) -> str:
     return f"{seen}, seen from the balls; the centre orbits at {ratio} of the ball set's speed"
 
 
-def _simulate_in_space(answer: SpaceSimulationAnswer, study: Study) -> list[str]:
-    history, found, cage = answer.history, answer.analysis, answer.cage
-    span = " to ".join(stated(history, f"judged_{at}") for at in ("from", "until"))
-    ended = [
-        ("Outcome", f"{history.outcome.name}. {outcome_sentence(history)}"),
-        ("Judged", f"from {span}; the run has {quantity(found.run_length, 's')}"),
-        *_start(answer, study),
-        ("Drift rate", _drift_text(history.drift_rate, drift_rate_law(cage))),
-        ("Energy balance", f"closes to {history.energy_imbalance:.0e} of the work done"),
-    ]
-    if cage.rotation_sense < 0:
-        ended.append(("Shown", "as its mirror image, in which the balls go round forward"))
-    part = "of the whole run" if found.whole_run else "of the judged part"
-    running = running_clearances(answer.solution.clearances)
-    return [
-        section("The run", facts(ended)),
-        section(f"Motion in space: means {part}", facts([*_motion(found), clearance_fact(cage)])),
-        section("Forces and rubbing of the whole run", facts(_forces(answer))),
-        section("Basis of this answer", facts([*basis(study, answer)[:BASIS], *running])),
-        SINGLE,
-    ]
-
-
-def _motion(found: SpaceAnalysis) -> list[tuple[str, str]]:
-    whirl = found.whirl
-    axial = " to ".join(quantity(end, "m") for end in (found.axial.low, found.axial.high))
-    ratios = [
-        f"{name} {number(ratio, 2)}"
-        for name, ratio in (("offset", whirl.offset_ratio), ("tilt", whirl.tilt_ratio))
-        if ratio is not None
-    ]
-    words = f"{', '.join(ratios)} of the cage's speed (1: turns with it; below 0: backward)"
+def _motion(answer: SimulationAnswer) -> list[tuple[str, str]]:
+    history, found, whirl = answer.history, answer.analysis, answer.analysis.whirl
+    spread = number(found.offset_spread / found.mean_offset, 2) if found.mean_offset > 0.0 else "0"
+    most = f"{stated(history, 'largest_offset')} at most, mean {stated(found, 'mean_offset')}"
+    rows = [("Offset", f"{most}, relative spread {spread} (0: a circle about the axis)")]
+    if found.mean_tilt is not None:
+        cone = "without a steady phase to the offset"
+        if whirl.tilt_phase is not None and (whirl.tilt_coherence or 0.0) >= STEADY:
+            cone = f"{math.degrees(whirl.tilt_phase):.0f} deg ahead of the offset (0: a forward cone)"
+        axial = " to ".join(stated(found, f"axial_{end}") for end in ("low", "high"))
+        tilt = f"{_mrad(found.largest_tilt)} at most, mean {_mrad(found.mean_tilt)}; {cone}"
+        rows += [("Tilt", tilt), ("Axial place", f"{stated(found, 'largest_axial')} at most; {axial}")]
+    pace = f"{stated(history, 'whirl_frequency')} {DIRECTIONS[history.whirl_direction]}"
+    seen = f"{pace}, seen from the balls; the centre moves at {stated(found, 'whirl_speed')}"
+    both = (("offset", whirl.offset_ratio), ("tilt", whirl.tilt_ratio))
+    ratios = ", ".join(f"{name} {number(ratio, 2)}" for name, ratio in both if ratio is not None)
+    words = f"{ratios} of the cage's speed (1: turns with it; below 0: backward)"
     slip = "the ball set is at rest"
     if found.cage_slip is not None:
         share = round(100.0 * found.cage_slip, 2) + 0.0  # never -0
         slip = f"{abs(share):g} % {'ahead of' if share < 0.0 else 'behind'} the ball set"
-    cone = "without a steady phase to the offset"
-    if whirl.tilt_phase is not None and (whirl.tilt_coherence or 0.0) >= STEADY:
-        cone = f"{math.degrees(whirl.tilt_phase):.0f} deg ahead of the offset (0: a forward cone)"
     return [
-        ("Offset", f"{quantity(found.largest_offset, 'm')} at most, mean {quantity(found.offset.mean, 'm')}"),
-        ("Tilt", f"{_mrad(found.largest_tilt)} at most, mean {_mrad(found.tilt.mean)}; {cone}"),
-        ("Axial place", f"{quantity(found.largest_axial, 'm')} at most; {axial}"),
+        *rows,
+        ("Whirl", seen if answer.whirls else "none: the motion does not last"),
         ("Whirl ratio", words if ratios else "none: the cage does not turn, or rests at the centre"),
         ("Cage slip", slip),
     ]
 
 
-def _mrad(angle: float) -> str:
-    return f"{significant(1e3 * angle, 3)} mrad"
+def _mrad(angle: float | None) -> str:
+    return f"{significant(None if angle is None else 1e3 * angle, 3)} mrad"
 
 
-def _forces(answer: SpaceSimulationAnswer) -> list[tuple[str, str]]:
-    history, found = answer.history, answer.analysis
-    impacts, rubbing = found.impacts, found.rubbing
-    pocket = quantity(history.largest_contact_force, "N")
-    if found.force_share is not None:
-        pocket += f", {number(found.force_share, 2)} of what the races can transmit to a ball"
-    land = quantity(history.largest_land_force, "N") if rubbing.land_power.size else "the cage has no land"
-    rows = [("Pocket, largest", pocket), ("Land, largest", land)]
-    turns = impacts.rate_per_turn
-    count = f"{impacts.count} in pockets, {impacts.land_count} at lands"
-    if turns is not None and turns.size:
-        count += f"; {number(float(turns.mean()), 2)} in each pocket per cage turn"
-    rows.append(("Impacts", count))
+def _forces(answer: SimulationAnswer) -> list[tuple[str, str]]:
+    history, impacts = answer.history, answer.analysis.impacts
+    pocket = pocket_force(history.largest_contact_force, answer.force_limit)
+    if answer.force_exceeds_races:
+        pocket += ": beyond it the ball slides, and its model has no meaning; `--ball free` has"
+    is_landless = answer.cage.guidance is Guidance.BALL
+    land = "the cage has no land" if is_landless else stated(history, "largest_land_force")
+    count = f"{history.pocket_impacts.sum():.0f} in pockets, {history.land_impacts} at the land"
+    if impacts.rate_per_turn is not None:
+        count += f"; {number(float(impacts.rate_per_turn.mean()), 2)} in each pocket per cage turn"
+    rows = [("Pocket, largest", pocket), ("Land, largest", land), ("Impacts", count)]
     if impacts.front_share is not None:
         shares = (
             (impacts.front_share, "in front of the ball"),
             (impacts.rear_share, "behind it"),
             (impacts.axial_share, "at its axial sides"),
         )
-        each = ", ".join(f"{100.0 * (share or 0.0):.0f} % {where}" for share, where in shares)
-        rows.append(("Impulse", each))
-    pockets, lands = float(rubbing.pocket_power.sum()), float(rubbing.land_power.sum())
-    heat = f"pockets {quantity(pockets, 'W')}, lands {quantity(lands, 'W')} of friction heat, mean"
-    return [*rows, ("Rubbing", heat)]
-
-
-SECOND_HEADERS = ("material", "damper:\nverdict", "force over\ncapacity")
-TRACTION_HEADERS = ("traction:\nverdict", "P(stable)\n(95 %)", "force over\ncapacity")
-WHY = {
-    True: "beyond its traction a ball slides along with the cage and takes the energy of the impact, where "
-    "the damper returns it",
-    False: "a ball with traction yields less to weak impacts than the damper, and goes on moving after them",
-}
-"""Why the model with traction may find more runs stable, or fewer."""
-
-
-def by_the_other_ball(found: Ranking, rows: Sequence[Row]) -> list[str]:
-    """Return verdicts by both models of a ball, and where they differ; nothing without a second verdict."""
-    runs = 0
-    both: list[tuple[str, Judgement, Judgement]] = []
-    for row in rows:
-        if isinstance(row, NotMeasured) or row.judgement is None or row.other_ball is None:
-            continue
-        first, second = row.judgement, row.other_ball
-        runs = second.runs
-        is_damper = found.ball_model is BallModel.DAMPER
-        both.append((row.name, first, second) if is_damper else (row.name, second, first))
-    if not both:
-        return []
-    cells = [[name, *_cells(found, damper), *_cells(found, traction)] for name, damper, traction in both]
-    for cell, (_, _, traction) in zip(cells, both, strict=True):
-        ends = traction.probability_low, traction.probability_high
-        cell.insert(-1, interval(traction.probability_stable, *ends))
-    largest = max(damper.largest_contact_force for _, damper, _ in both)
-    text = (
-        f"The races transmit at most {quantity(found.capacity, 'N', 3)} to a ball before it slides; the "
-        f"damper presses pockets with up to {quantity(largest, 'N', 3)}. The other model has {runs} runs "
-        f"from each kick. {_differences(both)}"
-    )
-    title = "Balls as dampers (the paper), and with their inertia and the traction of their races"
-    return [section(title, table((*SECOND_HEADERS, *TRACTION_HEADERS), cells, left=1), "", paragraph(text))]
-
-
-def _cells(found: Ranking, one: Judgement) -> list[str]:
-    return [one.verdict.name, f"{one.largest_contact_force / found.capacity:.2g}"]
-
-
-def _differences(both: Sequence[tuple[str, Judgement, Judgement]]) -> str:
-    said = []
-    for more in (True, False):
-        names = [
-            name
-            for name, damper, traction in both
-            if damper.verdict is not traction.verdict
-            and (traction.probability_stable >= damper.probability_stable) is more
-        ]
-        if names:
-            than = "more" if more else "less"
-            come = "comes" if len(names) == 1 else "come"
-            said.append(f"With traction {', '.join(names)} {come} out {than} stable: {WHY[more]}.")
-    return " ".join(said) or "Both models reach the same verdicts."
+        each = (f"{100.0 * share:.0f} % {where}" for share, where in shares if share)
+        rows.append(("Impulse", ", ".join(each)))
+    heat = f"{quantity(float(answer.analysis.rubbing.pocket_power.sum()), 'W')} of heat, mean of the run"
+    rows += [*_power_facts(history, rubbing_power(answer)), ("Rubbing in the pockets", heat)]
+    done = {name.replace("_", " "): float(work[-1]) for name, work in history.work.items() if work.any()}
+    left = float(history.kinetic_energy[-1] + history.stored_energy[-1])
+    works = ", ".join(f"{name} {quantity(work, 'J', 3)}" for name, work in done.items())
+    return [*rows, ("Work on the cage", f"{works or 'none'}; energy at the end {quantity(left, 'J', 3)}")]

@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from separatrix.answers import RankingAnswer
-from separatrix.cage import Judgement, Verdict
 from separatrix.present.nodes import Document, plain
-from separatrix.present.text.cage import by_the_other_ball, judgement_facts, motion_words
+from separatrix.present.text.cage import judgement_facts, motion_words
 from separatrix.present.text.chain import basis
 from separatrix.present.text.sentences import (
     by_verdict,
     drift,
     margin,
+    pocket_force,
     probability,
     rank_texts,
     threshold,
@@ -35,13 +35,14 @@ from separatrix.present.text.tables import (
 )
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking, Row
 from separatrix.study import Study
+from separatrix.verdict.judgement import Judgement, Verdict
 
 HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)
-TILT = "tilt\nmrad"
-"""Column of a cage in space."""
+TILT, ROLL = "tilt\nmrad", "of them\nroll"
+"""Columns of a cage in space, and of one that rolls in its pockets."""
 
 SHORT_EVIDENCE = (
-    *("material", "motion", "stable runs by kick", "largest\noffset", TILT, "drift\n1/s"),
+    *("material", "motion", "stable runs by kick", ROLL, "largest\noffset", TILT, "drift\n1/s"),
     *("force at\na pocket", "force on\nthe land", "rubs\nwith"),
 )
 ETA = "bearing's\neta"
@@ -54,11 +55,12 @@ DIRECTIONS = {1: " forward", -1: " backward", 0: ""}
 LEGEND = (
     "rank: by margin, = a tie within the scatter. threshold: largest stable restitution factor eta "
     "from the reference kick. margin: threshold less the bearing's eta. "
-    "P(stable): share of runs that settle from the worst kick."
+    "P(stable): share of runs that settle, or roll in their pockets, from the worst kick."
 )
 EVIDENCE_LEGEND = (
     "motion: what most runs from the worst kick end in. growth rate: of the amplitude, mean over all of "
-    "them. offset of the cage centre, force at a pocket and at the land: largest in any run. drift: median "
+    "them. offset of the cage centre, force at a pocket (> what the races hold: there it has no meaning) "
+    "and at the land: largest in any run. drift: median "
     "growth of the mean offset of the runs that do not whirl. whirl: median of the runs that end in the "
     "motion, seen from the balls; ratio: speed at which the centre orbits the axis over "
     "that of the balls."
@@ -93,7 +95,6 @@ def rank(answer: RankingAnswer, study: Study) -> list[str]:
         _in_short(found),
         section(_title(found.environment), verdicts(rows), *legend),
         *_over_inputs(rows, study),
-        *by_the_other_ball(found, rows),
         section(
             f"Evidence: {_ensemble(found)}",
             _short_evidence(rows),
@@ -125,7 +126,6 @@ def every_environment(answer: RankingAnswer, study: Study) -> list[str]:
         _in_short(found),
         environment(found, own),
         *_over_inputs(own.materials, study),
-        *by_the_other_ball(found, own.materials),
         paragraph(LEGEND),
         paragraph(EVIDENCE_LEGEND),
         *detail,
@@ -251,16 +251,19 @@ def _short_evidence(rows: Sequence[Row]) -> str:
     """Return motion, largest offset, drift, forces and rubbing of every candidate that has a verdict."""
     judged = [found for row in rows if (found := judgement(row)) is not None]
     flat = all(found.largest_tilt is None for found in judged)
-    headers = [header for header in SHORT_EVIDENCE if header != TILT or not flat]
+    calm = all(count.rolls == 0 for found in judged for count in found.by_kick)
+    left_out = {TILT: flat, ROLL: calm}
+    headers = [header for header in SHORT_EVIDENCE if not left_out.get(header)]
     cells = [
         [
             row.name,
             motion_words(found.cage_motion),
-            " ".join(str(kick.settles) for kick in found.by_kick),
+            " ".join(str(kick.calm) for kick in found.by_kick),
+            *([] if calm else [" ".join(str(kick.rolls) for kick in found.by_kick)]),
             quantity(found.largest_offset, "m", 3),
             *([] if flat else [number(1e3 * (found.largest_tilt or 0.0), 1)]),
             drift(plain(found)),
-            quantity(found.largest_contact_force, "N", 3),
+            pocket_force(found.largest_contact_force, found.force_limit, short=True),
             quantity(found.largest_land_force, "N", 3),
             quantity(found.rubbing_power, "W", 2),
         ]
@@ -287,11 +290,18 @@ def evidence(rows: Sequence[Row]) -> str:
                 *([number(row.restitution_factor, 2)] if len(etas) > 1 else []),
                 rate(found.growth_rate, found.growth_rate_low, found.growth_rate_high),
                 *(number(1e3 * found.largest_offset), drift(plain(found))),
-                *(number(found.largest_contact_force, 0), number(found.largest_land_force, 0)),
+                *(newtons(found), number(found.largest_land_force, 0)),
                 *(whirl + DIRECTIONS[found.whirl_direction], number(found.whirl_ratio, 2)),
             ]
         )
     return table(headers, cells, left=2)
+
+
+def newtons(found: Judgement) -> str:
+    """Return the largest force in a pocket as a number [N], or above what it means nothing."""
+    if found.force_exceeds_races:
+        return f"> {number(found.force_limit, 0)}"
+    return number(found.largest_contact_force, 0)
 
 
 def gaps(found: Ranking) -> list[str]:

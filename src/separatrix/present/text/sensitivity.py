@@ -17,6 +17,7 @@ from separatrix.explore.records import (
 )
 from separatrix.present.nodes import plain
 from separatrix.present.text.chain import basis
+from separatrix.present.text.ranking import newtons
 from separatrix.present.text.sentences import next_test
 from separatrix.present.text.tables import (
     ABSENT,
@@ -41,8 +42,9 @@ MARK, GUESS = "*", "?"
 
 LEGEND = paragraph(
     "friction of a new cage: mean, and standard deviation in per cent of it. P(stable): share of the "
-    "bearings whose cage settles, from the worst kick. motion: class of most of them. offset, forces: "
-    "largest in any run. runs: bearings from the worst kick; fewer where the verdict was plain before."
+    "bearings whose cage settles or rolls in its pockets, from the worst kick. motion: class of most of "
+    "them. offset, forces: largest in any run. runs: bearings from the worst kick; fewer where the verdict "
+    "was plain before."
 )
 SOURCES = {
     "study": "from the study",
@@ -126,7 +128,7 @@ def _row(row: UncertainRow) -> list[str]:
         _verdict(row),
         judged.cage_motion.value if judged.cage_motion else "unresolved",
         number(1e3 * judged.largest_offset),
-        number(judged.largest_contact_force, 0),
+        newtons(judged),
         number(judged.largest_land_force, 0),
         str(judged.runs),
     ]

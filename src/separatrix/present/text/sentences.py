@@ -42,6 +42,13 @@ def drift(row: Row) -> str:
     return ABSENT if worst["whirls"] == row["runs"] else significant(row["drift_rate"], 2)
 
 
+def pocket_force(largest: float, limit: float | None, *, short: bool = False) -> str:
+    """Return the largest force in a pocket, or what the races hold, beyond which it means nothing."""
+    if limit is None or largest <= limit:
+        return quantity(largest, "N", 3)
+    return ("> " if short else "above what the races hold, ") + quantity(limit, "N", 3)
+
+
 def verdict(row: Row) -> str:
     """Return the verdict, or why there is none."""
     if row.get("verdict"):

@@ -31,12 +31,12 @@ from separatrix.study import Study
 
 HEADERS = (
     *("restitution\nfactor", "critical friction\n(95 %)", "band\nlow", "band\nhigh"),
-    *("linear\nlimit", "hard\nlimit"),
+    "linear\nlimit",
 )
 LEGEND = "\n" + paragraph(
     "critical friction: half the runs whirl from the reference kick; fewer below, more above. band: nine in "
-    "ten runs settle from every kick below its low end, and whirl from every kick above its high end. linear "
-    "limit: no clearance. hard limit: walls as pockets, evenly spaced. Both for balls at rest."
+    "ten runs settle or roll from every kick below its low end, and whirl from every kick above its high "
+    "end. linear limit: no clearance, balls at rest."
 )
 MAP_LEGEND = paragraph(
     "between the last point of a column at which, beyond the scatter, less than half the runs whirl and the "
@@ -77,13 +77,12 @@ def ensemble_facts(
 def curve(found: StabilityCurve) -> list[str]:
     """Points of the curve with band and limits, and the band at this bearing's own restitution factor."""
     linear = {one.restitution_factor: one.critical_friction for one in found.linear_limit}
-    hard = {one.restitution_factor: one.critical_friction for one in found.hard_limit}
     rows = []
     for point in found.curve:
         eta, critical = point.restitution_factor, ABSENT
         if point.critical_friction is not None:
             critical = interval(point.critical_friction, point.scatter_low, point.scatter_high, 3)
-        others = (point.critical_friction_low, point.critical_friction_high, linear.get(eta), hard.get(eta))
+        others = (point.critical_friction_low, point.critical_friction_high, linear.get(eta))
         rows.append([number(eta), critical, *map(number, others)])
     drift = drift_sentence(found.drifts, found.drift_rate_law)
     block = section(
@@ -95,7 +94,7 @@ def curve(found: StabilityCurve) -> list[str]:
     low, high = here.critical_friction_low, here.critical_friction_high
     kicks = zip(found.kicks, here.kick_critical_friction, strict=True)
     lines = [
-        ("Every kick settles below", "none" if low is None else f"a friction of {number(low)}"),
+        ("Every kick settles or rolls below", "none" if low is None else f"a friction of {number(low)}"),
         ("Every kick whirls above", "none" if high is None else f"a friction of {number(high)}"),
         ("Half the runs whirl at", ", ".join(f"{number(at)} from {kick:g} m/s" for kick, at in kicks)),
         *([("Reason", here.reason)] if here.reason else []),
