@@ -103,15 +103,10 @@ RUN = (
         Line(name, "J", "time", f"in `work`: done on the cage by {what}")
         for name, what in (
             ("pocket_friction", "the friction of the pockets"),
-            ("race_dampers", "the race dampers; in the plane"),
-            ("races", "the races; in space"),
-            ("grooves", "the grooves; in space"),
-            ("ball_drive", "the drive of the ball set"),
             ("land_friction", "the friction of the land"),
-            ("land_damping", "the damping of the land"),
-            ("gravity", "gravity"),
-            ("moving_frame", "the turning of the frame"),
-            ("unbalance", "the unbalance"),
+            ("land_normal", "the spring and the damper of the land"),
+            ("balls", "the balls: what the races take from them, less what drives them"),
+            ("frame_and_loads", "the turning frame, gravity and unbalance"),
         )
     ),
 )
@@ -129,15 +124,8 @@ COUNTS = tuple(
 ROWS = (
     *OF_CAGE,
     *(
-        Line(f"{start}_{name}", meaning=f"`{name}` {what}")
-        for start, what in (
-            ("uncertain", "where every run draws its own bearing; null without uncertain inputs"),
-            ("other_ball", "by the other model of a ball; null where it does not apply"),
-        )
+        Line(f"uncertain_{name}", meaning=f"`{name}` where every run draws its own bearing; null without uncertain inputs")
         for name in ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
-    ),
-    Line(
-        "other_ball_largest_contact_force", "N", meaning="largest pocket force by the other model of a ball"
     ),
 )
 TRIBOMETER = (
@@ -202,7 +190,7 @@ VERBS = {
     "mobility": Verb((answers.MobilityAnswer,)),
     "stability": Verb((answers.StabilityAnswer, *CHAIN_RECORDS), OF_CAGE),
     "map": Verb((answers.MapAnswer, *CHAIN_RECORDS), (*OF_CAGE, *COUNTS)),
-    "simulate": Verb((answers.SimulationAnswer, answers.SpaceSimulationAnswer, *CHAIN_RECORDS), RUN),
+    "simulate": Verb((answers.SimulationAnswer, *CHAIN_RECORDS), RUN),
     "rank": Verb((answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
     "sensitivity": Verb((answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
     "sweep": Verb(

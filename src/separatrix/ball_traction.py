@@ -1,4 +1,4 @@
-"""What the races do to a ball that is pushed: with one state, a mass and a law of traction; or free, two slip fields."""
+"""What the races do to a pushed ball: of one state, a mass and a law of traction; free, two slip fields."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from separatrix.units import (
 class BallTraction:
     r"""A ball of one state: :math:`m_e \dot u = N - F(u)`, :math:`F(u) = C u / (1 + (u/v)^4)^{1/4}`.
 
-    u is the speed beyond its free orbit. The slip fields of bearings have the knee of this power within 1 to 2 % of
-    the capacity (docs/theory/mobility.md).
+    u is the speed beyond its free orbit. The slip fields of bearings have the knee of this power within 1 to
+    2 % of the capacity (docs/theory/mobility.md).
 
     Parameters
     ----------
@@ -49,7 +49,9 @@ class BallTraction:
 
     def __post_init__(self) -> None:
         limits = (("mass", 1e-12, 1e3), ("slope", 1e-12, 1e12))
-        _check.settle(*(_check.positive(self, name, low, high) for name, low, high in limits), _refused_speed(self))
+        _check.settle(
+            *(_check.positive(self, name, low, high) for name, low, high in limits), _refused_speed(self)
+        )
 
     @property
     def capacity(self) -> Newton:
@@ -85,8 +87,8 @@ class SlipField:
     semi_major, axis_ratio : float
         Half the ellipse across the groove [m], and its other half over it [-].
     slip, pivoting, heathcote : float
-        Slip of the middle along the orbit; half the ellipse times the pivoting speed; slip of the ellipse's ends against
-        its middle from the curvature of the pressed surface [m/s].
+        Slip of the middle along the orbit; half the ellipse times the pivoting speed; slip of the ellipse's
+        ends against its middle from the curvature of the pressed surface [m/s].
     elastic_slip : float
         Slip that elastic creep makes of full friction [m/s].
     """
@@ -104,7 +106,7 @@ class SlipField:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FreeBall:
-    """A ball with its mass, its spin and both races' slip fields; and the fastest rate of its small motions."""
+    """A ball with its mass, both races' slip fields, and the fastest rate of its small motions."""
 
     mass: Kilogram
     inertia: KilogramMetre2
@@ -118,5 +120,7 @@ class FreeBall:
         return self.inner.limit + self.outer.limit
 
     def __post_init__(self) -> None:
-        if not all(math.isfinite(x) and x > 0.0 for x in (self.mass, self.inertia, self.capacity, self.fastest_rate)):
+        if not all(
+            math.isfinite(x) and x > 0.0 for x in (self.mass, self.inertia, self.capacity, self.fastest_rate)
+        ):
             raise InputError("FreeBall", "must have a mass, an inertia, loads and rates above zero")

@@ -1,4 +1,4 @@
-"""The cage of a study, and the rules that it shares with the cage in the bearing plane (`cage.planar`)."""
+"""The cage of a study, and the rules that it shares with the moving cage (`cage.moving_cage`)."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class MotionModel(Enum):
 
 
 class Cage(Pocket, Protocol):
-    """A record with pockets and land: `CageDesign`, or `PlanarCage`."""
+    """A record with pockets and land: `CageDesign`, or `MovingCage`."""
 
     @property
     def pocket_angles(self) -> tuple[Radian, ...]:
@@ -155,7 +155,7 @@ POCKET_AND_LAND = {
     "land_out_of_round": must(not_negative, 1.0),
     "land_lobes": must(whole, 2, 100, hint="One lobe is an offset centre: give unbalance."),
 }
-"""Checks of the fields that `CageDesign` and `PlanarCage` have alike."""
+"""Checks of the fields that `CageDesign` and `MovingCage` have alike."""
 
 _SAME = POCKET_AND_LAND
 
@@ -208,7 +208,7 @@ class CageDesign:
 
     land_width: Metre = field(default=0.0, metadata=must(not_negative, 10.0))
     land_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
-    """Where the land's friction acts in space; None: of its shape, or the pitch diameter."""
+    """Where the land's friction acts; None: of its shape, or the pitch diameter."""
 
     unbalance: KilogramMetre = field(default=0.0, metadata=must(not_negative, 1e2))
     dynamic_unbalance: Radian = field(default=0.0, metadata=must(between, 0.0, 0.1))
@@ -220,7 +220,7 @@ class CageDesign:
     def __post_init__(self) -> None:
         _check.settle(_check.each_field(self))
         hertz = self.pocket_contact is PocketContact.HERTZ
-        _check.settle(_shape(self), _land(self), _space(self), *together(self, hertz=hertz))
+        _check.settle(_shape(self), _land(self), _lands(self), *together(self, hertz=hertz))
 
     @property
     def has_shape(self) -> bool:
@@ -276,35 +276,18 @@ def _shape(cage: CageDesign) -> _check.Problems:
         yield _check.problem(cage, "outer_diameter", rule)
 
 
-def _space(cage: CageDesign) -> _check.Problems:
-    """What only a cage in space has, and lands on the cage."""
-    flat, cure = cage.motion is MotionModel.PLANE, 'Give motion = "space", or leave it out.'
-    for name in ("land_spacing", "land_diameter", "transverse_inertia"):
-        if flat and getattr(cage, name) is not None:
-            yield _check.problem(cage, name, "has no meaning for a cage in the plane", cure)
-    for name in ("land_width", "dynamic_unbalance", "axial_gravity", "added_mass"):
-        if flat and getattr(cage, name) != 0.0:
-            yield _check.problem(cage, name, "has no meaning for a cage in the plane", cure)
-    if flat:
-        return
-    if cage.pocket_contact is PocketContact.HERTZ:
-        rule = "must be linear for a cage in space"
-        yield _check.problem(cage, "pocket_contact", rule, 'Give "linear", or motion = "plane".')
-    if cage.pocket_clearance == 0.0 and cage.pocket_shape is not PocketShape.SQUARE:
-        rule = "must be > 0 for round pockets in space"
-        yield _check.problem(cage, "pocket_clearance", rule, "Pockets that grip their balls are square.")
-    if cage.land_out_of_round != 0.0:
-        rule = "has no meaning for a cage in space"
-        yield _check.problem(cage, "land_out_of_round", rule, 'Leave it out, or give motion = "plane".')
-    if cage.guidance is not Guidance.BALL and (cage.land_count == 2) != (cage.land_spacing is not None):
-        rule = (
-            "is missing: two lands have a distance" if cage.land_count == 2 else "has no meaning for one land"
-        )
+def _lands(cage: CageDesign) -> _check.Problems:
+    """Two lands in space have a distance, and lands are on the cage."""
+    is_guided, spacing = cage.guidance is not Guidance.BALL, cage.land_spacing
+    if is_guided and cage.land_count == 1 and spacing is not None:
+        rule = "has no meaning for one land"
         yield _check.problem(cage, "land_spacing", rule, "Give it with land_count = 2.")
-    if cage.land_count == 2 and cage.land_spacing is not None and cage.land_spacing < cage.land_width:
+    if is_guided and cage.land_count == 2 and spacing is None and cage.motion is MotionModel.SPACE:
+        yield _check.problem(cage, "land_spacing", "is missing: two lands of a cage in space have a distance")
+    if cage.land_count == 2 and spacing is not None and spacing < cage.land_width:
         rule = f"must be at least a land's width, {format_quantity(cage.land_width, 'm')}"
         yield _check.problem(cage, "land_spacing", rule, "It is the distance of the lands' middles.")
-    reach = (cage.land_spacing or 0.0) + cage.land_width
+    reach = (spacing or 0.0) + cage.land_width
     if cage.width is not None and reach > cage.width:
         rule = f"and the lands' distance, {format_quantity(reach, 'm')} together, must stay on the cage"
         got = f"width {format_quantity(cage.width, 'm')}"

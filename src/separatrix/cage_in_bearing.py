@@ -7,9 +7,8 @@ import math
 from separatrix import _check, cage_design
 from separatrix.bearing_design import BallBearing
 from separatrix.cage_body import CageInertia, cage_inertia
-from separatrix.cage_design import CageDesign, ClearanceState, Guidance, MotionModel
+from separatrix.cage_design import CageDesign, Guidance
 from separatrix.errors import InputError
-from separatrix.pocket_shape import half_play, too_tight_for_edges
 from separatrix.units import format_quantity
 
 WIDEST = 4.0
@@ -32,7 +31,7 @@ def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
         yield _check.problem(cage, "land_clearance", rule, cure)
     yield from _lands_between_rings(cage, bearing)
-    wrong = list(_ring_between_rings(cage, bearing)) or list(_edges_of_pockets(cage, bearing))
+    wrong = list(_ring_between_rings(cage, bearing))
     yield from wrong
     density = cage.material.density if cage.material else None
     has_bars = not wrong and cage.pocket_clearance < gap
@@ -41,19 +40,20 @@ def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
 
 
 def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """The cage's ring holds the balls, in the plane at their equator; it lies between the grooves."""
+    """The cage's ring lies between the grooves, and the walls of its pockets reach the equator of the balls."""
     if not cage.has_shape:
         return
     inner, outer, width = cage.inner_diameter or 0.0, cage.outer_diameter or 0.0, cage.width or 0.0
     pitch, ball = bearing.pitch_diameter, bearing.ball_diameter
     bottom, top = ("bottom of the inner groove", pitch - ball), ("bottom of the outer groove", pitch + ball)
-    nearest = farthest = ("pitch diameter", pitch)
-    short = "The pocket's wall reaches the ball's equator; with motion = \"space\" it need not."
-    if cage.motion is MotionModel.SPACE:
-        nearest = ("least that holds a ball", math.hypot(pitch - ball, ball + cage.pocket_clearance))
-        farthest = top
-        short = "A ball would pass between the edges of its pocket."
-    limits = {"inner_diameter": (inner, bottom, farthest), "outer_diameter": (outer, nearest, top)}
+    # a wall touches its ball up to half a pocket's length in front of it, where the ring's surface is lower
+    half = (ball + cage.pocket_clearance + cage_design.SIGMAS * cage.ball_diameter_scatter) / 2.0
+    nearest = ("least at which a pocket's wall reaches the ball", 2.0 * math.hypot(pitch / 2.0, half))
+    limits = {
+        "inner_diameter": (inner, bottom, ("pitch diameter", pitch)),
+        "outer_diameter": (outer, nearest, top),
+    }
+    short = "The walls of the pockets reach the equator of the balls."
     for key, (size, low, high) in limits.items():
         if not low[1] < size < high[1]:
             ends = (f"the {what}, {format_quantity(bound, 'm')}" for what, bound in (low, high))
@@ -115,8 +115,6 @@ def _body_that_can_be(cage: CageDesign, bearing: BallBearing, body: CageInertia)
             cure = "All of the mass would be beside a groove; left out, the inertia follows the mass."
             yield _check.problem(cage, "moment_of_inertia", f"must lie between {ends}", cure)
             return
-    if cage.motion is not MotionModel.SPACE:
-        return
     flat, wide = body.moment_of_inertia / 2.0, cage.width or WIDEST * ball
     bounds = flat * (1.0 - 1e-9), flat + mass * (wide / 2.0) ** 2
     if cage.transverse_inertia is not None and not bounds[0] <= cage.transverse_inertia <= bounds[1]:
@@ -124,21 +122,6 @@ def _body_that_can_be(cage: CageDesign, bearing: BallBearing, body: CageInertia)
         rule = f"must lie between {low}, half that about the axis, and {high}"
         cure = f"A flat ring has half of it, one with its mass {format_quantity(wide, 'm')} apart the most."
         yield _check.problem(cage, "transverse_inertia", rule, cure)
-
-
-def _edges_of_pockets(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """Pockets whose walls end beside their balls are wide enough for that, as the bearing runs."""
-    if cage.motion is not MotionModel.SPACE or cage.clearances is not ClearanceState.RUNNING:
-        return  # without edges, or with clearances that only the chain knows
-    land = None if cage.guidance is Guidance.BALL else cage.land_clearance
-    yield from too_tight_for_edges(
-        cage,
-        ball_diameter=bearing.ball_diameter,
-        pitch_radius=bearing.pitch_diameter / 2.0,
-        edges=((cage.inner_diameter or 0.0) / 2.0, (cage.outer_diameter or math.inf) / 2.0),
-        way=half_play(cage) if land is None else land / 2.0,
-        axial_play=(cage.pocket_axial_clearance or cage.pocket_clearance) / 2.0,
-    )
 
 
 def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:

@@ -10,8 +10,7 @@ import math
 from enum import Enum
 from typing import Protocol
 
-from separatrix import _check
-from separatrix.units import Metre, Ratio, format_quantity
+from separatrix.units import Metre, Ratio
 
 
 class PocketShape(Enum):
@@ -23,7 +22,7 @@ class PocketShape(Enum):
 
 
 class Pocket(Protocol):
-    """A record with the pocket of a cage: `CageDesign`, or `PlanarCage`."""
+    """A record with the pocket of a cage: `CageDesign`, or `MovingCage`."""
 
     @property
     def pocket_shape(self) -> PocketShape:
@@ -73,36 +72,3 @@ def tilt(pocket: Pocket) -> tuple[Ratio, Ratio]:
 def edge_level(radius: Metre, along: Metre) -> Metre:
     """Height over the axis of the cage of an edge at a radius, at a place along the orbit [m]."""
     return math.sqrt(max(0.0, (radius - along) * (radius + along)))
-
-
-def too_tight_for_edges(
-    pocket: Pocket,
-    *,
-    ball_diameter: Metre,
-    pitch_radius: Metre,
-    edges: tuple[Metre, Metre],
-    way: Metre,
-    axial_play: Metre,
-) -> _check.Problems:
-    """Refuse a pocket so tight that two points of its edge may be as near to a ball.
-
-    With the ball's equator s beyond an edge at the height u, and half a pocket's length b, one point is the
-    nearest where the ball is more than b s/u off the middle. The least clearance is twice that, at the
-    largest s that the cage reaches on its way. A square pocket must have one, if an edge is within reach.
-    """
-    b, R, play = (ball_diameter + pocket.pocket_clearance) / 2.0, pitch_radius, end_half_play(pocket)
-    inner, outer = (edge_level(radius, b) for radius in edges)
-    plays = []
-    if inner > 0.0:
-        plays.append(b / inner * (edges[0] - R + way))
-    if outer < math.inf:
-        plays.append(b / outer * (R + way - outer))
-    tight = max((each for each in plays if each > 0.0), default=-math.inf)
-    if pocket.pocket_shape is PocketShape.SQUARE:
-        tight, play = min(tight, 0.0), min(pocket.pocket_clearance / 2.0, axial_play)
-    if tight >= play:
-        key = "pocket_axial_clearance" if pocket.pocket_shape is PocketShape.ELONGATED else "pocket_clearance"
-        least = format_quantity(2.0 * tight, "m", 4)
-        rule = f"must be > {least} where the wall of a pocket ends beside its ball"
-        cure = "Two points of the edge would touch; give a longer wall, a tighter land or square pockets."
-        yield _check.problem(pocket, key, rule, cure)

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 from separatrix import figures
 from separatrix.figures.animation import animate
-from separatrix.figures.space import is_in_space
-from separatrix.figures.space_film import write_page
+from separatrix.figures.cage_page import write_page
 from separatrix.messages import harmless
 from separatrix.present import dataset, in_words, save
 from separatrix.staged import staged
@@ -76,7 +75,7 @@ def save_answer(
             figures.save_all(figures.draw(verb, data), stage)
         if verb == "sweep":
             _write_tables(data, stage)
-        if verb == "simulate" and is_in_space(data):
+        if verb == "simulate":
             write_page(data, stage / "simulation.html")
         if animation is not None:
             animate(data, stage / f"simulation.{animation}", kind=animation, progress=progress)

@@ -57,7 +57,7 @@ def test_the_cage_material_names_the_candidate(tmp_path, name):
     """Its friction in the environment of the bearing, not that of the first candidate on another steel."""
     study = extended(tmp_path, f'[cage]\nmaterial = "{name}"\n')
     assert study.ranking.environment == "liquid nitrogen, 440C"
-    assert solve(study).cage.ball_cage_friction == (0.32 if name[0] in "Mm" else 0.08)
+    assert solve(study).friction.mean == (0.32 if name[0] in "Mm" else 0.08)
 
 
 def test_the_cage_may_be_a_candidate_that_no_library_has(tmp_path):

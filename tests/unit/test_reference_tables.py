@@ -87,7 +87,7 @@ def test_every_name_of_a_document_has_a_line(verb):
 
 @pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 def test_every_name_of_a_run_in_space_has_a_line():
-    """The other kind of simulation, with its analysis."""
+    """A simulation whose axial motion and tilt are not null."""
     assert missing("simulate", separatrix.simulate(IN_SPACE).document()) == set()
 
 
@@ -135,6 +135,6 @@ def test_a_line_states_unit_dimensions_and_meaning():
     assert (margin.unit, margin.meaning) == ("-", "threshold less the restitution factor")
     page = json_page()
     assert all(f"\n## {verb}\n" in page for verb in VERBS)
-    assert page.count("(cage-verdict-judgement)=") == 1
+    assert page.count("(verdict-judgement-judgement)=") == 1
     anchors = re.findall(r"^\((.*)\)=$", page, flags=re.MULTILINE)
     assert len(set(anchors)) == len(anchors)

@@ -5,12 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.cage import ending
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.pocket_shape import half_play, tilt
 from separatrix.present.text.answer import clearances, shown
 from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
-from separatrix.study_file import LONGEST, read_study, resolved
+from separatrix.study_file import read_study, resolved
 
 BASE = """\
 extends = "cryogenic-turbopump"
@@ -324,15 +323,6 @@ def test_a_variant_drops_what_its_pocket_does_not_have(tmp_path):
     assert variant(f"pocket_angles = [{EVEN}]").pocket_spacing_scatter == 0.0
     landless = variant('guidance = "ball"')
     assert (landless.land_count, landless.land_out_of_round) == (1, 0.0)
-
-
-def test_a_ramp_longer_than_the_runs_draws_a_note(read):
-    """The longest run takes four times 0.3 s, and is judged over its last fifth, before full speed."""
-    assert LONGEST == ending.LONGEST
-    with pytest.warns(ValidityWarning, match=r"ramp_time 970 ms: runs of 300 ms, or up to 4 times that"):
-        study = read(operation='ramp_time = "970 ms"')
-    assert study.operation.ramp_time == 0.97
-    assert read(operation='ramp_time = "950 ms"').operation.ramp_time == 0.95
 
 
 def test_a_contact_that_leans_steeply_draws_a_note(read):

@@ -19,17 +19,15 @@ from separatrix.comparing.pair import compared
 from separatrix.comparing.saved import VERBS, read_answers
 from separatrix.comparing.shown import in_words, input_words, pair_words, result_words, shown_rows
 from separatrix.errors import InputError
+from separatrix.figures.cage_page import view
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
-from separatrix.figures.scene import scene
-from separatrix.figures.space import is_in_space
-from separatrix.figures.space_film import view as space_view
-from separatrix.figures.style import OUTCOMES, study_of
+from separatrix.figures.style import study_of
 from separatrix.input_files import reading_only_in
 from separatrix.limits.map_records import KICK, RESTITUTION
 from separatrix.questions import verb_named
 from separatrix.reporting.content import NEEDED
-from separatrix.units import Array, format_number, printable, shown
+from separatrix.units import format_number, printable, shown
 
 PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
     "traction": {"curves": traction_plot},
@@ -57,10 +55,6 @@ POINT = "points"
 
 SHOWN_INLINE = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".txt": "text/plain"}
 """Files that the browser shows; all others it keeps."""
-
-MOST_MOMENTS = 1500
-DIGITS = 5
-"""Of the moving cage: moments, spread evenly, and significant digits of a place in the picture."""
 
 
 def routes(page: Page) -> APIRouter:
@@ -112,7 +106,6 @@ def routes(page: Page) -> APIRouter:
     @router.get("/cage/{name:path}", response_class=HTMLResponse)
     def cage(name: str, point: str = "") -> Response:
         data = _run(page, name, point)
-        view = Markup(space_view(data)) if is_in_space(data) else None  # noqa: S704 - its texts are escaped
         found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}
         return page.html(
             "cage.html",
@@ -121,16 +114,9 @@ def routes(page: Page) -> APIRouter:
             title=str(data.attrs.get("title", name)),
             outdated="" if point else page.outdated(name, page.folder.answers(name), "simulate"),
             found=found,
-            view=view,
+            view=Markup(view(data)),  # noqa: S704 - its texts are escaped
             answers=page.answered(name),
         )
-
-    @router.get("/motion/{name:path}")
-    def moving(name: str, point: str = "") -> Response:
-        data = _run(page, name, point)
-        if is_in_space(data):
-            raise InputError(name, "moves in space", cure="The page of its cage has its data.")
-        return JSONResponse(_motion(data))
 
     @router.post("/point/{name:path}", response_class=HTMLResponse)
     def point(name: str, sent: Form) -> Response:
@@ -235,42 +221,6 @@ def _nearest(data: xr.Dataset, axis: str, sent: dict[str, str]) -> float:
     except ValueError:
         raise InputError(axis, "must be a number") from None
     return float(data[axis].values[int(np.argmin(np.abs(axis_values(data, axis) - at)))])
-
-
-def _motion(data: xr.Dataset) -> dict[str, object]:
-    """Return sizes and moments of a simulated run in the plane, from its dataset.
-
-    Lengths are shares of the pitch radius, as movements are drawn: `enlarged` times too large.
-    """
-    count = data.sizes["time"]
-    pick = np.unique(np.linspace(0, count - 1, min(MOST_MOMENTS, count)).round().astype(int))
-    seen = scene(data, pick)
-    largest = float(max(seen.force.max(initial=0.0), seen.land_force.max(initial=0.0)))
-    return {
-        "time": _digits(data["time"].values[pick]),
-        "radius": 1.0,
-        "ball": seen.ball / seen.radius,
-        "half_width": seen.half_width / seen.radius,
-        "angles": _digits(seen.angles),
-        "walls": _digits(seen.walls),
-        "land": None if not np.isfinite(seen.land) else seen.land / seen.radius,
-        "offset": _digits(seen.offset / seen.radius),
-        "turn": _digits(seen.turn),
-        "lead": _digits(seen.lead),
-        "force": _digits(np.abs(seen.force)),
-        "land_force": _digits(np.abs(seen.land_force)),
-        "largest_force": largest,
-        "true_offset": _digits(np.hypot(*data["position"].values[pick].T)),
-        "enlarged": seen.enlarged,
-        "outcome": OUTCOMES.get(str(data["outcome"].values), str(data["outcome"].values)),
-    }
-
-
-def _digits(values: Array) -> object:
-    """Return numbers with few digits: the picture has fewer."""
-    scale = 10.0 ** (DIGITS - 1 - np.floor(np.log10(np.maximum(np.abs(values), 1e-12))))
-    found: object = (np.round(values * scale) / scale).tolist()
-    return found
 
 
 def _compared(page: Page, first: str, second: str, verb: str) -> dict[str, object]:

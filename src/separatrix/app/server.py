@@ -28,7 +28,7 @@ from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.worker import Task
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.figures.space_film import PAGE_PARTS
+from separatrix.figures.cage_page import PARTS
 from separatrix.study_file import read_study
 from separatrix.units import printable, shown
 
@@ -128,7 +128,7 @@ def application(root: Path) -> FastAPI:
     def plotly() -> FileResponse:
         return FileResponse(drawing, media_type="text/javascript", headers=A_DAY)
 
-    app.mount("/static/space", StaticFiles(directory=PAGE_PARTS))
+    app.mount("/static/cage", StaticFiles(directory=PARTS))
     app.mount("/static", StaticFiles(directory=STATIC))
     return app
 

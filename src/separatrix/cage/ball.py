@@ -1,10 +1,13 @@
 r"""What its races do to a ball that its pocket pushes: at three levels, one function each.
 
 - *damper*, the paper's: no inertia, :math:`\dot y = -F/C_\mu` (Eq. 18's sum).
-- *one state*: :math:`m_e \dot u = -F - T(u)` with saturating traction :math:`T = C_f u / (1 + (u/v_f)^4)^{1/4}`.
-- *free*: speed and three spins. Each race answers with traction, side force and pivoting moment of its whole slip
-  field, in six strips across the groove. On a strip whose slip v is linear the mean of :math:`v/\sqrt{v^2 + w^2}` is
-  exactly :math:`(v_0 + v_1)/(r_0 + r_1)`, :math:`r = \sqrt{v^2 + w^2}`: no table, no fit, no corner of Coulomb's law.
+- *one state*: :math:`m_e \dot u = -F - T(u)` with saturating traction :math:`T = C_f u / (1 +
+  (u/v_f)^4)^{1/4}`.
+- *free*: speed and three spins. Each race answers with traction, side force and pivoting moment of its whole
+  slip
+  field, in six strips across the groove. On a strip whose slip v is linear the mean of :math:`v/\sqrt{v^2 +
+  w^2}` is exactly :math:`(v_0 + v_1)/(r_0 + r_1)`, :math:`r = \sqrt{v^2 + w^2}`: no table, no fit, no corner
+  of Coulomb's law.
 """
 
 from __future__ import annotations
@@ -13,17 +16,22 @@ import math
 
 import numpy as np
 
-from separatrix.cage.rows import *  # noqa: F403
+from separatrix.cage.rows import *
 from separatrix.compiled import inlined
 
 REST_SPEED, REST_PLACE, FLOOR, MOST = np.float32(1e-9), np.float32(1e-12), np.float32(1e-18), np.float32(1e18)
-"""A ball's speed [m/s] and its place in the groove [m] decay to these, and squares to the next: numbers too small to be
-normal are slow. The last keeps a fourth power finite."""
+"""A ball's speed [m/s] and its place in the groove [m] decay to these, and squares to the next: numbers too
+small to be normal are slow. The last keeps a fourth power finite."""
 
 _EDGES = ((0.0, 1 / 3), (1 / 3, 2 / 3), (2 / 3, 1.0))
 _SHARE = [0.75 * ((q - q**3 / 3) - (o - o**3 / 3)) for o, q in _EDGES]  # of the load (Hertz)
-_ARM = [0.75 * ((q**2 / 2 - q**4 / 4) - (o**2 / 2 - o**4 / 4)) / w for (o, q), w in zip(_EDGES, _SHARE, strict=True)]
-E, F, E2, F2 = (np.float32(x) for x in (1 / 3, 2 / 3, 1 / 9, 4 / 9))  # edges of the strips over a: -1, -F, -E, 0, E, F, 1
+_ARM = [
+    0.75 * ((q**2 / 2 - q**4 / 4) - (o**2 / 2 - o**4 / 4)) / w
+    for (o, q), w in zip(_EDGES, _SHARE, strict=True)
+]
+E, F, E2, F2 = (
+    np.float32(x) for x in (1 / 3, 2 / 3, 1 / 9, 4 / 9)
+)  # edges of the strips over a: -1, -F, -E, 0, E, F, 1
 W0, W1, W2 = (np.float32(x) for x in _SHARE)
 A0, A1, A2 = (np.float32(x) for x in _ARM)  # middles of the strips, by load
 D0, D1, D2 = (np.float32(1.0 - x * x) for x in _ARM)
@@ -41,8 +49,9 @@ def traction(speed, slope, per_knee):
 def slip_field(slip, spin, side, heathcote, wide, creep):
     """Traction, pivoting moment over a, side force of a race; all over minus its friction times its load.
 
-    At e = y/a the surface slides at slip + spin e - heathcote e^2 along the orbit and at `side` and, in the mean square
-    over the length of the ellipse, wide spin^2 (1 - e^2) across; `creep` is the square of the elastic slip.
+    At e = y/a the surface slides at slip + spin e - heathcote e^2 along the orbit and at `side` and, in the
+    mean square over the length of the ellipse, wide spin^2 (1 - e^2) across; `creep` is the square of the
+    elastic slip.
     """
     w2, x2 = side * side + creep, wide * spin * spin
     v0, v1, v2 = slip - spin - heathcote, slip - F * spin - F2 * heathcote, slip - E * spin - E2 * heathcote
@@ -63,12 +72,12 @@ def slip_field(slip, spin, side, heathcote, wide, creep):
 
 @inlined
 def race_force(p, row, l, speed, turn, o_r, side, lever):
-    """Force of a race on a free ball along the orbit and its couple (axial, radial, orbital), less free rolling's."""
-    nz, nr, held, a = p[row * LANES + l], p[(row + 1) * LANES + l], p[(row + 2) * LANES + l], p[(row + 3) * LANES + l]
-    slip, spin, heathcote = p[(row + 4) * LANES + l], p[(row + 5) * LANES + l], p[(row + 6) * LANES + l]
-    wide, creep = p[(row + 7) * LANES + l], p[(row + 8) * LANES + l]
+    """Force of a race on a free ball along the orbit, and its couple (z, r, t), less free rolling's."""
+    nz, nr, held, a = p[row + l], p[row + LANES + l], p[row + 2 * LANES + l], p[row + 3 * LANES + l]
+    slip, spin, heathcote = p[row + 4 * LANES + l], p[row + 5 * LANES + l], p[row + 6 * LANES + l]
+    wide, creep = p[row + 7 * LANES + l], p[row + 8 * LANES + l]
     slip, spin = slip + speed + lever * (turn * nr - o_r * nz), spin + a * (turn * nz + o_r * nr)
     t, m, n = slip_field(slip, spin, side, heathcote, wide, creep)
-    t, m = held * (p[(row + 9) * LANES + l] - t), held * a * (p[(row + 10) * LANES + l] - m)
-    n = held * (p[(row + 11) * LANES + l] - n)
+    t, m = held * (p[row + 9 * LANES + l] - t), held * a * (p[row + 10 * LANES + l] - m)
+    n = held * (p[row + 11 * LANES + l] - n)
     return t, m * nz + lever * t * nr, m * nr - lever * t * nz, lever * n

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from separatrix.pocket_shape import PocketShape, end_half_play
-from separatrix.study import Guidance
 from separatrix.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
 
 if TYPE_CHECKING:
@@ -117,7 +116,7 @@ def axial_drive_energy(cage: MovingCage) -> Joule:
 
 
 def axial_half_play(cage: MovingCage) -> Metre:
-    """Half the clearance of a pocket along the axis [m]: as wide as along the orbit, unless it is elongated."""
+    """Half the clearance of a pocket along the axis [m]: as along the orbit, unless it is elongated."""
     if cage.pocket_shape is not PocketShape.SQUARE:
         return end_half_play(cage)
     return cage.pocket_clearance / 2.0

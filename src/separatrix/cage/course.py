@@ -22,6 +22,7 @@ from separatrix.cage.ensemble import Piece, Raw, Stop, check_length, evidence_of
 from separatrix.cage.moving_cage import MovingCage, turned_forward
 from separatrix.cage.numbers import ball_level, numbers_of, pocket_rectangle
 from separatrix.cage.outcome import Cause, RunOutcome
+from separatrix.cage.rows import of
 from separatrix.errors import InputError
 from separatrix.study import StabilitySettings
 from separatrix.units import (
@@ -53,15 +54,16 @@ SOURCES = {
     "balls": rows.BALL_WORK,
     "frame_and_loads": rows.FRAME_WORK,
 }
-"""Works that change the energy of cage and pocket springs. Balls: what the races take, less what they drive."""
+"""Works that change the energy of cage and pocket springs. Balls: what the races take, less what they
+drive."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class History:
     """One run, sampled, seen in the frame that turns with the ball set.
 
-    Numbers without an array are those of the ensemble's run with this disturbance, seed and number; what only a cage in
-    space has is None in the plane.
+    Numbers without an array are those of the ensemble's run with this disturbance, seed and number; what only
+    a cage in space has is None in the plane.
 
     Attributes
     ----------
@@ -74,7 +76,8 @@ class History:
     axial_place, axial_speed : ndarray or None
         Of the centre of mass along the axis, shape (time,) [m], [m/s].
     lean, lean_rate : ndarray or None
-        Where the geometric axis leans to: the way of a point on it over its height, shape (time, across) [rad], [rad/s].
+        Where the geometric axis leans to: the way of a point on it over its height, shape (time, across)
+        [rad], [rad/s].
     ball_lead, ball_speed : ndarray
         Lead of each ball [m], and its speed beyond its free orbit [m/s] (0 of a damper), shape (time, ball).
     ball_axial : ndarray or None
@@ -89,7 +92,8 @@ class History:
     work : dict of str to ndarray
         Work done on cage and pocket springs since the start by each of `SOURCES`, shape (time,) [J].
     pocket_angle, half_play : ndarray
-        Place of each pocket in the turning frame [rad]; half its clearance along the orbit [m], shape (ball,).
+        Place of each pocket in the turning frame [rad]; half its clearance along the orbit [m], shape
+        (ball,).
     outcome, cause : RunOutcome, Cause
         Where the motion ends, and why the run is unresolved, if it is.
     judged_from, judged_until : float
@@ -169,7 +173,9 @@ def simulate(
     InputError
         A setting is out of range.
     """
-    settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration, ball_scatter=ball_scatter, seed=seed)
+    settings = StabilitySettings(
+        kicks=(kick,), runs=1, duration=duration, ball_scatter=ball_scatter, seed=seed
+    )
     forward = turned_forward(cage)
     history = follow_start(forward, kick, random_starts(forward, settings, run, 1), duration, samples, until)
     return history if forward is cage else _mirrored(history)
@@ -187,15 +193,7 @@ def follow(
     real: type = np.float64,
     refine: int = 1,
 ) -> History:
-    """Follow the run that starts with this direction of the disturbance [rad] and these leads, shape (ball,) [m].
-
-    For checks: in double precision, with `refine` steps in one of the usual length.
-
-    Raises
-    ------
-    InputError
-        A setting is out of range.
-    """
+    """Follow the run that starts in this direction [rad] and with these leads, shape (ball,) [m]."""
     lead = np.asarray(ball_lead, dtype=np.float64)
     if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= cage.half_play):
         rule = f"must be {cage.ball_count} numbers within the pocket clearance [m]"
@@ -222,7 +220,7 @@ def follow_start(
     real: type = np.float32,
     refine: int = 1,
 ) -> History:
-    """Follow the one run that begins there, of a cage that turns forward: once to its end, once more to sample it."""
+    """Follow one run of a cage that turns forward: once to its end, once more to sample it."""
     if not 2 <= samples <= MOST_SAMPLES:
         raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES} [-]", str(samples))
     settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
@@ -238,31 +236,39 @@ def follow_start(
         if found["outcome"][0] == RunOutcome.WHIRLS and found["whirl_frequency"][0] > 0.0:
             length = max(length, WHIRL_TURNS / float(found["whirl_frequency"][0]))
     numbers = numbers_of(cage, kick, duration, least=length, refine=refine)
-    step = numbers.numbers[rows.STEP]
+    step = numbers.numbers[of(rows.STEP)]
     every = max(1, math.ceil(length / step / (samples - 1)))
-    columns = 2 + states.shape[1] + (rows.GWB + 1 - rows.GX) + cage.ball_count
+    columns = 2 + states.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count
     record = np.zeros((math.floor(length / step / every) + 1, columns))
     raw = run_rows(numbers.kind, [numbers], states, places, Stop(), real, record=record, every=every)
     return _history(cage, kick, numbers, starts, places, states, raw)
 
 
 def _history(
-    cage: MovingCage, kick: MetrePerSecond, numbers: Numbers, starts: Starts, places: Array, states: Array, raw: Raw
+    cage: MovingCage,
+    kick: MetrePerSecond,
+    numbers: Numbers,
+    starts: Starts,
+    places: Array,
+    states: Array,
+    raw: Raw,
 ) -> History:
     """Record of the rows that the queue wrote."""
     record, Z, kind = raw.record, cage.ball_count, numbers.kind
-    filled = int(np.count_nonzero(np.isfinite(record[:, 1 + rows.VX]) & (record[:, 1 + rows.RAMP] > 0.0)))
+    filled = int(
+        np.count_nonzero(np.isfinite(record[:, 1 + of(rows.VX)]) & (record[:, 1 + of(rows.RAMP)] > 0.0))
+    )
     record = record[:filled]
     state, first = record[:, 1 : 1 + states.shape[1]], rows.cage_states(space=kind.space)
     one = rows.ball_states(kind.ball, space=kind.space)
     at = 1 + states.shape[1]
-    pose, force = record[:, at : at + rows.GWB + 1 - rows.GX], record[:, -1 - Z : -1]
+    pose, force = record[:, at : at + of(rows.GWB - rows.GX) + 1], record[:, -1 - Z : -1]
     R, speed_row = cage.pitch_radius, 2 if kind.space else 1
-    centre, axis = (rows.GX - rows.GX, rows.GA - rows.GX)
+    centre, axis = 0, of(rows.GA - rows.GX)
     lead = state[:, first::one]
     along, across = _places_of_pockets(cage, state, pose, lead, starts, one)
     depth, angle = _touch(cage, along, across, places)
-    stiffness = numbers.numbers[rows.STIFFNESS]
+    stiffness = numbers.numbers[of(rows.STIFFNESS)]
     power = 2.5 if kind.hertz else 2.0
     found = evidence_of([Piece(cage, kick, numbers, states, places)], raw)
     in_space = kind.space
@@ -270,14 +276,16 @@ def _history(
         time=record[:, 0].copy(),
         position=pose[:, centre : centre + 2].copy(),
         velocity=pose[:, centre + 2 : centre + 4].copy(),
-        rotation=state[:, rows.S] / R,
-        rotation_rate=state[:, rows.VS] / R,
-        axial_place=state[:, rows.Z].copy() if in_space else None,
-        axial_speed=state[:, rows.VZ].copy() if in_space else None,
+        rotation=state[:, of(rows.S)] / R,
+        rotation_rate=state[:, of(rows.VS)] / R,
+        axial_place=state[:, of(rows.Z)].copy() if in_space else None,
+        axial_speed=state[:, of(rows.VZ)].copy() if in_space else None,
         lean=np.stack([pose[:, axis + 1], -pose[:, axis]], axis=1) if in_space else None,
         lean_rate=np.stack([pose[:, axis + 3], -pose[:, axis + 2]], axis=1) if in_space else None,
         ball_lead=lead.copy(),
-        ball_speed=np.zeros_like(lead) if ball_level(cage) == rows.DAMPER else state[:, first + speed_row :: one].copy(),
+        ball_speed=np.zeros_like(lead)
+        if ball_level(cage) == rows.DAMPER
+        else state[:, first + speed_row :: one].copy(),
         ball_axial=state[:, first + 1 :: one].copy() if in_space else None,
         contact_force=force.copy(),
         contact_angle=angle * (force > 0.0),
@@ -298,8 +306,23 @@ def _history(
 
 
 _NUMBERS = (
-    *("judged_from", "end_energy", "growth_rate", "drift_rate", "largest_offset", "whirl_frequency", "pocket_power"),
-    *("land_power", "rubbing_force", "rubbing_speed", "largest_contact_force", "largest_land_force", "left_time"),
+    *(
+        "judged_from",
+        "end_energy",
+        "growth_rate",
+        "drift_rate",
+        "largest_offset",
+        "whirl_frequency",
+        "pocket_power",
+    ),
+    *(
+        "land_power",
+        "rubbing_force",
+        "rubbing_speed",
+        "largest_contact_force",
+        "largest_land_force",
+        "left_time",
+    ),
     "energy_imbalance",
 )
 
@@ -307,46 +330,55 @@ _NUMBERS = (
 def _places_of_pockets(
     cage: MovingCage, state: Array, pose: Array, lead: Array, starts: Starts, one: int
 ) -> tuple[Array, Array]:
-    """Place of each pocket less that of its ball, along the orbit and along the axis, shape (time, ball) [m]."""
+    """Place of each pocket less that of its ball, along orbit and axis, shape (time, ball) [m]."""
     c, n = np.cos(starts.angle), np.sin(starts.angle)
-    along = pose[:, [1]] * c - pose[:, [0]] * n + state[:, [rows.S]] - lead
+    along = pose[:, [1]] * c - pose[:, [0]] * n + state[:, [of(rows.S)]] - lead
     if not cage.is_in_space:
         return along, np.full_like(along, cage.pocket_axial_offset)
-    a, b = (pose[:, [row - rows.GX]] for row in (rows.GA, rows.GB))
-    groove = state[:, rows.SPACE_STATES + rows.GROOVE :: one]
-    return along, state[:, [rows.Z]] - cage.pitch_radius * (b * c - a * n) - groove
+    a, b = (pose[:, [of(row - rows.GX)]] for row in (rows.GA, rows.GB))
+    groove = state[:, of(rows.SPACE_STATES + rows.GROOVE) :: one]
+    return along, state[:, [of(rows.Z)]] - cage.pitch_radius * (b * c - a * n) - groove
 
 
 def _touch(cage: MovingCage, along: Array, across: Array, places: Array) -> tuple[Array, Array]:
     """Depth of each pocket in its ball [m], and where on the ball it touches [rad]: see `pocket_force`."""
     by_ball = places.reshape(cage.ball_count, -1)
     if not cage.is_in_space:
-        depth = pocket_shape.tilt(cage)[0] * np.maximum(np.abs(along) - by_ball[:, rows.APART], 0.0)
+        depth = pocket_shape.tilt(cage)[0] * np.maximum(np.abs(along) - by_ball[:, of(rows.APART)], 0.0)
         return depth, np.where(along > 0.0, math.pi, 0.0)
     beside = pocket_rectangle(cage)[1]
-    t = along - np.clip(along, -by_ball[:, rows.APART], by_ball[:, rows.APART])
+    t = along - np.clip(along, -by_ball[:, of(rows.APART)], by_ball[:, of(rows.APART)])
     z = across - np.clip(across, -beside, beside)
-    return np.maximum(np.hypot(t, z) - by_ball[:, rows.AROUND], 0.0), np.arctan2(-z, -t)
+    return np.maximum(np.hypot(t, z) - by_ball[:, of(rows.AROUND)], 0.0), np.arctan2(-z, -t)
 
 
 def _kinetic(cage: MovingCage, state: Array, in_space: bool) -> Array:
     """Kinetic energy of the cage in the turning frame, shape (time,) [J]."""
     mass = cage.mass + cage.added_mass
-    twice = mass * (state[:, rows.VX] ** 2 + state[:, rows.VY] ** 2)
-    twice += cage.moment_of_inertia * (state[:, rows.VS] / cage.pitch_radius) ** 2
+    twice = mass * (state[:, of(rows.VX)] ** 2 + state[:, of(rows.VY)] ** 2)
+    twice += cage.moment_of_inertia * (state[:, of(rows.VS)] / cage.pitch_radius) ** 2
     if in_space:
-        twice += cage.mass * state[:, rows.VZ] ** 2
-        twice += cage.transverse * (state[:, rows.WX] ** 2 + state[:, rows.WY] ** 2)
+        twice += cage.mass * state[:, of(rows.VZ)] ** 2
+        twice += cage.transverse * (state[:, of(rows.WX)] ** 2 + state[:, of(rows.WY)] ** 2)
     return np.asarray(0.5 * twice)
 
 
 def _works(record: Array, state: Array, numbers: Numbers, raw: Raw) -> dict[str, Array]:
     """Work of each source since the start: of the looks before, and since."""
-    look = np.minimum((record[:, 0] / numbers.numbers[rows.STEP] / numbers.kind.steps + 1e-9).astype(int), raw.looks.shape[1])
+    look = np.minimum(
+        (record[:, 0] / numbers.numbers[of(rows.STEP)] / numbers.kind.steps + 1e-9).astype(int),
+        raw.looks.shape[1],
+    )
     looks = raw.looks[0].astype(np.float64)
     before = np.concatenate([np.zeros((1, looks.shape[1])), np.cumsum(looks, axis=0)])
-    columns = dict(zip(SOURCES, (rows.WORK_POCKET, rows.WORK_LAND, rows.WORK_PRESS, rows.WORK_BALL, rows.WORK_FRAME), strict=True))
-    return {name: before[look, columns[name]] + state[:, row] for name, row in SOURCES.items()}
+    columns = dict(
+        zip(
+            SOURCES,
+            (rows.WORK_POCKET, rows.WORK_LAND, rows.WORK_PRESS, rows.WORK_BALL, rows.WORK_FRAME),
+            strict=True,
+        )
+    )
+    return {name: before[look, of(columns[name])] + state[:, of(row)] for name, row in SOURCES.items()}
 
 
 def _mirrored(history: History) -> History:
@@ -365,7 +397,9 @@ def _mirrored(history: History) -> History:
         ball_speed=-other_way_round(history.ball_speed),
         ball_axial=None if history.ball_axial is None else other_way_round(history.ball_axial),
         contact_force=other_way_round(history.contact_force),
-        contact_angle=other_way_round(np.mod(math.pi - history.contact_angle, 2.0 * math.pi) * (history.contact_force > 0)),
+        contact_angle=other_way_round(
+            np.mod(math.pi - history.contact_angle, 2.0 * math.pi) * (history.contact_force > 0)
+        ),
         pocket_angle=-other_way_round(history.pocket_angle),
         half_play=other_way_round(history.half_play),
         pocket_impacts=other_way_round(history.pocket_impacts),

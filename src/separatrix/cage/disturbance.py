@@ -16,6 +16,7 @@ from numpy.random import Generator, Philox
 
 from separatrix.cage import rows
 from separatrix.cage.numbers import ball_level, pocket_rectangle
+from separatrix.cage.rows import of
 from separatrix.chain.pocket import REFERENCE, pocket_speed
 from separatrix.errors import InputError
 from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
@@ -32,8 +33,11 @@ DIGITS = 3
 
 
 class Starts(NamedTuple):
-    """Where runs begin: per run directions of the disturbance and of its tilt [rad], sense of its axial part; then per
-    ball, shape (run, ball), its lead, what half its clearance has more than the nominal [m], its angle [rad]."""
+    """Where runs begin.
+
+    Per run directions of the disturbance and of its tilt [rad] and sense of its axial part; then per ball,
+    shape (run, ball), its lead, what half its clearance has more than the nominal [m], and its angle [rad].
+    """
 
     direction: Array
     tilt_direction: Array
@@ -69,7 +73,7 @@ def _rounded(speed: MetrePerSecond) -> MetrePerSecond:
 def chosen(
     settings: StabilitySettings, kicks: Sequence[MetrePerSecond] | None, runs: int | None
 ) -> tuple[Array, int]:
-    """Disturbances, shape (kick,), and runs: those given, else those of the settings; refuse an empty ensemble."""
+    """Disturbances, shape (kick,), and runs: those given, else the settings'; refuse an empty ensemble."""
     speeds = np.array(settings.kicks if kicks is None else kicks, dtype=np.float64)
     count = settings.runs if runs is None else runs
     if speeds.size == 0 or not np.all(np.isfinite(speeds) & (speeds > LEAST_KICK)):
@@ -83,8 +87,9 @@ def chosen(
 def random_starts(cage: MovingCage, settings: StabilitySettings, first_run: int, runs: int) -> Starts:
     """Starts of runs, by their numbers.
 
-    A lead is random within the clearance, times `ball_scatter`, about the ball's free place among those that a radial load
-    speeds up and slows down; no ball starts beyond its clearance. A pocket out of its place is a lead of its ball.
+    A lead is random within the clearance, times `ball_scatter`, about the ball's free place among those that
+    a radial load speeds up and slows down; no ball starts beyond its clearance. A pocket out of its place is
+    a lead of its ball.
     """
     angles, half, pitch = np.array(cage.ball_angles), cage.half_play, 2.0 * math.pi / cage.ball_count
     drawn = np.stack([random_start(settings.seed, first_run + i, cage.ball_count) for i in range(runs)])
@@ -114,9 +119,9 @@ def free_leads(cage: MovingCage, angles: Array) -> Array:
 def random_start(seed: int, run: int, ball_count: int) -> Array:
     """Numbers drawn for a run, shape (5, ball).
 
-    First the direction of the disturbance [rad] (repeated) and the lead of each ball (share of the scatter, -1 to
-    1), then normal deviations of ball diameters and of pocket positions, cut at 3, then displacements of
-    pockets with their balls (-1 to 1). They are kept, read-only.
+    First the direction of the disturbance [rad] (repeated) and the lead of each ball (share of the scatter,
+    -1 to 1), then normal deviations of ball diameters and of pocket positions, cut at 3, then displacements
+    of pockets with their balls (-1 to 1). They are kept, read-only.
     """
     stream = Generator(Philox(key=np.array([seed, run], dtype=np.uint64)))
     numbers = stream.random(1 + ball_count)
@@ -132,7 +137,7 @@ def random_start(seed: int, run: int, ball_count: int) -> Array:
 
 @lru_cache(maxsize=512)
 def tilt_start(seed: int, run: int) -> tuple[float, float]:
-    """Direction of the tilt's disturbance [rad] and sense of the axial one, from a stream of the run's own."""
+    """Direction of the tilt's disturbance [rad] and sense of the axial one, from a stream of its own."""
     stream = Generator(Philox(key=np.array([seed, run], dtype=np.uint64)).jumped())
     return 2.0 * math.pi * stream.random(), math.copysign(1.0, stream.random() - 0.5)
 
@@ -147,28 +152,39 @@ def _cut_normal(stream: Generator, count: int) -> Array:
 
 def start_states(cage: MovingCage, kick: MetrePerSecond, starts: Starts) -> Array:
     """State of every run at its start, shape (run, state): see `rows`."""
-    one, first = rows.ball_states(ball_level(cage), space=cage.is_in_space), rows.cage_states(space=cage.is_in_space)
+    one, first = (
+        rows.ball_states(ball_level(cage), space=cage.is_in_space),
+        rows.cage_states(space=cage.is_in_space),
+    )
     state = np.zeros((starts.direction.size, first + one * cage.ball_count))
-    state[:, rows.X] = cage.unbalance / (cage.mass + cage.added_mass)
-    state[:, rows.VX], state[:, rows.VY] = kick * np.cos(starts.direction), kick * np.sin(starts.direction)
+    state[:, of(rows.X)] = cage.unbalance / (cage.mass + cage.added_mass)
+    state[:, of(rows.VX)], state[:, of(rows.VY)] = (
+        kick * np.cos(starts.direction),
+        kick * np.sin(starts.direction),
+    )
     if cage.is_in_space:
         rim = cage.tilt_kick * kick / cage.pitch_radius * (0.0 if cage.is_tilt_held else 1.0)
-        state[:, rows.Z] = cage.pocket_axial_offset
-        state[:, rows.TY] = cage.dynamic_unbalance
-        state[:, rows.VZ] = cage.axial_kick * kick * starts.axial_sense * (0.0 if cage.is_axially_held else 1.0)
-        state[:, rows.WX], state[:, rows.WY] = rim * np.cos(starts.tilt_direction), rim * np.sin(starts.tilt_direction)
+        state[:, of(rows.Z)] = cage.pocket_axial_offset
+        state[:, of(rows.TY)] = cage.dynamic_unbalance
+        state[:, of(rows.VZ)] = (
+            cage.axial_kick * kick * starts.axial_sense * (0.0 if cage.is_axially_held else 1.0)
+        )
+        state[:, of(rows.WX)], state[:, of(rows.WY)] = (
+            rim * np.cos(starts.tilt_direction),
+            rim * np.sin(starts.tilt_direction),
+        )
     state[:, first::one] = starts.lead
     return state
 
 
 def ball_places(cage: MovingCage, starts: Starts) -> Array:
-    """Numbers of every ball with its pocket, shape (run, ball x number): its angle, and its pocket's clearance."""
+    """Numbers of every ball with its pocket, shape (run, ball x number): angle and clearance."""
     apart, _, around = pocket_rectangle(cage)
-    places = np.empty((*starts.lead.shape, rows.BALL_NUMBERS))
-    places[..., rows.COSINE], places[..., rows.SINE] = np.cos(starts.angle), np.sin(starts.angle)
+    places = np.empty((*starts.lead.shape, of(rows.BALL_NUMBERS)))
+    places[..., of(rows.COSINE)], places[..., of(rows.SINE)] = np.cos(starts.angle), np.sin(starts.angle)
     if not cage.is_in_space:
         around, apart = 0.0, cage.half_play
     is_round = around > 0.0
-    places[..., rows.AROUND] = around + (starts.more if is_round else 0.0)
-    places[..., rows.APART] = apart + (0.0 if is_round else starts.more)
+    places[..., of(rows.AROUND)] = around + (starts.more if is_round else 0.0)
+    places[..., of(rows.APART)] = apart + (0.0 if is_round else starts.more)
     return places.reshape(len(places), -1)

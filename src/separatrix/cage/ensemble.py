@@ -1,11 +1,11 @@
-"""An ensemble of runs: from starts, side by side, to one record of evidence, the same for any number of threads."""
+"""An ensemble of runs: from starts, side by side, to one record of evidence."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,7 +14,8 @@ from separatrix.cage import outcome, rows, run
 from separatrix.cage.disturbance import ball_places, chosen, random_starts, settings_for, start_states
 from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import Kind, Numbers, look_time, numbers_of
-from separatrix.cage.outcome import Cause, RunOutcome
+from separatrix.cage.outcome import RunOutcome
+from separatrix.cage.rows import of
 from separatrix.errors import InputError
 from separatrix.units import Array, Second, format_quantity
 
@@ -61,10 +62,11 @@ class Ensemble:
     cause : ndarray
         `Cause` of each run that is unresolved, or that friction on the land keeps moving, integer; else 0.
     end_energy : ndarray
-        Mean kinetic energy in the last part of the run: its last fifth, or its last ten looks if they are more [J].
+        Mean kinetic energy in the last part of the run: its last fifth, or its last ten looks if they are
+        more [J].
     growth_rate : ndarray
-        Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the start in
-        a run that ends within five looks [1/s].
+        Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the start
+        in a run that ends within five looks [1/s].
     largest_offset : ndarray
         Largest offset of the cage centre [m].
     mean_offset, offset_spread : ndarray
@@ -73,14 +75,16 @@ class Ensemble:
         Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
         squared offset, over the last part; positive as the ball set turns [rad/s].
     drift_rate : ndarray
-        Growth rate of the mean offset between the last two fifths, of a cage free to drift that of its mean place [1/s].
+        Growth rate of the mean offset between the last two fifths, of a cage free to drift that of its mean
+        place [1/s].
     whirl_frequency, whirl_direction : ndarray
         Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
         its sense: 1 forward (as the ball set turns), -1 backward, 0 none.
     largest_contact_force, largest_land_force : ndarray
         Largest force between a ball and its pocket, and between cage and land [N].
     pocket_impacts, pocket_rubbing : ndarray
-        How often each pocket met its ball, and the integral of force times sliding speed [J], shape (kick, run, ball).
+        How often each pocket met its ball, and the integral of force times sliding speed [J], shape (kick,
+        run, ball).
     land_impacts, strike_rate : ndarray
         How often the cage met its land; impacts of all pockets in the last part [1/s].
     energy_imbalance : ndarray
@@ -95,8 +99,8 @@ class Ensemble:
     followed, judged_from : ndarray
         Time up to which the run was judged, and at which its last part begins [s].
     largest_tilt, mean_tilt : ndarray or None
-        Angle between the axes of cage and bearing: the largest, and its mean over the last part [rad]. This and all that
-        follow are None where the cage moves in the plane.
+        Angle between the axes of cage and bearing: the largest, and its mean over the last part [rad]. This
+        and all that follow are None where the cage moves in the plane.
     cone_speed, cone_phase : ndarray or None
         Mean angular speed of the lean of the axis about the bearing's axis in the fixed frame [rad/s]; angle
         from the offset of the centre to the lean, the same if 0 [rad].
@@ -157,7 +161,7 @@ SPACE_ONLY = (
 
 
 class Piece(NamedTuple):
-    """Runs of one cage from one size of disturbance: where they start, shape (run, state), and their numbers."""
+    """Runs of one cage from one size of disturbance: their starts, shape (run, state), and numbers."""
 
     cage: MovingCage
     kick: MetrePerSecond
@@ -166,7 +170,9 @@ class Piece(NamedTuple):
     places: Array
 
 
-def piece_of(cage: MovingCage, kick: MetrePerSecond, settings: StabilitySettings, first_run: int, runs: int) -> Piece:
+def piece_of(
+    cage: MovingCage, kick: MetrePerSecond, settings: StabilitySettings, first_run: int, runs: int
+) -> Piece:
     """Runs of a cage that turns forward, from one disturbance, by their numbers."""
     starts = random_starts(cage, settings, first_run, runs)
     numbers = numbers_of(cage, kick, settings.duration)
@@ -272,7 +278,9 @@ def follow_alike(
 ) -> dict[str, Array]:
     """Evidence of the runs of pieces of one kind."""
     of = np.repeat(np.arange(len(pieces)), [len(piece.states) for piece in pieces])
-    states, places = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("states", "places"))
+    states, places = (
+        np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("states", "places")
+    )
     count = len(of)
     size = min(CHUNK, max(rows.LANES, math.ceil(count / jobs / rows.LANES) * rows.LANES))
     parts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
@@ -291,7 +299,7 @@ def follow_alike(
 
 
 class Raw(NamedTuple):
-    """What the queue wrote: looks, shape (run, look, column), and per run; samples, shape (sample, column)."""
+    """What the queue wrote: looks, shape (run, look, column), numbers of every run, samples of the first."""
 
     looks: Array
     evidence: Array
@@ -312,21 +320,26 @@ def run_rows(
     every: int = 1,
 ) -> Raw:
     """Put runs of one kind through the queue."""
-    count, most = len(numbers), int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers))
+    count, most = (
+        len(numbers),
+        int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers)),
+    )
     raw = Raw(
-        looks=np.zeros((count, most, rows.LOOK_COLUMNS), np.float32),
+        looks=np.zeros((count, most, of(rows.LOOK_COLUMNS)), np.float32),
         evidence=np.zeros((count, run.EVIDENCE_COLUMNS)),
         hits=np.zeros((count, kind.balls)),
         heat=np.zeros((count, kind.balls)),
         record=np.zeros((0, 1)) if record is None else record,
     )
     raw.evidence[:, run.OUTCOME] = outcome.UNKNOWN
-    given = (np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits"))
+    given = (
+        np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits")
+    )
     values, strips, waves, limits = given
     follow_queue = run.queue(kind.ball, kind.space, kind.leans, kind.hertz, kind.lobes, real)
     follow_queue(
-        states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits, raw.heat,
-        raw.record, every, stop.flag,
+        states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits,
+        raw.heat, raw.record, every, stop.flag,
     )  # fmt: skip
     return raw
 
@@ -335,43 +348,47 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
     """Evidence by name from the looks of runs; a row a run."""
     at, looks = raw.evidence, raw.looks
     end = np.maximum(at[:, run.JUDGED].astype(np.int64), 1)
-    sums = np.concatenate([np.zeros((len(looks), 1, looks.shape[2])), np.cumsum(looks, axis=1, dtype=np.float64)], axis=1)
+    sums = np.concatenate(
+        [np.zeros((len(looks), 1, looks.shape[2])), np.cumsum(looks, axis=1, dtype=np.float64)], axis=1
+    )
     each = np.arange(len(looks))
 
     def mean(first: Array, last: Array) -> Array:
         return (sums[each, last] - sums[each, first]) / (last - first)[:, np.newaxis]
 
-    length = np.array([piece.numbers.numbers[rows.STEP] * piece.numbers.kind.steps for piece in pieces])
+    length = np.array([piece.numbers.numbers[of(rows.STEP)] * piece.numbers.kind.steps for piece in pieces])
     speed = np.array([piece.cage.cage_speed for piece in pieces])
     fifth = np.maximum(1, end // FIFTH)
     part = np.maximum(fifth, np.minimum(end, LAST))
     last = mean(end - part, end)
-    curl = _share(last[:, rows.CURL], last[:, rows.SPEED_SQUARE])
-    left = at[:, run.FIRST_EXTREME - rows.WATCHED + rows.LEFT_BALL]
+    curl = _share(last[:, of(rows.CURL)], last[:, of(rows.SPEED_SQUARE)])
+    left = at[:, run.extreme(rows.LEFT_BALL)]
     start = np.array([_energy(piece.cage, piece.kick) for piece in pieces])
     found = {
         "outcome": at[:, run.OUTCOME].astype(np.int64),
         "cause": at[:, run.CAUSE].astype(np.int64),
-        "end_energy": last[:, rows.ENERGY],
+        "end_energy": last[:, of(rows.ENERGY)],
         "growth_rate": _growth(mean, end, fifth, start) / length,
-        "largest_offset": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_OFFSET],
-        "mean_offset": last[:, rows.OFFSET_MEAN],
-        "offset_spread": np.sqrt(np.maximum(0.0, last[:, rows.OFFSET_SQUARE] - last[:, rows.OFFSET_MEAN] ** 2)),
-        "orbit_speed": _share(last[:, rows.SWEPT], last[:, rows.OFFSET_SQUARE]) + speed,
+        "largest_offset": at[:, run.extreme(rows.PEAK_OFFSET)],
+        "mean_offset": last[:, of(rows.OFFSET_MEAN)],
+        "offset_spread": np.sqrt(
+            np.maximum(0.0, last[:, of(rows.OFFSET_SQUARE)] - last[:, of(rows.OFFSET_MEAN)] ** 2)
+        ),
+        "orbit_speed": _share(last[:, of(rows.SWEPT)], last[:, of(rows.OFFSET_SQUARE)]) + speed,
         "drift_rate": _drift(pieces, mean, end, fifth) / length,
         "whirl_frequency": np.abs(curl) / (2.0 * math.pi),
         "whirl_direction": np.sign(curl).astype(np.int64),
-        "largest_contact_force": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_FORCE],
-        "largest_land_force": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_LAND],
+        "largest_contact_force": at[:, run.extreme(rows.PEAK_FORCE)],
+        "largest_land_force": at[:, run.extreme(rows.PEAK_LAND)],
         "pocket_impacts": raw.hits.astype(np.int64),
         "pocket_rubbing": raw.heat,
-        "land_impacts": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.LAND_STRIKES].astype(np.int64),
-        "strike_rate": last[:, rows.STRIKES],
+        "land_impacts": at[:, run.extreme(rows.LAND_STRIKES)].astype(np.int64),
+        "strike_rate": last[:, of(rows.STRIKES)],
         "energy_imbalance": at[:, run.OPEN] / np.maximum(at[:, run.DONE] + start, 1e-300),
-        "pocket_power": last[:, rows.WORK_POCKET] / length,
-        "land_power": last[:, rows.WORK_LAND] / length,
-        "rubbing_force": last[:, rows.PRESSED],
-        "rubbing_speed": _share(last[:, rows.HEATED], last[:, rows.PRESSED]),
+        "pocket_power": last[:, of(rows.WORK_POCKET)] / length,
+        "land_power": last[:, of(rows.WORK_LAND)] / length,
+        "rubbing_force": last[:, of(rows.PRESSED)],
+        "rubbing_speed": _share(last[:, of(rows.HEATED)], last[:, of(rows.PRESSED)]),
         "left_ball": left.astype(np.int64),
         "left_time": at[:, run.LEFT_AT],
         "followed": end * length,
@@ -379,16 +396,16 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
     }
     if not pieces[0].cage.is_in_space:
         return found
-    axial = last[:, rows.AXIAL]
+    axial = last[:, of(rows.AXIAL)]
     return found | {
-        "largest_tilt": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.PEAK_TILT],
-        "mean_tilt": last[:, rows.TILT],
-        "cone_speed": _share(last[:, rows.CONE], last[:, rows.TILT_SQUARE]) + speed,
-        "cone_phase": np.arctan2(last[:, rows.LEAN_CROSS], last[:, rows.LEAN_DOT]),
-        "axial_low": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.AXIAL_LOW],
-        "axial_high": at[:, run.FIRST_EXTREME - rows.WATCHED + rows.AXIAL_HIGH],
+        "largest_tilt": at[:, run.extreme(rows.PEAK_TILT)],
+        "mean_tilt": last[:, of(rows.TILT)],
+        "cone_speed": _share(last[:, of(rows.CONE)], last[:, of(rows.TILT_SQUARE)]) + speed,
+        "cone_phase": np.arctan2(last[:, of(rows.LEAN_CROSS)], last[:, of(rows.LEAN_DOT)]),
+        "axial_low": at[:, run.extreme(rows.AXIAL_LOW)],
+        "axial_high": at[:, run.extreme(rows.AXIAL_HIGH)],
         "axial_place": axial,
-        "axial_spread": np.sqrt(np.maximum(0.0, last[:, rows.AXIAL_SQUARE] - axial**2)),
+        "axial_spread": np.sqrt(np.maximum(0.0, last[:, of(rows.AXIAL_SQUARE)] - axial**2)),
     }
 
 
@@ -405,24 +422,30 @@ LEAST_SHARE = 2.0**-104
 """Share of the energy at the start below which speeds are rounding: growth rates count no further."""
 
 
-def _growth(mean, end, fifth, start):  # noqa: ANN001, ANN202
+def _growth(mean, end, fifth, start):
     """Half the logarithmic growth of the mean energy from half way to the last fifth, per look."""
-    last = mean(end - fifth, end)[:, rows.ENERGY]
+    last = mean(end - fifth, end)[:, of(rows.ENERGY)]
     first = np.maximum(0, end // 2 - fifth // 2)
     is_short = end < FIFTH
-    before = np.where(is_short, start, mean(first, first + fifth)[:, rows.ENERGY])
+    before = np.where(is_short, start, mean(first, first + fifth)[:, of(rows.ENERGY)])
     span = np.where(is_short, end - 0.5 * fifth, end - fifth - first)
     least = LEAST_SHARE * start
     return 0.5 * np.log(np.maximum(last, least) / np.maximum(before, least)) / np.maximum(span, 0.5)
 
 
-def _drift(pieces, mean, end, fifth):  # noqa: ANN001, ANN202
+def _drift(pieces, mean, end, fifth):
     """Logarithmic growth of the mean offset between the last two fifths, per look; 0 where there is none."""
     late, early = mean(end - fifth, end), mean(np.maximum(0, end - 2 * fifth), np.maximum(end - fifth, 1))
     adrift = np.array([piece.numbers.limits[outcome.IS_ADRIFT] > 0.0 for piece in pieces])
 
     def size(part: Array) -> Array:
-        return np.where(adrift, np.hypot(part[:, rows.MEAN_X], part[:, rows.MEAN_Y]), part[:, rows.OFFSET_MEAN])
+        return np.where(
+            adrift,
+            np.hypot(part[:, of(rows.MEAN_X)], part[:, of(rows.MEAN_Y)]),
+            part[:, of(rows.OFFSET_MEAN)],
+        )
 
-    ratio = np.divide(size(late), size(early), out=np.ones(len(end)), where=(size(early) > 0.0) & (size(late) > 0.0))
+    ratio = np.divide(
+        size(late), size(early), out=np.ones(len(end)), where=(size(early) > 0.0) & (size(late) > 0.0)
+    )
     return np.where(end > 1, np.log(ratio) / fifth, 0.0)

@@ -1,34 +1,34 @@
-r"""The force of a land on the cage: strips at their heights, each a one-sided spring and damper with friction.
+r"""The force of a land on the cage: strips at their heights, one-sided springs and dampers with friction.
 
-At the height :math:`\zeta` of a strip the centre of the cage is at :math:`e = r + \zeta(\tau_y, -\tau_x)`. With
-:math:`\delta = |e| - c_g + a \cos m\beta` (lobes of the cage's land, which turn with it) the strip presses by
-:math:`P = K\delta + c\dot\delta` while both are positive, and rubs along the sliding of the cage's surface on the ring's.
+At the height :math:`\zeta` of a strip the centre of the cage is at :math:`e = r + \zeta(\tau_y, -\tau_x)`.
+With :math:`\delta = |e| - c_g + a \cos m\beta` (lobes of the cage's land, which turn with it) the strip
+presses by :math:`P = K\delta + c\dot\delta` while both are positive, and rubs along the sliding of the cage's
+surface on the ring's.
 """
 
 from __future__ import annotations
 
 import math
 
-from separatrix.cage.rows import *  # noqa: F403
 from separatrix.cage.frame import turning
+from separatrix.cage.rows import *
 from separatrix.compiled import inlined
 
 
 @inlined
 def land_forces(s, a, p, strips, lobe_number, space):
     """Add what every strip does to the cage; write the normal force and the heat of all of them."""
-    for row in range(LX, LAND_HEAT + 1):
+    for e in range(LX, LAND_HEAT + LANES):
+        a[e] = ZERO
+    for i in range(strips.size // STRIP_NUMBERS):
+        strip = strips[i * STRIP_NUMBERS : (i + 1) * STRIP_NUMBERS]
         for l in range(LANES):
-            a[row * LANES + l] = ZERO
-    for i in range(strips.size // (STRIP_NUMBERS * LANES)):
-        strip = strips[i * STRIP_NUMBERS * LANES : (i + 1) * STRIP_NUMBERS * LANES]
-        for l in range(LANES):
-            height = strip[HEIGHT * LANES + l]
-            x, y, vx, vy = a[GX * LANES + l], a[GY * LANES + l], a[GVX * LANES + l], a[GVY * LANES + l]
+            height = strip[HEIGHT + l]
+            x, y, vx, vy = a[GX + l], a[GY + l], a[GVX + l], a[GVY + l]
             vz, wa, wb = ZERO, ZERO, ZERO
             if space:
-                wa, wb, vz = a[GWA * LANES + l], a[GWB * LANES + l], s[VZ * LANES + l]
-                x, y = x + height * a[GB * LANES + l], y - height * a[GA * LANES + l]
+                wa, wb, vz = a[GWA + l], a[GWB + l], s[VZ + l]
+                x, y = x + height * a[GB + l], y - height * a[GA + l]
                 vx, vy = vx + height * wb, vy - height * wa
             r = math.sqrt(x * x + y * y + TINY)
             per = ONE / r
@@ -36,35 +36,35 @@ def land_forces(s, a, p, strips, lobe_number, space):
             around, outward = nx * vy - ny * vx, nx * vx + ny * vy
             cosine, sine = ONE, ZERO
             if lobe_number > 0:
-                cosine, sine = lobes(nx, ny, a[TURN * LANES + l], lobe_number)
-            bump, tilted = p[LOBE * LANES + l] * cosine, p[LOBE_SLOPE * LANES + l] * sine
-            depth = r - p[LAND_GAP * LANES + l] + bump
+                cosine, sine = lobes(nx, ny, a[TURN + l], lobe_number)
+            bump, tilted = p[LOBE + l] * cosine, p[LOBE_SLOPE + l] * sine
+            depth = r - p[LAND_GAP + l] + bump
             # d(cos m beta)/dt = -m sin(m beta) (around / r - turning)
-            rate = outward - tilted * (per * around - s[VS * LANES + l] * p[PER_RADIUS * LANES + l])
-            push = max(strip[STRIP_STIFFNESS * LANES + l] * depth + strip[STRIP_DAMPING * LANES + l] * rate, ZERO)
+            rate = outward - tilted * (per * around - s[VS + l] * p[PER_RADIUS + l])
+            push = max(strip[STRIP_STIFFNESS + l] * depth + strip[STRIP_DAMPING + l] * rate, ZERO)
             push = push if depth > ZERO else ZERO
-            lever = p[LAND_LEVER * LANES + l]
-            slide_t = around + lever * s[VS * LANES + l] - p[RING_SLIDE * LANES + l] * s[RAMP * LANES + l]
-            slide_z = vz - lever * p[RADIUS * LANES + l] * (nx * wb - ny * wa)
-            slide = math.sqrt(slide_t * slide_t + slide_z * slide_z + p[PIVOT * LANES + l])
-            share = -p[LAND_FRICTION * LANES + l] * push / slide
+            lever = p[LAND_LEVER + l]
+            slide_t = around + lever * s[VS + l] - p[RING_SLIDE + l] * s[RAMP + l]
+            slide_z = vz - lever * p[RADIUS + l] * (nx * wb - ny * wa)
+            slide = math.sqrt(slide_t * slide_t + slide_z * slide_z + p[PIVOT + l])
+            share = -p[LAND_FRICTION + l] * push / slide
             ft, fz, side = share * slide_t, share * slide_z, push * tilted * per
             fx, fy = -push * nx - (ft + side) * ny, (ft + side) * nx - push * ny
-            turning = lever * ft - push * tilted * p[PER_RADIUS * LANES + l]
-            a[LX * LANES + l] += fx
-            a[LY * LANES + l] += fy
-            a[LS * LANES + l] += turning
-            rub = ft * around + fz * vz + lever * ft * s[VS * LANES + l]
+            turning = lever * ft - push * tilted * p[PER_RADIUS + l]
+            a[LX + l] += fx
+            a[LY + l] += fy
+            a[LS + l] += turning
+            rub = ft * around + fz * vz + lever * ft * s[VS + l]
             if space:
-                arm = lever * p[RADIUS * LANES + l]
+                arm = lever * p[RADIUS + l]
                 rub -= arm * fz * (nx * wb - ny * wa)
-                a[LZ * LANES + l] += fz
-                a[LMX * LANES + l] += arm * fz * ny - height * fy
-                a[LMY * LANES + l] += height * fx - arm * fz * nx
-            a[LAND_RUB * LANES + l] += rub
-            a[LAND_PRESS * LANES + l] -= push * rate
-            a[LAND_N * LANES + l] += push
-            a[LAND_HEAT * LANES + l] += push * slide
+                a[LZ + l] += fz
+                a[LMX + l] += arm * fz * ny - height * fy
+                a[LMY + l] += height * fx - arm * fz * nx
+            a[LAND_RUB + l] += rub
+            a[LAND_PRESS + l] -= push * rate
+            a[LAND_N + l] += push
+            a[LAND_HEAT + l] += push * slide
 
 
 @inlined
@@ -76,4 +76,3 @@ def lobes(nx, ny, turned, number):
     for _ in range(number - 1):
         cosine, sine = cosine * one_c - sine * one_s, sine * one_c + cosine * one_s
     return cosine, sine
-

@@ -44,8 +44,8 @@ LEVER: Metre = 1e-9
 class MovingCage:
     """A cage among balls that the races guide, moving in the bearing plane or in space.
 
-    The plane is space with tilt and axial motion held. Axes: x and y in the bearing plane, z along the bearing axis; the
-    frame turns with the ball set. Tilts are small.
+    The plane is space with tilt and axial motion held. Axes: x and y in the bearing plane, z along the
+    bearing axis; the frame turns with the ball set. Tilts are small.
 
     Parameters
     ----------
@@ -69,16 +69,19 @@ class MovingCage:
     ball_cage_friction : float
         f_BC [-].
     ball_spin : tuple of float or None
-        Spin of a ball relative to its orbit: along the axis, outward, and along the orbit [rad/s]. None: about the axis, so
-        fast that it alone decides where friction acts.
+        Spin of a ball relative to its orbit: along the axis, outward, and along the orbit [rad/s]. None:
+        about the axis, so fast that it alone decides where friction acts.
     ball_diameter : float
-        A pocket touches its ball, and friction acts, at half of it from the ball's centre [m]; 0: at the centre.
+        A pocket touches its ball, and friction acts, at half of it from the ball's centre [m]; 0: at the
+        centre.
     traction, free_ball : BallTraction, FreeBall or None
-        Level of the ball: with neither the paper's damper; with `traction` one state; with `free_ball` its spins too.
+        Level of the ball: with neither the paper's damper; with `traction` one state; with `free_ball` its
+        spins too.
     guidance, land_clearance, land_friction, land_stiffness, land_restitution
         The land: diametral clearance [m], friction [-], stiffness of each [N/m], restitution [-].
     land_count, land_spacing, land_width, land_radius
-        One land or two; distance of their middles, width [m]; where friction acts, None: at the pitch radius [m].
+        One land or two; distance of their middles, width [m]; where friction acts, None: at the pitch radius
+        [m].
     land_out_of_round, land_lobes
         Amplitude [m] and number of lobes of the land of the cage.
     unbalance, dynamic_unbalance : float
@@ -88,8 +91,9 @@ class MovingCage:
     added_mass : float
         Of the fluid that moves with the cage across the axis [kg].
     pocket_shape, pocket_axial_clearance, pocket_axial_offset
-        Shape of the pockets; clearance along the axis, stop to stop, of an elongated one [m], as along the orbit of others;
-        distance of the cage from the plane of the balls, along the bearing axis: held in the plane, at the start in space.
+        Shape of the pockets; clearance along the axis, stop to stop, of an elongated one [m], as along the
+        orbit of others; distance of the cage from the plane of the balls, along the bearing axis: held in the
+        plane, at the start in space.
     hertz_coefficient : float or None
         K of N = K approach^1.5 [N/m^1.5]; None is linear contact with `ball_cage_stiffness`.
     pocket_angles : tuple of float
@@ -99,7 +103,8 @@ class MovingCage:
     ball_diameter_scatter, pocket_position_scatter : float
         Standard deviations, normal, cut at 3, run by run [m]; of the position: along the circumference.
     groove_damping, groove_stiffness : float
-        Of a ball that is pushed along its grooves, in space: c_g [N s/m] and k_g [N/m]. An infinite damping holds it.
+        Of a ball that is pushed along its grooves, in space: c_g [N s/m] and k_g [N/m]. An infinite damping
+        holds it.
     pivot_speed : float
         Sliding speed below which pivoting lowers the friction of pockets and of the land [m/s].
     inner_radius, outer_radius : float or None
@@ -108,7 +113,8 @@ class MovingCage:
         A_h and B_h, h = 1, 2, ..: a ball at azimuth p runs faster than the ball set by the sum of
         A_h cos h p + B_h sin h p [m/s]; azimuth is fixed in space, 0 along the radial load.
     ramp_time, ramp_start : float
-        All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is no ramp.
+        All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is
+        no ramp.
     axial_kick, tilt_kick : float
         Share of an initial disturbance that is along the axis, and at the rim by tilting, in space [-].
     is_tilt_held, is_axially_held : bool
@@ -187,7 +193,10 @@ class MovingCage:
             _check.between(self, "ramp_start", 0.0, 1.0, open_low=True),
             _check.between(self, "axial_gravity", -1e6, 1e6),
             _check.between(self, "dynamic_unbalance", 0.0, 0.1),
-            *(_check.positive(self, name, 1e-9, 1e3) for name in ("land_radius", "inner_radius", "outer_radius")),
+            *(
+                _check.positive(self, name, 1e-9, 1e3)
+                for name in ("land_radius", "inner_radius", "outer_radius")
+            ),
             *cage_design.pocket_and_land_fields(self),
             _refused_damping(self),
             *(_refused_speeds(self, name) for name in ("orbital_cosines", "orbital_sines", "ball_spin")),
@@ -230,7 +239,7 @@ class MovingCage:
 
     @property
     def lever(self) -> Metre:
-        """Distance of the pocket's friction from the ball's centre [m]; as good as none where no diameter is given."""
+        """Distance of the pocket's friction from the ball's centre [m]; next to none without a diameter."""
         return self.ball_diameter / 2.0 or LEVER
 
     @property
@@ -258,8 +267,8 @@ class MovingCage:
     def wall_margins(self) -> tuple[Metre, Metre]:
         """Way of the cage outward, and inward, at a ball until the wall of its pocket ends beside it [m].
 
-        A wall touches a ball at its equator, at the height of the ball's centre, up to half the pocket's length along the
-        orbit; infinite where no diameter of the cage is given.
+        A wall touches a ball at its equator, at the height of the ball's centre, up to half the pocket's
+        length along the orbit; infinite where no diameter of the cage is given.
         """
         half = (self.ball_diameter + self.pocket_clearance) / 2.0 + 1.5 * self.ball_diameter_scatter
         outer = math.inf if self.outer_radius is None else self.outer_radius
@@ -274,7 +283,9 @@ class MovingCage:
     @property
     def rotation_sense(self) -> int:
         """Sense in which the ball set turns; at rest, of the rings' mean, or of the inner ring."""
-        return _sign(self.cage_speed) or _sign(self.inner_speed + self.outer_speed) or self.friction_sense or 1
+        return (
+            _sign(self.cage_speed) or _sign(self.inner_speed + self.outer_speed) or self.friction_sense or 1
+        )
 
     @property
     def guiding_ring_speed(self) -> RadianPerSecond:
@@ -285,7 +296,15 @@ class MovingCage:
 
 _POSITIVE = ("mass", "moment_of_inertia", "pitch_radius", "ball_cage_stiffness", "land_stiffness")
 _NOT_NEGATIVE = (
-    *("ball_cage_friction", "land_friction", "unbalance", "gravity", "ball_diameter", "land_width", "added_mass"),
+    *(
+        "ball_cage_friction",
+        "land_friction",
+        "unbalance",
+        "gravity",
+        "ball_diameter",
+        "land_width",
+        "added_mass",
+    ),
     *("groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick"),
 )
 _AROUND = 360
@@ -375,11 +394,11 @@ def _sign(value: float) -> int:
 
 
 def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = None) -> MovingCage:
-    """The cage of a solved study, with any friction: in the plane or in space, among balls of the study's level.
+    """The cage of a solved study, with any friction, among balls of the study's level.
 
     The ball set turns at the balls' mean orbital speed; under a radial load or a moment each ball runs
-    faster and slower around as the equilibrium says. In the plane among dampers, as in the paper, the balls spin about
-    the axis of the bearing; else about their own.
+    faster and slower around as the equilibrium says. In the plane among dampers, as in the paper, the balls
+    spin about the axis of the bearing; else about their own.
 
     Parameters
     ----------
@@ -436,7 +455,9 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
             traction=None if level is BallModel.DAMPER else solution.mobility.traction,
             free_ball=free[0] if free else None,
             # equal energy and depth in an impact at the impact speed
-            hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, solution.impact_speed) if hertz else None,
+            hertz_coefficient=hertz_coefficient_for(stiffness, body.mass, solution.impact_speed)
+            if hertz
+            else None,
             # sliding at which a contact as wide as in an impact at the impact speed pivots (Contensou)
             pivot_speed=8.0 / (3.0 * math.pi) * radius * math.hypot(*spin),
             groove_damping=linear.groove_damping if linear else math.inf,
@@ -463,7 +484,15 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
 
 _AS_DESIGNED = (
     *("guidance", "land_clearance", "land_friction", "land_stiffness", "land_restitution", "land_count"),
-    *("land_spacing", "land_width", "land_out_of_round", "land_lobes", "unbalance", "dynamic_unbalance", "gravity"),
+    *(
+        "land_spacing",
+        "land_width",
+        "land_out_of_round",
+        "land_lobes",
+        "unbalance",
+        "dynamic_unbalance",
+        "gravity",
+    ),
     *("axial_gravity", "added_mass", "pocket_shape", "pocket_clearance", "pocket_axial_clearance"),
     *("pocket_axial_offset", "pocket_angles", "pocket_spacing_scatter", "ball_diameter_scatter"),
     *("pocket_position_scatter",),

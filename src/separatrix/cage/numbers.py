@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from separatrix import pocket_shape
 from separatrix.cage import outcome, rows
 from separatrix.cage.ball import slip_field
 from separatrix.cage.closed_forms import (
@@ -17,7 +18,7 @@ from separatrix.cage.closed_forms import (
     rebound_damping,
     time_unit,
 )
-from separatrix import pocket_shape
+from separatrix.cage.rows import of
 from separatrix.cage.step import exact_decay, step_length
 from separatrix.cage_design import Guidance
 from separatrix.pocket_shape import PocketShape
@@ -31,14 +32,15 @@ NOWHERE: Metre = 1e6
 """Where something is that is never met: finite, so that a difference of two is a number."""
 
 LEAST_PIVOT = 3e-3
-"""Pivoting speed, as a share of the initial disturbance, below which friction would turn round within a step."""
+"""Pivoting speed, as a share of the initial disturbance, below which friction would turn round within a
+step."""
 
 GAUSS = 3
 """Strips of a land of some width: they hold its force and moment while all of it touches."""
 
 LOOK, TURNS = 150.0, 0.25
-"""Length of a look, in radians of the motion with one ball in touch, and at least this share of a turn of the ball set;
-a slow one has at most ten times the former."""
+"""Length of a look, in radians of the motion with one ball in touch, and at least this share of a turn of the
+ball set; a slow one has at most ten times the former."""
 
 LADDER = 1.1
 """Steps of a look are a power of this, so that runs of many cages have few lengths and share a queue."""
@@ -99,7 +101,7 @@ def pocket_rectangle(cage: MovingCage) -> tuple[Metre, Metre, Metre]:
 def land_strips(cage: MovingCage) -> Array:
     """Height, stiffness and damping of the strips of all lands, shape (strip, 3)."""
     if cage.guidance is Guidance.BALL:
-        return np.zeros((0, rows.STRIP_NUMBERS))
+        return np.zeros((0, of(rows.STRIP_NUMBERS)))
     spacing = (cage.land_spacing or 0.0) if cage.land_count == 2 else 0.0
     middles, share = np.array((-0.5 * spacing, 0.5 * spacing))[: cage.land_count], np.ones(1)
     at = np.zeros(1)
@@ -109,22 +111,29 @@ def land_strips(cage: MovingCage) -> Array:
         at, weight = np.polynomial.legendre.leggauss(GAUSS)
         at, share = 0.5 * cage.land_width * at, 0.5 * weight
     whole = float(cage.land_count) if not cage.is_in_space else 1.0
-    damping = 2.0 * rebound_damping(cage.land_restitution) * math.sqrt(cage.land_stiffness * whole * moving_mass(cage))
+    damping = (
+        2.0
+        * rebound_damping(cage.land_restitution)
+        * math.sqrt(cage.land_stiffness * whole * moving_mass(cage))
+    )
     heights = (middles[:, None] + at).ravel()
     shares = np.tile(share, middles.size)
     return np.stack([heights, cage.land_stiffness * shares, damping * shares / whole], axis=1)
 
 
-def numbers_of(cage: MovingCage, kick: MetrePerSecond, duration: Second, *, least: Second = 0.0, refine: int = 1) -> Numbers:
+def numbers_of(
+    cage: MovingCage, kick: MetrePerSecond, duration: Second, *, least: Second = 0.0, refine: int = 1
+) -> Numbers:
     """Rows of a run of a cage that turns forward, from a disturbance [m/s].
 
-    `least`: time to which it is followed even where its end is plain before; `refine`: steps in one of the usual length.
+    `least`: time to which it is followed even where its end is plain before; `refine`: steps in one of the
+    usual length.
     """
     look = look_time(cage)
     fewest = look / step_length(cage, kick)
     steps = refine * math.ceil(LADDER ** math.ceil(math.log(fewest, LADDER)))
     step = look / steps
-    n = np.zeros(rows.NUMBERS)
+    n = np.zeros(of(rows.NUMBERS))
     _enter_cage(n, cage, kick, step)
     _enter_ball(n, cage, step)
     strips, waves = land_strips(cage), np.array([cage.orbital_cosines, cage.orbital_sines]).T.ravel()
@@ -143,7 +152,7 @@ def numbers_of(cage: MovingCage, kick: MetrePerSecond, duration: Second, *, leas
 
 
 def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) -> None:
-    M, R, body = moving_mass(cage), cage.pitch_radius, cage
+    M, R = moving_mass(cage), cage.pitch_radius
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     reach = R if cage.land_radius is None else cage.land_radius
     _, beside, _ = pocket_rectangle(cage)
@@ -186,31 +195,43 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         rows.LAND_LEVER: side * reach / R,
         rows.RING_SLIDE: side * (cage.guiding_ring_speed - cage.cage_speed) * reach,
     }
-    n[list(given)] = list(given.values())
+    n[[of(row) for row in given]] = list(given.values())
 
 
 def _enter_ball(n: Array, cage: MovingCage, step: Second) -> None:
-    n[rows.PER_DAMPING], n[rows.PER_GROOVE] = 1.0 / cage.race_damping, 1.0 / cage.groove_damping
-    n[rows.GROOVE_STIFFNESS] = cage.groove_stiffness
+    n[of(rows.PER_DAMPING)], n[of(rows.PER_GROOVE)] = 1.0 / cage.race_damping, 1.0 / cage.groove_damping
+    n[of(rows.GROOVE_STIFFNESS)] = cage.groove_stiffness
     law, ball = cage.traction, cage.free_ball
     if law is not None:
         rate = law.slope / law.mass
-        n[rows.SLOPE], n[rows.PER_KNEE], n[rows.PER_BALL_MASS] = law.slope, 1.0 / law.speed, 1.0 / law.mass
-        n[rows.HELD_RATE] = rate
-        n[rows.DECAY_HALF : rows.GAIN_LAST + 1] = exact_decay(rate, step)
+        n[of(rows.SLOPE)], n[of(rows.PER_KNEE)], n[of(rows.PER_BALL_MASS)] = (
+            law.slope,
+            1.0 / law.speed,
+            1.0 / law.mass,
+        )
+        n[of(rows.HELD_RATE)] = rate
+        n[of(rows.DECAY_HALF) : of(rows.GAIN_LAST) + 1] = exact_decay(rate, step)
     if ball is not None:
-        n[rows.PER_OWN_MASS], n[rows.PER_OWN_INERTIA] = 1.0 / ball.mass, 1.0 / ball.inertia
+        n[of(rows.PER_OWN_MASS)], n[of(rows.PER_OWN_INERTIA)] = 1.0 / ball.mass, 1.0 / ball.inertia
         side = cage.lever * cage.spin[2]
-        n[rows.INNER : rows.INNER + rows.RACE_ROWS] = _race_numbers(ball.inner, side)
-        n[rows.OUTER : rows.OUTER + rows.RACE_ROWS] = _race_numbers(ball.outer, side)
+        n[of(rows.INNER) : of(rows.OUTER)] = _race_numbers(ball.inner, side)
+        n[of(rows.OUTER) : of(rows.NUMBERS)] = _race_numbers(ball.outer, side)
 
 
 def _race_numbers(race: SlipField, side: MetrePerSecond) -> tuple[float, ...]:
-    """Numbers of a race, and what its strips give at free rolling: subtracted for ever, so there a ball stays as it is."""
+    """Numbers of a race, and what its strips give at free rolling, which is subtracted for ever."""
     field = race.slip, race.pivoting, race.heathcote, race.axis_ratio**2 / 4.0, race.elastic_slip**2
     slip, pivoting, heathcote, wide, creep = (np.float64(x) for x in field)
-    at_rest = slip_field.py_func(slip, pivoting, np.float64(side), heathcote, wide, creep)  # type: ignore[attr-defined]
-    return (race.normal_axial, race.normal_radial, race.limit, race.semi_major, *field, *(float(x) for x in at_rest))
+    strips = slip_field.py_func  # type: ignore[attr-defined]
+    at_rest = strips(slip, pivoting, np.float64(side), heathcote, wide, creep)
+    return (
+        race.normal_axial,
+        race.normal_radial,
+        race.limit,
+        race.semi_major,
+        *field,
+        *(float(x) for x in at_rest),
+    )
 
 
 def _limits(cage: MovingCage, kick: MetrePerSecond, duration: Second, least: Second, look: Second) -> Array:
@@ -223,7 +244,9 @@ def _limits(cage: MovingCage, kick: MetrePerSecond, duration: Second, least: Sec
     ramp = math.ceil(cage.ramp_time / look)
     found[outcome.DRIVE] = drive
     found[outcome.RESTING] = max(outcome.REST * drive, still)
-    found[outcome.GROWS] = outcome.GROWN * (kicked + drive + 0.5 * moving_mass(cage) * (cage.cage_speed * wide) ** 2)
+    found[outcome.GROWS] = outcome.GROWN * (
+        kicked + drive + 0.5 * moving_mass(cage) * (cage.cage_speed * wide) ** 2
+    )
     found[outcome.MOST] = ramp + max(FOLLOWED, math.ceil(duration / look))
     found[outcome.LEAST] = math.ceil(least / look)
     found[outcome.FROM] = ramp

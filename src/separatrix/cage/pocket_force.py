@@ -1,8 +1,9 @@
 r"""The force of a pocket on its ball: a rounded rectangle, and friction along the true sliding.
 
-Seen along the radius a pocket is a rectangle with half-lengths `apart` along the orbit and `beside` along the axis, and
-its wall stands `around` outside it: a bore is (0, 0, c), a slot (c - c_a, 0, c_a), a square pocket (c, c_z, 0); one that
-grips its ball is (0, ..., 0). The ball touches where it is more than `around` outside the rectangle.
+Seen along the radius a pocket is a rectangle with half-lengths `apart` along the orbit and `beside` along the
+axis, and its wall stands `around` outside it: a bore is (0, 0, c), a slot (c - c_a, 0, c_a), a square pocket
+(c, c_z, 0); one that grips its ball is (0, ..., 0). The ball touches where it is more than `around` outside
+the rectangle.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def pocket_depth(along, across, around, apart, beside):
 
 @inlined
 def pocket_depth_in_plane(along, play, lean_sine, lean_cosine):
-    """The same where the axial motion is held, so that the clearance along the orbit and the lean of the contact are."""
+    """The same where the axial motion is held: with the lean of the contact and its clearance."""
     return lean_cosine * max(abs(along) - play, ZERO), lean_sine, math.copysign(lean_cosine, -along)
 
 
@@ -42,8 +43,9 @@ def level_depth(along, play):
 def pocket_friction(limit, nz, nt, lever, oz, o_r, ot, ball_speed, vz, vr, vt, pivot):
     """Friction on the wall (axial, radial, along the orbit), and the speed of the sliding.
 
-    Along the sliding of the ball's surface, of spin (oz, o_r, ot), on the wall, of velocity (vz, vr, vt) at the point
-    that touches; in proportion to it well below the pivoting speed, whose square is `pivot` (Contensou).
+    Along the sliding of the ball's surface, of spin (oz, o_r, ot), on the wall, of velocity (vz, vr, vt) at
+    the point that touches; in proportion to it well below the pivoting speed, whose square is `pivot`
+    (Contensou).
     """
     sz = lever * o_r * nt - vz
     sr = lever * (ot * nz - oz * nt) - vr
@@ -57,7 +59,7 @@ def pocket_friction(limit, nz, nt, lever, oz, o_r, ot, ball_speed, vz, vr, vt, p
 
 @inlined
 def friction_in_plane(limit, nt, lever, oz, o_r, vr, pivot):
-    """Friction (axial, radial) of a contact that does not lean, on a cage that is held along the axis; speed of sliding."""
+    """Friction (axial, radial) of a contact that does not lean, axial motion held; speed of sliding."""
     sz, sr = lever * o_r * nt, -lever * oz * nt - vr
     slide = math.sqrt(sz * sz + sr * sr + pivot)
     share = limit / slide

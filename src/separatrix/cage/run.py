@@ -13,119 +13,131 @@ import numpy as np
 
 from separatrix.cage.frame import place
 from separatrix.cage.motion import rates
-from separatrix.cage.outcome import FROM, LEAST, MOST, RAMP_START, RAMP_TIME, TURNS_AT, UNKNOWN, end_of_motion
+from separatrix.cage.outcome import (
+    BY_WALL,
+    LEAST,
+    RAMP_START,
+    RAMP_TIME,
+    TURNS_AT,
+    UNKNOWN,
+    UNRESOLVED,
+    end_of_motion,
+)
 from separatrix.cage.pocket_force import pocket_depth, pocket_depth_in_plane
-from separatrix.cage.rows import *  # noqa: F403
+from separatrix.cage.rows import *
 from separatrix.cage.step import held_stage_end, hold, stage_end
 from separatrix.compiled import inlined, kernel, part
 
 OUTCOME, CAUSE, ENDED, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(8)
-EVIDENCE_COLUMNS = FIRST_EXTREME + EXTREMES_END - WATCHED
+EVIDENCE_COLUMNS = FIRST_EXTREME + of(EXTREMES_END - WATCHED)
+"""What is written of a run; after these the extremes of `rows`, in their order."""
+
+
+def extreme(row: int) -> int:
+    """Column of an extreme in the evidence of a run."""
+    return FIRST_EXTREME + of(row - WATCHED)
 
 
 @inlined
 def orbit_speeds(s, places, waves, turned, balls):
     """Speed of every ball's free orbit beyond that of the ball set, at its azimuth in space."""
+    power = turned[2 * LANES :]
     for j in range(balls):
-        q = places[j * BALL_ROWS * LANES : (j + 1) * BALL_ROWS * LANES]
+        q = places[j * BALL_ROWS : (j + 1) * BALL_ROWS]
         for l in range(LANES):
-            c, n = s[TURN_COSINE * LANES + l], s[TURN_SINE * LANES + l]
-            turned[l] = q[COSINE * LANES + l] * c - q[SINE * LANES + l] * n
-            turned[LANES + l] = q[SINE * LANES + l] * c + q[COSINE * LANES + l] * n
-            turned[2 * LANES + l], turned[3 * LANES + l] = turned[l], turned[LANES + l]
-            q[OWN_SPEED * LANES + l] = ZERO
-        for h in range(waves.size // (HARMONIC_NUMBERS * LANES)):
-            row = h * HARMONIC_NUMBERS * LANES
+            c, n = s[TURN_COSINE + l], s[TURN_SINE + l]
+            turned[l] = power[l] = q[COSINE + l] * c - q[SINE + l] * n
+            turned[LANES + l] = power[LANES + l] = q[SINE + l] * c + q[COSINE + l] * n
+            q[OWN_SPEED + l] = ZERO
+        for h in range(0, waves.size, HARMONIC_NUMBERS):
             for l in range(LANES):
-                c, n = turned[2 * LANES + l], turned[3 * LANES + l]
-                q[OWN_SPEED * LANES + l] += waves[row + l] * c + waves[row + LANES + l] * n
-                turned[2 * LANES + l] = c * turned[l] - n * turned[LANES + l]
-                turned[3 * LANES + l] = n * turned[l] + c * turned[LANES + l]
+                c, n = power[l], power[LANES + l]
+                q[OWN_SPEED + l] += waves[h + ORBIT_COSINE + l] * c + waves[h + ORBIT_SINE + l] * n
+                power[l] = c * turned[l] - n * turned[LANES + l]
+                power[LANES + l] = n * turned[l] + c * turned[LANES + l]
 
 
 @inlined
 def kinetic_energy(s, p, l, space):
     """Kinetic energy of the cage in the turning frame."""
-    e = p[MASS * LANES + l] * (s[VX * LANES + l] ** 2 + s[VY * LANES + l] ** 2)
-    e += s[VS * LANES + l] ** 2 / p[PER_TURNING * LANES + l]
+    e = p[MASS + l] * (s[VX + l] ** 2 + s[VY + l] ** 2) + s[VS + l] ** 2 / p[PER_TURNING + l]
     if space:
-        e += p[AXIAL_MASS * LANES + l] * s[VZ * LANES + l] ** 2
-        e += p[TRANSVERSE * LANES + l] * (s[WX * LANES + l] ** 2 + s[WY * LANES + l] ** 2)
+        e += p[AXIAL_MASS + l] * s[VZ + l] ** 2 + p[TRANSVERSE + l] * (s[WX + l] ** 2 + s[WY + l] ** 2)
     return HALF * e
 
 
 @part
-def spring_energy(s, a, p, places, l, balls, one, space, hertz):
-    """Energy in the pockets' springs of the run in lane l; `a` has its geometric centre."""
-    total, states = 0.0, SPACE_STATES if space else PLANE_STATES
+def stored_energy(s, a, p, places, l, balls, one, space, hertz):
+    """Kinetic energy of the cage, and that in the pockets' springs; `a` has its geometric centre."""
+    total, first = float(kinetic_energy(s, p, l, space)), SPACE_STATES if space else PLANE_STATES
     for j in range(balls):
-        b, q = (states + j * one) * LANES + l, j * BALL_ROWS * LANES + l
-        c, e = places[q + COSINE * LANES], places[q + SINE * LANES]
-        along = a[GY * LANES + l] * c - a[GX * LANES + l] * e + s[S * LANES + l] - s[b]
+        b, q = first + j * one + l, j * BALL_ROWS + l
+        c, n = places[q + COSINE], places[q + SINE]
+        along = a[GY + l] * c - a[GX + l] * n + s[S + l] - s[b + LEAD]
         if space:
-            across = s[Z * LANES + l] - p[RADIUS * LANES + l] * (a[GB * LANES + l] * c - a[GA * LANES + l] * e) - s[b + LANES]
-            depth = pocket_depth(along, across, places[q + AROUND * LANES], places[q + APART * LANES], p[BESIDE * LANES + l])[0]
+            across = s[Z + l] - p[RADIUS + l] * (a[GB + l] * c - a[GA + l] * n) - s[b + GROOVE]
+            depth = pocket_depth(along, across, places[q + AROUND], places[q + APART], p[BESIDE + l])[0]
         else:
-            depth = pocket_depth_in_plane(along, places[q + APART * LANES], p[LEAN_SINE * LANES + l], p[LEAN_COSINE * LANES + l])[0]
-        k = p[STIFFNESS * LANES + l]
+            depth = pocket_depth_in_plane(along, places[q + APART], p[LEAN_SINE + l], p[LEAN_COSINE + l])[0]
+        k = p[STIFFNESS + l]
         total += 0.4 * k * depth * depth * math.sqrt(depth) if hertz else 0.5 * k * depth * depth
     return total
 
 
 @inlined
-def watch(s, d, a, p, places, w, balls, i, space):
+def watch(s, d, a, p, places, w, balls, step, space):
     """Add what is watched of this moment to the sums of the look and the extremes of the run."""
     for l in range(LANES):
-        x, y, gvx, gvy = a[GX * LANES + l], a[GY * LANES + l], a[GVX * LANES + l], a[GVY * LANES + l]
-        vx, vy, push = s[VX * LANES + l], s[VY * LANES + l], a[LAND_N * LANES + l]
+        x, y, gvx, gvy = a[GX + l], a[GY + l], a[GVX + l], a[GVY + l]
+        vx, vy, push = s[VX + l], s[VY + l], a[LAND_N + l]
         square = x * x + y * y
         r = math.sqrt(square)
-        w[ENERGY * LANES + l] += kinetic_energy(s, p, l, space)
-        w[OFFSET_MEAN * LANES + l] += r
-        w[OFFSET_SQUARE * LANES + l] += square
-        w[SWEPT * LANES + l] += x * gvy - y * gvx
-        w[CURL * LANES + l] += vx * d[VY * LANES + l] - vy * d[VX * LANES + l]
-        w[SPEED_SQUARE * LANES + l] += vx * vx + vy * vy
-        w[PRESSED * LANES + l] += push
-        w[HEATED * LANES + l] += a[LAND_HEAT * LANES + l]
-        w[MEAN_X * LANES + l] += x
-        w[MEAN_Y * LANES + l] += y
+        w[ENERGY + l] += kinetic_energy(s, p, l, space)
+        w[OFFSET_MEAN + l] += r
+        w[OFFSET_SQUARE + l] += square
+        w[SWEPT + l] += x * gvy - y * gvx
+        w[CURL + l] += vx * d[VY + l] - vy * d[VX + l]
+        w[SPEED_SQUARE + l] += vx * vx + vy * vy
+        w[PRESSED + l] += push
+        w[HEATED + l] += a[LAND_HEAT + l]
+        w[MEAN_X + l] += x
+        w[MEAN_Y + l] += y
         on = ONE if push > ZERO else ZERO
-        w[LAND_STRIKES * LANES + l] += max(on - w[LAND_TOUCHED * LANES + l], ZERO)
-        w[LAND_TOUCHED * LANES + l] = on
-        w[PEAK_LAND * LANES + l] = max(w[PEAK_LAND * LANES + l], push)
-        w[PEAK_OFFSET * LANES + l] = max(w[PEAK_OFFSET * LANES + l], r)
+        w[LAND_STRIKES + l] += max(on - w[LAND_TOUCHED + l], ZERO)
+        w[LAND_TOUCHED + l] = on
+        w[PEAK_LAND + l] = max(w[PEAK_LAND + l], push)
+        w[PEAK_OFFSET + l] = max(w[PEAK_OFFSET + l], r)
         if space:
-            ta, tb, z = a[GA * LANES + l], a[GB * LANES + l], s[Z * LANES + l]
+            ta, tb, z = a[GA + l], a[GB + l], s[Z + l]
             tilt2 = ta * ta + tb * tb
             tilt = math.sqrt(tilt2)
-            w[TILT * LANES + l] += tilt
-            w[TILT_SQUARE * LANES + l] += tilt2
-            w[CONE * LANES + l] += ta * a[GWB * LANES + l] - tb * a[GWA * LANES + l]
-            w[LEAN_CROSS * LANES + l] -= x * ta + y * tb
-            w[LEAN_DOT * LANES + l] += x * tb - y * ta
-            w[AXIAL * LANES + l] += z
-            w[AXIAL_SQUARE * LANES + l] += z * z
-            w[PEAK_TILT * LANES + l] = max(w[PEAK_TILT * LANES + l], tilt)
-            w[AXIAL_LOW * LANES + l] = min(w[AXIAL_LOW * LANES + l], z)
-            w[AXIAL_HIGH * LANES + l] = max(w[AXIAL_HIGH * LANES + l], z)
+            w[TILT + l] += tilt
+            w[TILT_SQUARE + l] += tilt2
+            w[CONE + l] += ta * a[GWB + l] - tb * a[GWA + l]
+            w[LEAN_CROSS + l] -= x * ta + y * tb
+            w[LEAN_DOT + l] += x * tb - y * ta
+            w[AXIAL + l] += z
+            w[AXIAL_SQUARE + l] += z * z
+            w[PEAK_TILT + l] = max(w[PEAK_TILT + l], tilt)
+            w[AXIAL_LOW + l] = min(w[AXIAL_LOW + l], z)
+            w[AXIAL_HIGH + l] = max(w[AXIAL_HIGH + l], z)
     for j in range(balls):
-        q, number = places[j * BALL_ROWS * LANES : (j + 1) * BALL_ROWS * LANES], np.float32(j + 1)
+        q, number = places[j * BALL_ROWS : (j + 1) * BALL_ROWS], np.float32(j + 1)
         for l in range(LANES):
-            push = q[FORCE * LANES + l]
+            push = q[FORCE + l]
             on = ONE if push > ZERO else ZERO
-            strike = max(on - q[TOUCHING * LANES + l], ZERO)
-            q[TOUCHING * LANES + l] = on
-            q[HITS * LANES + l] += strike
-            q[RUBBED * LANES + l] += q[HEAT * LANES + l]
-            w[STRIKES * LANES + l] += strike
-            w[PEAK_FORCE * LANES + l] = max(w[PEAK_FORCE * LANES + l], push)
-            out = a[GX * LANES + l] * q[COSINE * LANES + l] + a[GY * LANES + l] * q[SINE * LANES + l]
-            beyond = max(out - p[MARGIN_IN * LANES + l], -out - p[MARGIN_OUT * LANES + l])
-            was, when = w[LEFT_BALL * LANES + l], w[LEFT_STEP * LANES + l]
+            strike = max(on - q[TOUCHING + l], ZERO)
+            q[TOUCHING + l] = on
+            q[HITS + l] += strike
+            q[RUBBED + l] += q[HEAT + l]
+            w[STRIKES + l] += strike
+            w[PEAK_FORCE + l] = max(w[PEAK_FORCE + l], push)
+            out = a[GX + l] * q[COSINE + l] + a[GY + l] * q[SINE + l]
+            beyond = max(out - p[MARGIN_IN + l], -out - p[MARGIN_OUT + l])
+            was, when = w[LEFT_BALL + l], w[LEFT_STEP + l]
             is_first = (beyond > ZERO) & (push > ZERO) & (was == ZERO)
-            w[LEFT_BALL * LANES + l] = number if is_first else was
-            w[LEFT_STEP * LANES + l] = i if is_first else when
+            w[LEFT_BALL + l] = number if is_first else was
+            w[LEFT_STEP + l] = step if is_first else when
 
 
 @part
@@ -138,125 +150,58 @@ def frame_angle(time, limits):
     return limits[TURNS_AT] * 0.5 * (start + share) * time, share
 
 
-@cache
-def queue(ball: int, space: bool, leans: bool = False, hertz: bool = False, lobe_number: int = 0, real: type = np.float32) -> Callable[..., None]:
-    """Compiled queue of runs of a cage among balls of this level, in the plane or in space.
-
-    It closes over plain numbers only, so that its code can be kept.
-    """
-    states, one = cage_states(space=space), ball_states(ball, space=space)
-    speed_row = 2 if space else 1
-
-    def run_queue(start, numbers, places_of, strips_of, waves_of, limits, steps, looks, evidence, hits_of, heat_of, record, every, stop):  # noqa: E501
-        balls = hits_of.shape[1]
-        size = (states + one * balls) * LANES
-        s, t, d, q = np.zeros(size, real), np.zeros(size, real), np.zeros(size, real), np.zeros(size, real)
-        a, w = np.zeros(SUMS * LANES, real), np.zeros(EXTREMES_END * LANES, real)
-        p = np.ones(NUMBERS * LANES, real)
-        places, strips = np.zeros(balls * BALL_ROWS * LANES, real), np.zeros(strips_of.shape[1] * LANES, real)
-        waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
-        before, first_rate, middle_rate = np.zeros(balls * LANES, real), np.zeros(balls * LANES, real), np.zeros(balls * LANES, real)
-        h = np.zeros(size, real)
-        run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
-        next_run = live = row = 0
-        while stop[0] == 0:
-            for l in range(LANES):
-                if look[l] < 0:  # a lane that is done takes the next run
-                    run[l], look[l] = -1, 0
-                    s[l::LANES] = ZERO
-                    w[l::LANES] = ZERO
-                    places[l::LANES] = ZERO
-                    if next_run < start.shape[0]:
-                        run[l], next_run, live = next_run, next_run + 1, live + 1
-                        take(start[run[l]], s, l)
-                        take(numbers[run[l]], p, l)
-                        h[l::LANES] = p[STEP * LANES + l]
-                        for j in range(balls):
-                            for i in range(BALL_NUMBERS):
-                                places[(j * BALL_ROWS + i) * LANES + l] = places_of[run[l], j * BALL_NUMBERS + i]
-                        take(strips_of[run[l]], strips, l)
-                        take(waves_of[run[l]], waves, l)
-                        w[AXIAL_LOW * LANES + l] = w[AXIAL_HIGH * LANES + l] = s[Z * LANES + l] if space else ZERO
-                n = run[l]
-                if n >= 0:
-                    time = look[l] * steps * numbers[n, STEP]
-                    angle, share = frame_angle(time, limits[n])
-                    s[TURN_COSINE * LANES + l], s[TURN_SINE * LANES + l] = math.cos(angle), math.sin(angle)
-                    s[RAMP * LANES + l] = share
-                else:
-                    s[RAMP * LANES + l] = ONE
-                for work in range(POCKET_WORK, FRAME_WORK + 1):
-                    s[work * LANES + l] = ZERO
-            if live == 0:
-                return
-            w[: WATCHED * LANES] = ZERO
-            t[:] = s
-            for i in range(steps):
-                for stage in range(4):
-                    if waves.size > 0:
-                        orbit_speeds(t, places, waves, turned, balls)
-                    rates(t, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
-                    if stage == 0:
-                        if i == 0:
-                            for l in range(LANES):
-                                had[l] = kinetic_energy(s, p, l, space) + spring_energy(s, a, p, places, l, balls, one, space, hertz)
-                        watch(s, d, a, p, places, w, balls, np.float32(i), space)
-                        if row < record.shape[0] and (look[0] * steps + i) % every == 0:
-                            write_row(record[row], (look[0] * steps + i) * numbers[0, STEP], s, a, places, balls)
-                            row += 1
-                    if ball == ONE_STATE and stage == 0:
-                        hold(s, before, (states + speed_row) * LANES, one * LANES, balls)
-                    stage_end(stage, s, t, d, q, h)
-                    if ball == ONE_STATE:
-                        held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, (states + speed_row) * LANES, one * LANES, balls)
-            place(t, a, p, space)
-            for l in range(LANES):
-                n = run[l]
-                if n < 0:
-                    continue
-                found, at = looks[n, look[l]], evidence[n]
-                for column in range(WATCHED):
-                    found[column] = w[column * LANES + l] / steps
-                step = numbers[n, STEP]
-                found[STRIKES] /= step
-                found[WORK_POCKET], found[WORK_LAND] = s[POCKET_WORK * LANES + l], s[LAND_WORK * LANES + l]
-                found[WORK_PRESS], found[WORK_BALL] = s[LAND_PRESS_WORK * LANES + l], s[BALL_WORK * LANES + l]
-                found[WORK_FRAME] = s[FRAME_WORK * LANES + l]
-                works = done = 0.0
-                for work in range(WORK_POCKET, WORK_FRAME + 1):
-                    works += found[work]
-                    done += abs(found[work])
-                kept = kinetic_energy(s, p, l, space) + spring_energy(s, a, p, places, l, balls, one, space, hertz) - had[l]
-                at[OPEN] += abs(kept - works)
-                at[DONE] += done
-                touched = w[PEAK_FORCE * LANES + l] + w[PEAK_LAND * LANES + l] > ZERO
-                for e in range(EXTREMES_END - WATCHED):
-                    at[FIRST_EXTREME + e] = w[(WATCHED + e) * LANES + l]
-                for j in range(balls):
-                    pocket = j * BALL_ROWS * LANES + l
-                    hits_of[n, j] += places[pocket + HITS * LANES]
-                    heat_of[n, j] += places[pocket + RUBBED * LANES] * step
-                    places[pocket + HITS * LANES] = places[pocket + RUBBED * LANES] = ZERO
-                look[l] += 1
-                if at[OUTCOME] == UNKNOWN:
-                    at[OUTCOME], at[CAUSE] = end_of_motion(looks[n], look[l] - 1, touched, limits[n])
-                    at[JUDGED] = look[l]
-                    if w[LEFT_BALL * LANES + l] > ZERO:
-                        at[OUTCOME], at[CAUSE] = 3, 1
-                        at[LEFT_AT] = ((look[l] - 1) * steps + w[LEFT_STEP * LANES + l]) * step
-                at[ENDED] = look[l]
-                is_over = look[l] >= limits[n, LEAST] or not math.isfinite(found[ENERGY])
-                if at[OUTCOME] != UNKNOWN and is_over:
-                    look[l], live = -1, live - 1
-
-    return kernel(run_queue)
+@part
+def take(numbers, into, l):
+    """Put the numbers of a run into its lane."""
+    for i in range(numbers.size):
+        into[i * LANES + l] = numbers[i]
 
 
 @part
-def take(numbers, into, lane):
-    """Put the numbers of a run into its lane."""
-    for i in range(numbers.size):
-        into[i * LANES + lane] = numbers[i]
+def take_places(numbers, places, l, balls):
+    """Put the numbers of the balls of a run into its lane, and forget what was kept of the last one."""
+    each = BALL_NUMBERS // LANES
+    places[l::LANES] = ZERO
+    for j in range(balls):
+        for i in range(each):
+            places[j * BALL_ROWS + i * LANES + l] = numbers[j * each + i]
+
+
+@part
+def begin_look(s, limits, time, l):
+    """Set the frame's angle and speed from the clock, which single precision would lose; no works yet."""
+    angle, share = frame_angle(time, limits)
+    s[TURN_COSINE + l], s[TURN_SINE + l], s[RAMP + l] = math.cos(angle), math.sin(angle), share
+    for work in range(POCKET_WORK, FRAME_WORK + LANES, LANES):
+        s[work + l] = ZERO
+
+
+@part
+def end_look(found, at, w, s, kept, steps, step, l):
+    """Write means, works and extremes of a look, and what the ledger of energy leaves open."""
+    for column in range(WATCHED // LANES):
+        found[column] = w[column * LANES + l] / steps
+    found[STRIKES // LANES] /= step
+    works = done = 0.0
+    for i in range((FRAME_WORK - POCKET_WORK) // LANES + 1):
+        work = s[POCKET_WORK + i * LANES + l]
+        found[WORK_POCKET // LANES + i] = work
+        works += work
+        done += abs(work)
+    at[OPEN] += abs(kept - works)
+    at[DONE] += done
+    for i in range((EXTREMES_END - WATCHED) // LANES):
+        at[FIRST_EXTREME + i] = w[WATCHED + i * LANES + l]
+
+
+@part
+def count_impacts(hits, heat, places, step, l):
+    """Add impacts and heat of every pocket since the last look."""
+    for j in range(hits.size):
+        q = j * BALL_ROWS + l
+        hits[j] += places[q + HITS]
+        heat[j] += places[q + RUBBED] * step
+        places[q + HITS] = places[q + RUBBED] = ZERO
 
 
 @part
@@ -264,13 +209,126 @@ def write_row(row, time, s, a, places, balls):
     """Time, state, geometric centre and axis, forces of the pockets and of the land, of the first lane."""
     row[0] = time
     n = 1
-    for i in range(s.size // LANES):
-        row[n] = s[i * LANES]
+    for e in range(0, s.size, LANES):
+        row[n] = s[e]
         n += 1
-    for i in range(GX, GWB + 1):
-        row[n] = a[i * LANES]
+    for e in range(GX, GWB + LANES, LANES):
+        row[n] = a[e]
         n += 1
     for j in range(balls):
-        row[n] = places[(j * BALL_ROWS + FORCE) * LANES]
+        row[n] = places[j * BALL_ROWS + FORCE]
         n += 1
-    row[n] = a[LAND_N * LANES]
+    row[n] = a[LAND_N]
+
+
+@cache
+def queue(
+    ball: int,
+    space: bool,
+    leans: bool = False,
+    hertz: bool = False,
+    lobe_number: int = 0,
+    real: type = np.float32,
+    equations: Callable[..., None] | None = None,
+) -> Callable[..., None]:
+    """Compiled queue of runs of a cage among balls of this level, in the plane or in space.
+
+    It closes over plain numbers only, so that its code can be kept; other `equations` than those of `motion`
+    are compiled each time. `start` ... `limits`: a row a run (`numbers.Numbers`, `disturbance`); `looks`,
+    `evidence`, `hits_of`, `heat_of`: what it writes, a row a run; `record`: rows of the first run, one
+    `every` so many steps; `stop`: a flag.
+    """
+    states, one = LANES * cage_states(space=space), LANES * ball_states(ball, space=space)
+    speed, moves = states + (2 if space else 1) * LANES, rates if equations is None else equations
+
+    def run_queue(
+        start, numbers, places_of, strips_of, waves_of, limits, steps, looks, evidence, hits_of, heat_of,
+        record, every, stop,
+    ):  # fmt: skip
+        balls = hits_of.shape[1]
+        size, each = states + one * balls, balls * LANES
+        s, t, d, q, h = (
+            np.zeros(size, real),
+            np.zeros(size, real),
+            np.zeros(size, real),
+            np.zeros(size, real),
+            np.zeros(size, real),
+        )
+        a, w, p = np.zeros(SUMS, real), np.zeros(EXTREMES_END, real), np.ones(NUMBERS, real)
+        places, strips = np.zeros(balls * BALL_ROWS, real), np.zeros(strips_of.shape[1] * LANES, real)
+        waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
+        before, first_rate, middle_rate = np.zeros(each, real), np.zeros(each, real), np.zeros(each, real)
+        run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
+        next_run = live = row = 0
+        s[RAMP : RAMP + LANES] = ONE
+        while stop[0] == 0:
+            for l in range(LANES):
+                if look[l] < 0:  # a lane that is done takes the next run
+                    run[l], look[l], s[l::LANES], w[l::LANES] = -1, 0, ZERO, ZERO
+                    s[RAMP + l] = ONE
+                    if next_run < start.shape[0]:
+                        n = run[l] = next_run
+                        next_run, live = next_run + 1, live + 1
+                        take(start[n], s, l)
+                        take(numbers[n], p, l)
+                        take(strips_of[n], strips, l)
+                        take(waves_of[n], waves, l)
+                        take_places(places_of[n], places, l, balls)
+                        h[l::LANES] = p[STEP + l]
+                        if space:
+                            w[AXIAL_LOW + l] = w[AXIAL_HIGH + l] = s[Z + l]
+                if run[l] >= 0:
+                    n = run[l]
+                    begin_look(s, limits[n], look[l] * steps * numbers[n, STEP // LANES], l)
+            if live == 0:
+                return
+            w[:WATCHED] = ZERO
+            t[:] = s
+            for i in range(steps):
+                for stage in range(4):
+                    if waves.size > 0:
+                        orbit_speeds(t, places, waves, turned, balls)
+                    moves(t, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
+                    if stage == 0:
+                        if i == 0:
+                            for l in range(LANES):
+                                had[l] = stored_energy(s, a, p, places, l, balls, one, space, hertz)
+                        watch(s, d, a, p, places, w, balls, np.float32(i), space)
+                        if row < record.shape[0] and (look[0] * steps + i) % every == 0:
+                            write_row(
+                                record[row],
+                                (look[0] * steps + i) * numbers[0, STEP // LANES],
+                                s,
+                                a,
+                                places,
+                                balls,
+                            )
+                            row += 1
+                        if ball == ONE_STATE:
+                            hold(s, before, speed, one, balls)
+                    stage_end(stage, s, t, d, q, h)
+                    if ball == ONE_STATE:
+                        held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, speed, one, balls)
+            place(t, a, p, space)
+            for l in range(LANES):
+                n = run[l]
+                if n < 0:
+                    continue
+                found, at, step = looks[n, look[l]], evidence[n], numbers[n, STEP // LANES]
+                kept = stored_energy(s, a, p, places, l, balls, one, space, hertz) - had[l]
+                end_look(found, at, w, s, kept, steps, step, l)
+                count_impacts(hits_of[n], heat_of[n], places, step, l)
+                touched = w[PEAK_FORCE + l] + w[PEAK_LAND + l] > ZERO
+                if at[OUTCOME] == UNKNOWN:
+                    at[OUTCOME], at[CAUSE] = end_of_motion(looks[n], look[l], touched, limits[n])
+                    at[JUDGED] = look[l] + 1
+                    if w[LEFT_BALL + l] > ZERO:
+                        at[OUTCOME], at[CAUSE] = UNRESOLVED, BY_WALL
+                        at[LEFT_AT] = (look[l] * steps + w[LEFT_STEP + l]) * step
+                look[l] += 1
+                at[ENDED] = look[l]
+                is_finite = math.isfinite(found[ENERGY // LANES])
+                if at[OUTCOME] != UNKNOWN and (look[l] >= limits[n, LEAST] or not is_finite):
+                    look[l], live = -1, live - 1
+
+    return kernel(run_queue) if equations is None else part(run_queue)

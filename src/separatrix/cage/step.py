@@ -1,8 +1,8 @@
 r"""One step of sixteen runs by classical Runge-Kutta, and the length of a step.
 
-The speed of a ball of one state is stiff in a slow bearing: there :math:`C_f/m_e` is far above every other rate. Its
-linear part is taken exactly (exponential time differencing of order 4, Cox and Matthews 2002), which is classical
-Runge-Kutta where that rate is small.
+The speed of a ball of one state is stiff in a slow bearing: there :math:`C_f/m_e` is far above every other
+rate. Its linear part is taken exactly (exponential time differencing of order 4, Cox and Matthews 2002),
+which is classical Runge-Kutta where that rate is small.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from separatrix.cage.closed_forms import moving_mass, rebound_damping
-from separatrix.cage.rows import *  # noqa: F403
+from separatrix.cage.rows import *
 from separatrix.cage_design import Guidance
 from separatrix.compiled import inlined
 
@@ -26,7 +26,7 @@ SIXTH = np.float32(1.0 / 6.0)
 
 @inlined
 def stage_end(stage, s, t, d, q, h):
-    """State `t` at which the next stage is evaluated, from the rates `d` of this one; after the last, `s` and `t`.
+    """State `t` of the next stage, from the rates `d` of this one; after the last, `s` and `t`.
 
     `h`: length of the step, as often as there are numbers in the state, so that one loop does.
     """
@@ -47,7 +47,7 @@ def hold(s, before, first, size, balls):
     """Keep the speeds of balls of one state from before the step."""
     for j in range(balls):
         for l in range(LANES):
-            before[j * LANES + l] = s[first + j * size + l]
+            before[j + l] = s[first + j * size + l]
 
 
 @inlined
@@ -58,8 +58,8 @@ def held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, first, si
     """
     for j in range(balls):
         for l in range(LANES):
-            e, i = first + j * size + l, j * LANES + l
-            half, gain, v, rate = p[DECAY_HALF * LANES + l], p[GAIN_HALF * LANES + l], before[i], d[e]
+            e, i = first + j * size + l, j + l
+            half, gain, v, rate = p[DECAY_HALF + l], p[GAIN_HALF + l], before[i], d[e]
             if stage == 0:
                 first_rate[i] = rate
                 t[e] = half * v + gain * rate
@@ -70,13 +70,13 @@ def held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, first, si
                 middle_rate[i] += rate
                 t[e] = half * (half * v + gain * first_rate[i]) + gain * (TWO * rate - first_rate[i])
             else:
-                s[e] = p[DECAY * LANES + l] * v + p[GAIN_FIRST * LANES + l] * first_rate[i]
-                s[e] += p[GAIN_MIDDLE * LANES + l] * middle_rate[i] + p[GAIN_LAST * LANES + l] * rate
+                s[e] = p[DECAY + l] * v + p[GAIN_FIRST + l] * first_rate[i]
+                s[e] += p[GAIN_MIDDLE + l] * middle_rate[i] + p[GAIN_LAST + l] * rate
                 t[e] = s[e]
 
 
 def exact_decay(rate: float, step: float) -> tuple[float, float, float, float, float, float]:
-    """Decay over half a step with its gain, over a step, and the gains of first, middle and last rate [-], [s]."""
+    """Decay over half a step with its gain, over a step; gains of first, middle and last rate [-], [s]."""
     half = -0.5 * rate * step
     f1, f2, f3 = (_phi(n, 2.0 * half) for n in (1, 2, 3))
     gains = f1 - 3.0 * f2 + 4.0 * f3, 2.0 * f2 - 4.0 * f3, 4.0 * f3 - f2
@@ -95,15 +95,17 @@ def _phi(n: int, z: float) -> float:
 
 LONGEST: Second = 20e-6
 CONTACT, SWING, DECAYS = 0.45, 0.65, 1.2
-"""Radians of a contact of cage and ball or land, and of a ball between pocket and races, and time constants of a
-relaxation, that a step may have at most: shares and margins do not move at an eighth of it (docs/theory/cage.md)."""
+"""Radians of a contact of cage and ball or land, and of a ball between pocket and races, and time constants
+of a relaxation, that a step may have at most: shares and margins do not move at an eighth of it
+(docs/theory/cage.md)."""
 
 FREE_RATE = 2.5
-"""Time constants of the fastest motion of a free ball's spin in a step; 2.78 is where the method is no longer stable."""
+"""Time constants of the fastest motion of a free ball's spin in a step; 2.78 is where the method is no longer
+stable."""
 
 
 def step_length(cage: MovingCage, kick: MetrePerSecond) -> Second:
-    """Length of the step of a cage: the least of 20 us and shares of its shortest contact, relaxation and period."""
+    """Length of the step: the least of 20 us and shares of the shortest contact, relaxation, period."""
     M, k = cage.mass, pocket_stiffness(cage, kick)
     turning = cage.pitch_radius**2 / cage.moment_of_inertia
     grips = cage.half_play == 0.0
@@ -112,7 +114,10 @@ def step_length(cage: MovingCage, kick: MetrePerSecond) -> Second:
         levers += cage.pitch_radius**2 / cage.transverse * (cage.ball_count / 2.0 if grips else 1.0)
     steps = [LONGEST, CONTACT / math.sqrt(k * levers)]
     if cage.free_ball is not None:
-        steps += [FREE_RATE / cage.free_ball.fastest_rate, SWING / math.sqrt(k * (levers + 1.0 / cage.free_ball.mass))]
+        steps += [
+            FREE_RATE / cage.free_ball.fastest_rate,
+            SWING / math.sqrt(k * (levers + 1.0 / cage.free_ball.mass)),
+        ]
         steps[-2] *= cage.ramp_start if cage.ramp_time > 0.0 else 1.0
     elif cage.traction is not None:
         steps.append(SWING / math.sqrt(k * (levers + 1.0 / cage.traction.mass)))
@@ -132,10 +137,13 @@ def step_length(cage: MovingCage, kick: MetrePerSecond) -> Second:
 
 
 def pocket_stiffness(cage: MovingCage, kick: MetrePerSecond) -> NewtonPerMetre:
-    """Stiffness of a pocket as deep as in a strong impact: four times the energy of the initial disturbance."""
+    """Stiffness of a pocket as deep as in a strong impact, of four times the energy of the start."""
     if cage.hertz_coefficient is None:
         return cage.ball_cage_stiffness
-    K, energy = cage.hertz_coefficient, 2.0 * moving_mass(cage) * max(kick, abs(cage.cage_speed) * cage.half_play) ** 2
+    K, energy = (
+        cage.hertz_coefficient,
+        2.0 * moving_mass(cage) * max(kick, abs(cage.cage_speed) * cage.half_play) ** 2,
+    )
     return 1.5 * K * math.sqrt((2.5 * energy / K) ** 0.4)
 
 

@@ -17,7 +17,6 @@ from separatrix.figures import (
     ranking,
     sensitivity,
     simulation,
-    space,
     stability,
 )
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
@@ -31,7 +30,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "mobility": chain.mobility,
     "stability": lambda data: iter([("stability-curve", stability.stability(data))]),
     "map": lambda data: iter([("stability-map", map.stability_map(data))]),
-    "simulate": lambda data: (space if space.is_in_space(data) else simulation).figures(data),
+    "simulate": simulation.figures,
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
     "sweep": envelope.figures,
@@ -66,10 +65,7 @@ def draw(
         raise InputError(verb, "needs two datasets" if other is None else "has one dataset, not two")
     with journal():
         if other is not None:
-            pair = [
-                (literal_texts(space.in_plane(one)), name)
-                for one, name in zip((data, other), names, strict=True)
-            ]
+            pair = [(literal_texts(one), name) for one, name in zip((data, other), names, strict=True)]
             titles = [literal(name) or str(one.attrs.get("title", "")) for one, name in pair]
             together = stability.comparison if "restitution_factor" in data.sizes else simulation.comparison
             yield "comparison", settled(together(pair[0][0], pair[1][0], titles))

@@ -2,41 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from PIL import Image
 
 from separatrix.errors import InputError
-from separatrix.figures import space_film
 from separatrix.figures.motion import (
     AROUND,
-    Part,
-    filmed,
     frame_moments,
     is_logarithmic,
     land_boundary,
     milliseconds,
-    orbit_reach,
     pocket_boundary,
     ring,
     shown_parts,
     smooth_path,
 )
-from separatrix.figures.scene import ROUND, Scene, scene, turned
+from separatrix.figures.scene import BAR_POINTS, Scene, scene, turned
 from separatrix.figures.simulation import draw_energy
-from separatrix.figures.space import is_in_space
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, heading, journal, literal_texts
 from separatrix.units import Array, format_number
+
+Part = tuple[list[Artist], Callable[[int], None]]
+"""What moves in a picture, and what puts it where it is in a frame."""
 
 KINDS = ("gif", "mp4")
 A_SECOND = 24
@@ -45,16 +45,16 @@ A_SECOND = 24
 SIZE, DOTS = (7.6, 4.8), 100
 """Inches, and dots an inch: both sides even, as a video needs them."""
 
-BAR, BALL, SHADE = "#9fc7e3", "#e4e4e4", "#d8d8d8"
-DRAWN = (BLACK, GREY, BLUE, BAR, BALL, SKY, VERMILION)
+SHADE = "#d8d8d8"
+DRAWN = (BLACK, GREY, BLUE, SKY, VERMILION)
 SHADES = 16
 """What is drawn with, for the colours of a GIF, and steps from each of these to white."""
 
-ARROW, INSIDE = 3.2, 0.66
-"""Longest arrow over the radius of a ball; half the side of the path's picture over the inner radius."""
-
 TAIL, MOST_TAIL = 8, 4000
-"""Frames and most samples for which the path stays."""
+"""Frames and most samples for which the paths stay."""
+
+DISC = ring(1.0, np.linspace(0.0, 2.0 * np.pi, 29)[:-1])
+LIGHT = np.array([0.3, -0.5])
 
 
 def animate(
@@ -87,11 +87,7 @@ def animate(
     data, moments = literal_texts(data), frame_moments(data)
 
     def film() -> Iterator[Image.Image]:
-        if is_in_space(data):
-            images = space_film.pictures(data, moments, fixed=fixed)
-        else:
-            images = pictures(data, scene(data, moments, fixed=fixed), moments)
-        for done, image in enumerate(images, start=1):
+        for done, image in enumerate(pictures(data, moments, fixed=fixed), start=1):
             yield image
             if progress is not None:
                 progress(done, moments.size)
@@ -158,56 +154,80 @@ def _write_mp4(encoder: ModuleType, film: Iterator[Image.Image], part: Path) -> 
         raise InputError("The MP4", "could not be encoded", cure="Take a GIF.") from error
 
 
-def pictures(data: xr.Dataset, at: Scene, moments: Array) -> Iterator[Image.Image]:
-    """Return the picture of each moment."""
+def pictures(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Iterator[Image.Image]:
+    """Return the picture of each moment: the cage, path of its centre and lean of its axis, energy."""
+    at = scene(data, moments, fixed=fixed)
     figure = Figure(figsize=SIZE, dpi=DOTS)
-    (width, height), (left, low, wide, high) = SIZE, (0.0, 0.0, 0.6, 0.9)
-    half = INSIDE * (at.radius - at.half_width) * 0.5 * min(wide * width, high * height) / at.reach
-    x, y = (left + 0.5 * wide) * width, (low + 0.5 * high) * height
-    middle = (x - half) / width, (y - half) / height, 2 * half / width, 2 * half / height
-    clock = figure.text(0.615, 0.895, "", fontsize=10, va="top")
-    times = milliseconds(data)[moments]
-    parts: tuple[Part, ...] = (
-        _cage(figure.add_axes((left, low, wide, high)), at),
-        _path(figure.add_axes(middle), data, at, moments),
-        _energy(figure.add_axes((0.69, 0.11, 0.29, 0.32)), data, moments),
+    axes = figure.add_axes((0.0, 0.0, 0.64, 0.9))
+    reach = 1.28 * (at.radius + at.ball)
+    axes.set(xlim=(-reach, reach), ylim=(-0.9 * reach, 0.9 * reach), aspect="equal")
+    axes.set_axis_off()
+    body, faces = PolyCollection([]), at.faces()
+    axes.add_collection(body)
+    clock = figure.text(0.65, 0.895, "", fontsize=10, va="top")
+    times, land = milliseconds(data)[moments], land_boundary(data)
+    parts: list[Part] = [
+        ([body], lambda frame: _pose(body, at, faces, frame)),
         ([clock], lambda frame: clock.set_text(f"{times[frame]:.3f} ms")),
-    )
+        _energy(figure.add_axes((0.73, 0.1, 0.255, 0.16)), data, moments),
+    ]
+    pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
+    boundaries = [(ring(one, AROUND), look) for one, look in ((land, {"lw": 1.2}), (pockets, {"lw": 0.6})) if one is not None]
+    paths = [("position", "velocity", "centre [mm]", boundaries)]
+    paths += [("lean", "lean_rate", "lean [mrad]", [])] if at.in_space else []
+    for place, (name, rate, label, limits) in enumerate(paths):
+        box = (0.72 + 0.15 * place, 0.36, 0.115, 0.19) if at.in_space else (0.74, 0.35, 0.2, 0.25)
+        samples = [np.asarray(data[one].values, dtype=float) for one in ("time", name, rate)]
+        parts.append(_path(figure.add_axes(box), samples, label, limits, at, moments))
     figure.text(0.01, 0.985, "\n".join(heading(data)), fontsize=6.5, va="top", linespacing=1.4)
-    _explain(figure, data, at, moments)
+    figure.text(0.65, 0.84, "\n".join(notes(data, at, moments)), fontsize=6.5, va="top", linespacing=1.4)
     return filmed(figure, parts, moments.size)
 
 
-def _explain(figure: Figure, data: xr.Dataset, at: Scene, moments: Array) -> None:
-    pocket, land = (format_number(float(np.abs(one).max()), 3) for one in (at.force, at.land_force))
-    arrow: Look = {"marker": r"$\rightarrow$", "ls": "", "ms": 9}
-    named = [(Line2D([], [], color=VERMILION, **arrow), f"force of a pocket on the cage, up to {pocket} N")]
-    if np.isfinite(at.land):
-        named.append((Line2D([], [], color=BLACK, **arrow), f"force of the land, up to {land} N"))
-        named.append((Line2D([], [], color=GREY, lw=1.6), "land"))
-    look: Look = {"bbox_to_anchor": (0.6, 0.83), "fontsize": 6.5, "handlelength": 1.6, "labelspacing": 0.25}
-    figure.legend(*zip(*named, strict=True), loc="upper left", **look)
-    words = "\n".join(notes(data, at, moments))
-    figure.text(0.615, 0.66, words, fontsize=6.5, color=BLACK, va="top", linespacing=1.4)
+def filmed(figure: Figure, parts: Sequence[Part], count: int) -> Iterator[Image.Image]:
+    """Yield frames of a figure; what does not move is drawn once."""
+    canvas: Any = FigureCanvasAgg(figure)
+    for artist in (artist for moving, _ in parts for artist in moving):
+        artist.set_animated(True)
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    for frame in range(count):
+        canvas.restore_region(still)
+        for moving, move in parts:
+            move(frame)
+            for artist in moving:
+                figure.draw_artist(artist)
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
 
-def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
-    """Return the scales and the times of the frames as lines."""
-    steps = np.diff(milliseconds(data)[moments])
-    pace = f"{1e3 * np.median(steps):.3g} \N{MICRO SIGN}s a frame" if steps.size else "one frame"
-    spans = " and ".join(f"{first:.3g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
-    times = "to scale" if at.enlarged == 1.0 else f"enlarged {format_number(at.enlarged, 2)} times"
-    return [
-        f"Displacements and clearances {times};",
-        "overlaps are contact deformation.",
-        "Arrow length: square root of force.",
-        "Fixed frame." if at.frame.any() else "Frame of the ball set.",
-        "Logarithmic time." if is_logarithmic(data) else f"Shown: {spans}, {pace}.",
-    ]
+def _path(
+    axes: Axes, samples: Sequence[Array], label: str, limits: Sequence[tuple[Array, Look]], at: Scene, moments: Array
+) -> Part:
+    """Draw boundaries, the last frames of a path and its end, in mm or mrad; they turn in a fixed frame."""
+    far = [float(np.hypot(*one.T)[np.isfinite(one[:, 0])].max(initial=0.0)) for one in (samples[1], *(b for b, _ in limits))]
+    most = 1.15e3 * (max(one for one in far if one <= 3.0 * (far[0] or 1.0)) or 1e-9)
+    axes.set(xlim=(-most, most), ylim=(-most, most), aspect="equal")
+    axes.tick_params(labelsize=5.5, pad=1.5, length=2.0)
+    axes.set_title(label, fontsize=6.5)
+    outlines = [axes.plot([], [], color=GREY, **look)[0] for _, look in limits]
+    (tail,) = axes.plot([], [], color=BLUE, lw=0.9)
+    (dot,) = axes.plot([], [], "o", color=BLUE, ms=3.0)
+
+    def move(frame: int) -> None:
+        angle, last = at.frame[frame], int(moments[frame])
+        first = max(int(moments[max(0, frame - TAIL)]), last - MOST_TAIL, 0)
+        path = 1e3 * turned(smooth_path(*(sample[first : last + 1] for sample in samples)), angle)
+        tail.set_data(*path.T)
+        dot.set_data(*path[-1:].T)
+        for outline, (boundary, _) in zip(outlines, limits, strict=True):
+            outline.set_data(*(1e3 * turned(boundary, angle)).T)
+
+    return [*outlines, tail, dot], move
 
 
 def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
     draw_energy(axes, data)
+    axes.get_legend().set_visible(False)
     parts = shown_parts(data, moments)
     for first, last in parts if len(parts) > 1 else ():
         axes.axvspan(first, last, color=SHADE, lw=0, zorder=0)
@@ -217,64 +237,72 @@ def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
     return [dot], lambda frame: dot.set_data([time[frame]], [energy[frame]])
 
 
-def _path(axes: Axes, data: xr.Dataset, at: Scene, moments: Array) -> Part:
-    """Draw the path of the centre within its boundaries, in the middle of the ring."""
-    reach, land = orbit_reach(data), land_boundary(data)
-    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    axes.set_axis_off()
-    size = format_number(1.0 / reach * INSIDE * (at.radius - at.half_width), 2)
-    look: Look = {"ha": "center", "va": "top", "fontsize": 6.0, "linespacing": 1.3}
-    axes.text(0.5, 0.0, f"path of the centre,\nenlarged {size} times", transform=axes.transAxes, **look)
-    if land is not None:
-        axes.plot(*ring(land, AROUND).T, color=GREY, lw=1.2)
-    (outline,) = axes.plot([], [], color=BLACK, lw=0.6)
-    (tail,) = axes.plot([], [], color=BLUE, lw=0.8)
-    (dot,) = axes.plot([], [], "o", color=BLUE, ms=3.5)
-    pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
-    pockets = np.where(np.isfinite(pockets), pockets, np.nan)
-    samples = [np.asarray(data[name].values) for name in ("time", "position", "velocity")]
-
-    def move(frame: int) -> None:
-        angle, last = at.frame[frame], int(moments[frame])
-        first = max(int(moments[max(0, frame - TAIL)]), last - MOST_TAIL, 0)
-        path = smooth_path(*(sample[first : last + 1] for sample in samples))
-        tail.set_data(*turned(path, angle).T)
-        dot.set_data(*turned(path[-1:], angle).T)
-        outline.set_data(*turned(ring(pockets, AROUND), angle).T)
-
-    return [outline, tail, dot], move
+def seen(points: Array, view: tuple[float, float], turn: float) -> tuple[Array, Array]:
+    """Return points on the picture, shape (..., 2), and how near they are to the eye, shape (...)."""
+    high, around = view
+    c, s = np.cos(around + turn), np.sin(around + turn)
+    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    across, away = c * x - s * y, s * x + c * y
+    up = np.cos(high) * z + np.sin(high) * away
+    return np.stack([across, up], axis=-1), np.asarray(np.sin(high) * z - np.cos(high) * away)
 
 
-def _cage(axes: Axes, at: Scene) -> Part:
-    axes.set(xlim=(-at.reach, at.reach), ylim=(-at.reach, at.reach), aspect="equal")
-    axes.set_axis_off()
-    count = at.angles.size
-    if np.isfinite(at.land):
-        axes.plot(*ring(at.land, ROUND).T, color=GREY, lw=1.6)
-    axes.plot(*ring(at.radius, ROUND).T, color=GREY, lw=0.4, ls=":")
-    rails = LineCollection([], colors=BLUE, linewidths=0.9)
-    bars = PolyCollection([], facecolors=BAR, edgecolors=BLUE, linewidths=0.7)
-    size, look = np.full(count, 2 * at.ball), {"units": "xy", "facecolors": BALL, "edgecolors": BLACK}
-    places: Look = {"offsets": np.zeros((count, 2)), "offset_transform": axes.transData, **look}
-    balls = EllipseCollection(size, size, np.zeros(count), linewidths=0.8, **places)
-    for collection in (rails, bars, balls):
-        axes.add_collection(collection)
-    (first,) = axes.plot([0], [0], "o", color=BLACK, ms=2.5)
-    scale: Look = {"angles": "xy", "scale_units": "xy", "scale": 1 / (ARROW * at.ball), "width": 0.008}
-    pockets, land = (
-        axes.quiver(*np.zeros((4, n)), color=colour, zorder=4, minlength=0.1, **scale)
-        for n, colour in ((count, VERMILION), (1, BLACK))
-    )
+def _pose(body: PolyCollection, at: Scene, faces: Array, frame: int) -> None:
+    """Put cage, balls and lands where they are, from the farthest to the nearest."""
+    turn = float(at.frame[frame])
+    flat, near = seen(at.moved(faces, frame), at.view, turn)
+    middle, depth = seen(at.ball_places(frame), at.view, turn)
+    discs = middle[:, np.newaxis] + at.ball * DISC
+    rings, ring_depth = _rings(at, turn)
+    shares = [np.sqrt(one / (most or 1.0)) for one, most in zip((at.force[frame], at.land_force[frame]), at.largest, strict=True)]
+    cage, red = _shades(faces, turn), np.array(to_rgb(VERMILION))
+    balls = np.ones(3) + shares[0][:, np.newaxis] * (red - 1.0)
+    land = np.array(to_rgb(GREY)) + shares[1] * (red - np.array(to_rgb(GREY)))
+    fills = [*map(tuple, cage), *map(tuple, balls), *["none"] * len(rings)]
+    outlines = cage * np.where(np.arange(len(cage)) < len(cage) - at.angles.size * BAR_POINTS, 0.8, 1.0)[:, np.newaxis]
+    edges = [*map(tuple, outlines), *[BLACK] * len(discs), *[tuple(land)] * len(rings)]
+    widths = np.repeat([0.25, 0.8, 1.6], [len(flat), len(discs), len(rings)])
+    shapes = [*flat, *discs, *rings]
+    order = np.argsort(np.concatenate([near.mean(axis=1), depth, ring_depth]), kind="stable")
+    body.set_verts([shapes[i] for i in order])
+    body.set_facecolor([fills[i] for i in order])
+    body.set_edgecolor([edges[i] for i in order])
+    body.set_linewidth(widths[order].tolist())
 
-    def move(frame: int) -> None:
-        centres = at.ball_places(frame)
-        bars.set_verts(at.bars(frame))
-        rails.set_segments(at.rails(frame))
-        balls.set_offsets(centres)
-        first.set_data(centres[:1, 0], centres[:1, 1])
-        for arrows, (foot, along) in ((pockets, at.pocket_arrows(frame)), (land, at.land_arrow(frame))):
-            along = np.ma.masked_invalid(along.reshape(-1, 2))
-            arrows.set_offsets(foot.reshape(-1, 2))
-            arrows.set_UVC(along[:, 0], along[:, 1])
 
-    return [bars, rails, balls, first, pockets, land], move
+def _shades(faces: Array, turn: float) -> Array:
+    """Return the colour of each face of the cage: lighter where it looks to the light, shape (face, 3)."""
+    normal = np.cross(faces[:, 1] - faces[:, 0], faces[:, 3] - faces[:, 0])
+    normal /= np.linalg.norm(normal, axis=1)[:, np.newaxis] + 1e-30
+    light = np.abs(turned(normal[:, :2], turn) @ LIGHT) / np.hypot(*LIGHT)
+    share = (0.35 + 0.5 * light)[:, np.newaxis]
+    return np.asarray(share * np.array(to_rgb(SKY)) + (1.0 - share))
+
+
+def _rings(at: Scene, turn: float) -> tuple[list[Array], Array]:
+    """Return short pieces of each land's circle, and how near they are."""
+    found, depths, angle = [], [], np.linspace(0.0, 2.0 * np.pi, 73)
+    for height in at.heights:
+        circle = np.column_stack([ring(at.land_radius, angle), np.full(angle.size, height)])
+        flat, near = seen(circle, at.view, turn)
+        found += [flat[i : i + 2] for i in range(angle.size - 1)]
+        depths.append(0.5 * (near[1:] + near[:-1]))
+    return found, np.concatenate(depths) if depths else np.zeros(0)
+
+
+def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
+    """Return what the colours mean, the scales, and the times of the frames."""
+    pocket, land = (format_number(one, 3) for one in at.largest)
+    steps = np.diff(milliseconds(data)[moments])
+    pace = f"{1e3 * np.median(steps):.3g} \N{MICRO SIGN}s a frame" if steps.size else "one frame"
+    spans = " and ".join(f"{first:.3g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
+    size = "to scale" if at.enlarged == 1.0 else f"enlarged {format_number(at.enlarged, 2)} times"
+    return [
+        f"Balls: white to red, 0 to {pocket} N in the pocket.",
+        *([f"Land: grey to red, 0 to {land} N."] if at.side else []),
+        "Root scale; the largest since the last frame.",
+        f"Movements and clearances {size};",
+        "overlaps are contact deformation.",
+        "Fixed frame." if at.frame.any() else "Frame of the ball set.",
+        "Logarithmic time." if is_logarithmic(data) else f"Shown: {spans}, {pace}.",
+    ]

@@ -1,24 +1,16 @@
-"""What figures and films draw of a run: its time, boundaries and path of the cage centre, whirl spectrum."""
+"""What figures and films of a run share: its time, boundaries and paths, whirl spectrum, moments of a film."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from PIL import Image
 
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, colour_bar
 from separatrix.units import Array, Hertz
-
-Part = tuple[list[Artist], Callable[[int], None]]
-"""What moves in a picture, and what puts it where it is in a frame."""
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
 """Directions in which boundaries are drawn: a quarter of a degree apart."""
@@ -46,7 +38,7 @@ STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
 
 GOES_ON = 1e-3
-"""Mean kinetic energy at the end of a run, over its largest, from which a cage in space moves on."""
+"""Mean kinetic energy in the last fifth of a run, over its largest, from which the cage moves on."""
 
 MOST_FRAMES, A_TURN = 360, 6
 """Most frames of a film; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
@@ -60,18 +52,15 @@ def milliseconds(data: xr.Dataset) -> Array:
     return 1e3 * np.asarray(data["time"].values, dtype=float)
 
 
+def is_in_space(data: xr.Dataset) -> bool:
+    """Whether a saved run is one of a cage that tilts and moves along the axis."""
+    return "lean" in data and data["lean"].ndim == 2
+
+
 def is_logarithmic(*runs: xr.Dataset) -> bool:
-    """Whether time is drawn logarithmic: a motion that settles does so early, unless it goes on in space."""
-    return any(
-        str(run["outcome"].values) == "SETTLES" and run.sizes["time"] > 2 and not _goes_on(run)
-        for run in runs
-    )
-
-
-def _goes_on(data: xr.Dataset) -> bool:
-    """Whether a cage in space still moves in the last fifth of its run."""
-    energy = data["kinetic_energy"].values
-    return "lean" in data and float(energy[-(energy.size // 5) - 1 :].mean()) > GOES_ON * float(energy.max())
+    """Whether time is drawn logarithmic: where a motion comes to rest, it does so early."""
+    energies = [run["kinetic_energy"].values for run in runs if run.sizes["time"] > 2]
+    return any(float(one[-(one.size // 5) - 1 :].mean()) <= GOES_ON * float(one.max()) for one in energies)
 
 
 def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
@@ -151,6 +140,30 @@ def orbit_reach(data: xr.Dataset) -> float:
     return 1.12 * max(far, play or 0.0, 0.0 if land is None else float(land.max()), 1e-9)
 
 
+def axial_play(data: xr.Dataset) -> float:
+    """Return half the clearance of the pockets along the axis [m]; 0 for none."""
+    along, axial = (float(data[f"cage_pocket_{name}clearance"]) for name in ("", "axial_"))
+    return 0.5 * (axial if np.isfinite(axial) else along)
+
+
+def land_heights(data: xr.Dataset) -> Array:
+    """Return the height of the middle of each land over the pockets [m]."""
+    if land_boundary(data) is None:
+        return np.zeros(0)
+    spacing = float(data["cage_land_spacing"])
+    return np.zeros(1) if int(data["cage_land_count"]) == 1 else 0.5 * spacing * np.array([-1.0, 1.0])
+
+
+def lean_limits(data: xr.Dataset) -> list[tuple[float, Look, str]]:
+    """Return the tilts at which a centred cage touches its balls, and its lands, each with look and name [mrad]."""
+    play, land = axial_play(data) / float(data["cage_pitch_radius"]), land_boundary(data)
+    found: list[tuple[float, Look, str]] = [(1e3 * play, POCKETS, "pockets")] if play > 0.0 else []
+    reach = float(land_heights(data).max(initial=0.0)) + 0.5 * float(data["cage_land_width"])
+    if land is not None and reach > 0.0:
+        found.append((1e3 * float(land.max()) / reach, LAND, "land"))
+    return found
+
+
 def clearances(data: xr.Dataset) -> list[tuple[float, Look, str]]:
     """Return the clearances that a picture of the offset shows [mm], each with look and name."""
     play, land = largest_play(data), land_boundary(data)
@@ -171,6 +184,17 @@ def draw_orbit(axes: Axes, data: xr.Dataset, *others: xr.Dataset) -> None:
     ]
     draw_path(axes, path, most, boundaries, "orbits")
     axes.set(xlabel="x [mm]", ylabel="y [mm]")
+
+
+def draw_lean(axes: Axes, data: xr.Dataset) -> None:
+    """Draw where the axis of the cage leans to, with the tilts at which a centred cage touches."""
+    samples = (data[name].values.astype(float) for name in ("time", "lean", "lean_rate"))
+    path = 1e3 * smooth_path(*samples)
+    far = float(np.abs(path).max(initial=0.0)) or 1.0
+    limits = [one for one in lean_limits(data) if one[0] <= 2.0 * far]
+    circles = [(ring(size, AROUND), look, f"{name}, if centred") for size, look, name in limits]
+    draw_path(axes, path, 1.12 * max([far, *(one[0] for one in limits)]), circles, "turns")
+    axes.set(xlabel="lean along x [mrad]", ylabel="lean along y [mrad]")
 
 
 def draw_path(
@@ -307,19 +331,3 @@ def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
     steps = np.diff(moments)
     cuts = np.flatnonzero(steps > GAP * np.median(steps) + 1) + 1
     return [(float(part[0]), float(part[-1])) for part in np.split(time, cuts)]
-
-
-def filmed(figure: Figure, parts: Sequence[Part], count: int) -> Iterator[Image.Image]:
-    """Yield frames of a figure; what does not move is drawn once."""
-    canvas: Any = FigureCanvasAgg(figure)
-    for artist in (artist for moving, _ in parts for artist in moving):
-        artist.set_animated(True)
-    canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
-    for frame in range(count):
-        canvas.restore_region(still)
-        for moving, move in parts:
-            move(frame)
-            for artist in moving:
-                figure.draw_artist(artist)
-        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())

@@ -111,9 +111,10 @@ def _kind(hint: object) -> _Kind:
     unit = next((one for one in metadata if isinstance(one, str)), None)
     rows = next((one for one in metadata if isinstance(one, Rows)), None)
     axes = next((one for one in metadata if type(one) is tuple), None)
-    if unit is None and rows is None:
-        inside = (_kind(argument).unit for argument in get_args(hint))
-        unit = next((one for one in inside if one is not None), None)
+    if rows is None:
+        inside = [_kind(argument) for argument in get_args(hint)]
+        unit = unit or next((one.unit for one in inside if one.unit is not None), None)
+        axes = axes or next((one.axes for one in inside if one.axes is not None), None)
     return _Kind(unit, axes, rows)
 
 

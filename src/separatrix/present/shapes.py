@@ -211,9 +211,9 @@ def outcome_sentence(found: SimulationAnswer) -> str:
         when = quantity(history.left_time, "s", 3)
         said = f"Ball {history.left_ball} reaches the edge of its pocket's wall at {when}: the model ends."
     if outcome is RunOutcome.ROLLS:
-        force, power = pocket_force(history.largest_contact_force, found.force_limit), history.pocket_power
-        pace = f"{history.whirl_frequency:.3g} Hz, fed {quantity(power, 'W', 3)}"
-        said += f" It whirls at {pace}; the largest force in a pocket is {force}."
+        pace = f"{history.whirl_frequency:.3g} Hz, fed {quantity(history.pocket_power, 'W', 3)}"
+        largest = pocket_force(history.largest_contact_force, found.force_limit)
+        said += f" It whirls at {pace}; the largest force in a pocket is {largest}."
     if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and found.analysis.mean_offset > 0.0:
         said += f" Its centre is {quantity(found.analysis.mean_offset, 'm', 3)} from the axis on average"
         force, power = quantity(history.rubbing_force, "N", 3), quantity(rubbing_power(found), "W", 3)
@@ -241,7 +241,7 @@ def _(found: SimulationAnswer) -> Node:
     }
     node |= shape(found.history) | first | {"whirl_frequency": Leaf(pace, "Hz")}
     if not found.whirls:
-        node["whirl_speed"] = Leaf(None, "m/s")
+        node |= {"whirl_speed": Leaf(None, "m/s"), "whirl_direction": Leaf(0)}
     return node | {"analysis": Group(analysis)} | _cage(found)
 
 

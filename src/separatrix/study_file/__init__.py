@@ -11,7 +11,7 @@ from separatrix.errors import InputError, ValidityWarning
 from separatrix.input_files import noting
 from separatrix.library.records import contradictions
 from separatrix.pocket_shape import half_play, tilt
-from separatrix.study import CageDesign, Guidance, Study, chosen_models, with_models
+from separatrix.study import CageDesign, Guidance, MotionModel, Study, chosen_models, with_models
 from separatrix.study_file.document import TEMPLATE, Document, find, load, shipped_studies
 from separatrix.study_file.provenance import asked_by, inputs_of, keep, provenance_of, resolved
 from separatrix.study_file.sections import LEFT_OUT, build_study
@@ -37,8 +37,7 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
     study : str or Path
         Path of the file, or name of the example.
     models : mapping, optional
-        `motion` and `ball` of the cage in place of those of the file. The study is checked with them: a ring
-        whose walls end short of the ball's equator is right in space and refused in the plane.
+        `motion` and `ball` of the cage in place of those of the file. The study is checked with them.
 
     Raises
     ------
@@ -95,9 +94,6 @@ def require(study: Study, verb: str, *sections: str) -> None:
 
 # Warnings on a valid study: outside the range of the model, or of real bearings.
 
-LONGEST, JUDGED_FROM = 4, 3.2
-"""Durations after which a run ends at the latest (`cage.ending`), and after which it may be judged."""
-
 STEEP = 0.5
 """Sine of the lean of a pocket's contact from which the cage is pushed along the axis as well: 30 deg."""
 
@@ -120,12 +116,6 @@ SECTION = ((0.2, 1.1), (0.7, 2.2))
 def cautions(study: Study) -> Iterator[str]:
     """Sentences to warn with."""
     cage, operation = study.cage, study.operation
-    if cage is not None and operation.ramp_time > JUDGED_FROM * study.stability.duration:
-        given, run = (format_quantity(s, "s") for s in (operation.ramp_time, study.stability.duration))
-        yield (
-            f"[operation] ramp_time {given}: runs of {run}, or up to {LONGEST} times that, are judged before "
-            "full speed is reached. Give [stability] a longer duration."
-        )
     yield from _materials(study)
     fluid = study.records.get("operation.fluid")
     if fluid is not None and operation.temperature is not None:
@@ -172,7 +162,7 @@ def _cage(study: Study, cage: CageDesign) -> Iterator[str]:
     if absent and cage.guidance is not Guidance.BALL:
         verb = "is assumed: a guess" if len(absent) == 1 else "are assumed: guesses"
         yield f"[cage] {', '.join(absent)} {verb}, on which the motion on the land depends."
-    if abs(tilt(cage)[1]) > STEEP:
+    if cage.motion is MotionModel.PLANE and abs(tilt(cage)[1]) > STEEP:
         play = format_quantity(half_play(cage), "m", 3)
         yield (
             "[cage] pocket_axial_offset: the contacts lean by more than 30 deg towards the bearing axis; the "

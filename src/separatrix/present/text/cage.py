@@ -164,8 +164,8 @@ def motion_words(motion: CageMotion | None) -> str:
 
 def _power_facts(found: History | Judgement, rubbing: float) -> list[tuple[str, str]]:
     powers = (("pocket", found.pocket_power), ("land", found.land_power))
-    each = (f"{name} {'feeds' if w > 0.0 else 'takes'} {quantity(abs(w), 'W')}" for name, w in powers)
-    rows = [("Friction power", ", ".join(each))]
+    each = [f"{name} {'feeds' if w > 0.0 else 'takes'} {quantity(abs(w), 'W', 3)}" for name, w in powers if w]
+    rows = [("Friction power", ", ".join(each) or "none")]
     if found.rubbing_force > 0.0:
         both = f"{stated(found, 'rubbing_force')} at {stated(found, 'rubbing_speed')}"
         rows.append(("Rubbing on the land", f"{both}, {quantity(rubbing, 'W')} of heat"))

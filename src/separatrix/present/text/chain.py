@@ -317,15 +317,12 @@ def mobility(answer: MobilityAnswer, study: Study) -> list[str]:  # noqa: ARG001
 def _law(found: Mobility) -> Sequence[tuple[str, str]]:
     """Return what the races carry at most, the law, and how near it is to the slip fields."""
     law = found.traction
-    elements = ", ".join(
-        f"{quantity(c, 'N s/m', 4)} to {quantity(v, 'm/s', 3)}"
-        for c, v in zip(law.slopes, law.speeds, strict=True)
-    )
+    both = f"{quantity(law.slope, 'N s/m', 4)}, {quantity(law.speed, 'm/s', 3)}"
     largest = max(found.force_forward.max(), found.force_backward.max())
     return [
         ("Capacity f_BT (N_I + N_E)", stated(found, "capacity")),
         ("Largest force of the slip fields", quantity(float(largest), "N", 4)),
-        ("Law of traction, C_i to v_i", elements),
+        ("Law of traction: slope C, knee v", both),
         ("Largest error of the law", f"{100 * found.law_error:.2g} % of the capacity"),
         ("Forward and backward differ by", f"+-{100 * found.asymmetry:.2g} % of the capacity at most"),
     ]

@@ -1,8 +1,9 @@
-// The view of a run of a cage in space: in a page of its own and in the local page, data in #run.
+// The view of a run of the cage: in a page of its own and in the local page, data in #run.
 const run = JSON.parse(document.getElementById("run").textContent);
-const at = (name) => document.getElementById(name), box = at("space");
+const at = (name) => document.getElementById(name), box = at("moving");
 const Z = run.angles.length, N = run.time.length, R = run.radius, TAU = 2 * Math.PI;
-const view = { high: 0.49, around: -1.08, zoom: 1 };
+const view = { high: run.view[0], around: run.view[1], zoom: 1 };
+const RED = [213, 94, 0];
 let frame = 0, playing = false, due = 0, grow = run.enlarged, faces = [];
 at("time").max = N - 1;
 at("grow").max = Math.max(2, 2 * run.enlarged);
@@ -14,12 +15,16 @@ function outline(low, high, half, square, point) {
   return [(low + high) / 2 + (high - low) / 2 * c / corner, half * s / corner];
 }
 
+function reach(j) {
+  return Math.asin(Math.min(1, (run.ball + grow * run.plays[j]) / R));
+}
+
 function build() {
   faces = [];
   for (let j = 0; j < Z; j++) {
     const here = run.angles[j], after = j + 1 < Z ? run.angles[j + 1] : run.angles[0] + TAU;
     const before = j > 0 ? run.angles[j - 1] : run.angles[Z - 1] - TAU;
-    const along = (run.ball + grow * run.plays[j]) / R;
+    const along = reach(j);
     const across = Math.min(run.ball + grow * run.axialPlay, run.rim * run.halfWidth);
     for (const side of [-1, 1]) {
       const r = R + side * run.halfThickness;
@@ -31,14 +36,22 @@ function build() {
         faces.push({ corners: [hole(p), hole(p + 1), edge(p + 1), edge(p)], light: light });
       }
     }
+    const start = here + along, end = Math.max(start, after - reach((j + 1) % Z)); // the bar, in the plane of the balls
+    const put = (i, side) => {
+      const a = start + (end - start) * i / run.barPoints, r = R + side * run.halfThickness;
+      return [r * Math.cos(a), r * Math.sin(a), 0];
+    };
+    for (let i = 0; i < run.barPoints; i++) {
+      faces.push({ corners: [put(i, -1), put(i + 1, -1), put(i + 1, 1), put(i, 1)], light: 0.35 });
+    }
   }
 }
 
 function place(f, [x, y, z]) {
-  const cx = run.centre[2 * f], cy = run.centre[2 * f + 1], lx = run.lean[2 * f], ly = run.lean[2 * f + 1];
-  const turn = run.rotation[f];
+  const cx = run.centre[2 * f], cy = run.centre[2 * f + 1], turn = run.rotation[f];
+  const [lx, ly, axial] = run.lean ? [run.lean[2 * f], run.lean[2 * f + 1], run.axial[f]] : [0, 0, 0];
   return [x + grow * (cx + lx * z - turn * y) * 1e-9, y + grow * (cy + ly * z + turn * x) * 1e-9,
-    z + grow * (run.axial[f] - lx * x - ly * y) * 1e-9];
+    z + grow * (axial - lx * x - ly * y) * 1e-9];
 }
 
 function eye(point, turn, scale, width, height) {
@@ -68,7 +81,7 @@ function draw() {
   }
   for (let j = 0; j < Z; j++) {
     const k = frame * Z + j, angle = run.angles[j] + grow * run.lead[k] * 1e-9 / R;
-    const centre = [R * Math.cos(angle), R * Math.sin(angle), grow * run.ballAxial[k] * 1e-9];
+    const centre = [R * Math.cos(angle), R * Math.sin(angle), grow * (run.ballAxial ? run.ballAxial[k] : 0) * 1e-9];
     const seen = eye(centre, turn, scale, width, height);
     parts.push({ near: seen[2], ball: seen, share: Math.sqrt(run.force[k] / 255), first: j === 0 });
   }
@@ -97,8 +110,7 @@ function paint(pen, part, scale) {
     pen.stroke();
   } else if (part.ball) {
     pen.arc(part.ball[0], part.ball[1], scale * run.ball, 0, TAU);
-    const mix = (c) => Math.round(part.share * c + (1 - part.share) * 255);
-    pen.fillStyle = `rgb(${mix(213)},${mix(94)},${mix(0)})`;
+    pen.fillStyle = mixed(255, part.share);
     pen.fill();
     pen.strokeStyle = "#000";
     pen.lineWidth = part.first ? 2.5 : 1;
@@ -106,10 +118,14 @@ function paint(pen, part, scale) {
   } else {
     pen.moveTo(part.ring[0][0], part.ring[0][1]);
     pen.lineTo(part.ring[1][0], part.ring[1][1]);
-    pen.strokeStyle = "#6b6b6b";
+    pen.strokeStyle = mixed(107, Math.sqrt(run.landForce[frame] / 255));
     pen.lineWidth = 2.5;
     pen.stroke();
   }
+}
+
+function mixed(grey, share) {
+  return `rgb(${RED.map((c) => Math.round(share * c + (1 - share) * grey)).join(",")})`;
 }
 
 function path(name, values, unit, limit) {
@@ -154,10 +170,11 @@ function tell() {
   const rows = [
     ["time", (1e3 * run.time[f]).toFixed(3) + " ms"],
     ["offset", (1e-3 * size(run.centre)).toFixed(1) + " \u00b5m"],
-    ["tilt", (1e-6 * size(run.lean)).toFixed(2) + " mrad"],
-    ["axial place", (1e-3 * run.axial[f]).toFixed(1) + " \u00b5m"],
+    ...(run.lean ? [["tilt", (1e-6 * size(run.lean)).toFixed(2) + " mrad"],
+      ["axial place", (1e-3 * run.axial[f]).toFixed(1) + " \u00b5m"]] : []),
     ["rotation", (1e-6 * run.rotation[f]).toFixed(2) + " mrad"],
-    ["largest pocket force", (force / 255 * run.most).toPrecision(2) + " N"],
+    ["largest pocket force", (force / 255 * run.most[0]).toPrecision(2) + " N"],
+    ...(run.side ? [["land force", (run.landForce[f] / 255 * run.most[1]).toPrecision(2) + " N"]] : []),
   ];
   const body = at("readings");
   body.replaceChildren(...rows.map((row) => {
@@ -166,7 +183,7 @@ function tell() {
     return line;
   }));
   path("orbit", run.centre, 1e-6, run.side ? 1e3 * run.gap : 0);
-  path("lean", run.lean, 1e-6, 0);
+  if (run.lean) path("lean", run.lean, 1e-6, 0);
   at("time").value = frame;
   at("time").setAttribute("aria-valuetext", rows[0][1]);
   at("grown").textContent = "\u00d7 " + grow.toFixed(1);
@@ -201,7 +218,7 @@ at("fixed").addEventListener("change", draw);
 new ResizeObserver(draw).observe(at("scene"));
 const turnBy = (across, up) => {
   view.around += across;
-  view.high = Math.min(1.5, Math.max(-1.5, view.high + up));
+  view.high = Math.min(TAU / 4, Math.max(-TAU / 4, view.high + up));
   draw();
 };
 const zoomBy = (by) => { view.zoom = Math.min(20, Math.max(0.3, view.zoom * by)); draw(); };
@@ -219,7 +236,7 @@ const keys = {
   "+": () => zoomBy(1.15), "=": () => zoomBy(1.15), "-": () => zoomBy(1 / 1.15),
   " ": () => play(!playing), ",": () => { play(false); show(frame - 1); },
   ".": () => { play(false); show(frame + 1); },
-  0: () => { Object.assign(view, { high: 0.49, around: -1.08, zoom: 1 }); draw(); },
+  0: () => { Object.assign(view, { high: run.view[0], around: run.view[1], zoom: 1 }); draw(); },
 };
 document.addEventListener("keydown", (event) => {
   const element = event.target;
@@ -229,5 +246,6 @@ document.addEventListener("keydown", (event) => {
   event.preventDefault();
   keys[event.key]();
 });
+at("tilting").hidden = !run.lean;
 build();
 draw();
