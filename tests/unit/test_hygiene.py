@@ -26,7 +26,7 @@ NETWORK = {
 }
 """File -> what it may import of the forbidden modules."""
 
-LIMIT = 400
+LIMIT = 600
 
 
 def calls(tree: ast.AST) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -31,6 +31,9 @@ MOST_LOOKS = 100_000
 
 FIFTH, LAST = 5, 10
 """A run is described by its last fifth, or its last ten looks if they are more."""
+
+
+Mean = Callable[[Array, Array], Array]  # means of all columns over looks, by row
 
 
 class Stop:
@@ -422,7 +425,7 @@ LEAST_SHARE = 2.0**-104
 """Share of the energy at the start below which speeds are rounding: growth rates count no further."""
 
 
-def _growth(mean, end, fifth, start):
+def _growth(mean: Mean, end: Array, fifth: Array, start: Array) -> Array:
     """Half the logarithmic growth of the mean energy from half way to the last fifth, per look."""
     last = mean(end - fifth, end)[:, of(rows.ENERGY)]
     first = np.maximum(0, end // 2 - fifth // 2)
@@ -433,7 +436,7 @@ def _growth(mean, end, fifth, start):
     return 0.5 * np.log(np.maximum(last, least) / np.maximum(before, least)) / np.maximum(span, 0.5)
 
 
-def _drift(pieces, mean, end, fifth):
+def _drift(pieces: Sequence[Piece], mean: Mean, end: Array, fifth: Array) -> Array:
     """Logarithmic growth of the mean offset between the last two fifths, per look; 0 where there is none."""
     late, early = mean(end - fifth, end), mean(np.maximum(0, end - 2 * fifth), np.maximum(end - fifth, 1))
     adrift = np.array([piece.numbers.limits[outcome.IS_ADRIFT] > 0.0 for piece in pieces])

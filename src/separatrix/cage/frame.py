@@ -7,6 +7,8 @@ direction fixed to the cage.
 
 from __future__ import annotations
 
+import numpy as np
+
 from separatrix.cage.rows import *
 from separatrix.compiled import inlined
 

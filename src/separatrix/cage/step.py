@@ -47,7 +47,7 @@ def hold(s, before, first, size, balls):
     """Keep the speeds of balls of one state from before the step."""
     for j in range(balls):
         for l in range(LANES):
-            before[j + l] = s[first + j * size + l]
+            before[j * LANES + l] = s[first + j * size + l]
 
 
 @inlined
@@ -58,7 +58,7 @@ def held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, first, si
     """
     for j in range(balls):
         for l in range(LANES):
-            e, i = first + j * size + l, j + l
+            e, i = first + j * size + l, j * LANES + l
             half, gain, v, rate = p[DECAY_HALF + l], p[GAIN_HALF + l], before[i], d[e]
             if stage == 0:
                 first_rate[i] = rate
@@ -79,8 +79,9 @@ def exact_decay(rate: float, step: float) -> tuple[float, float, float, float, f
     """Decay over half a step with its gain, over a step; gains of first, middle and last rate [-], [s]."""
     half = -0.5 * rate * step
     f1, f2, f3 = (_phi(n, 2.0 * half) for n in (1, 2, 3))
-    gains = f1 - 3.0 * f2 + 4.0 * f3, 2.0 * f2 - 4.0 * f3, 4.0 * f3 - f2
-    return math.exp(half), 0.5 * step * _phi(1, half), math.exp(2.0 * half), *(step * gain for gain in gains)
+    first, middle, last = f1 - 3.0 * f2 + 4.0 * f3, 2.0 * f2 - 4.0 * f3, 4.0 * f3 - f2
+    held = math.exp(half), 0.5 * step * _phi(1, half), math.exp(2.0 * half)
+    return *held, step * first, step * middle, step * last
 
 
 def _phi(n: int, z: float) -> float:
