@@ -300,7 +300,9 @@ def _history(
         cause=Cause(int(found["cause"][0])),
         pocket_impacts=found["pocket_impacts"][0].astype(np.float64),
         pocket_rubbing=found["pocket_rubbing"][0],
-        **{name: int(found[name][0]) for name in ("whirl_direction", "land_impacts", "left_ball")},
+        whirl_direction=int(found["whirl_direction"][0]),
+        land_impacts=int(found["land_impacts"][0]),
+        left_ball=int(found["left_ball"][0]),
         **{name: float(found[name][0]) for name in _NUMBERS},
     )
 

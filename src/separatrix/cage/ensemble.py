@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -225,7 +225,9 @@ def run_ensemble(
             found[name] = other_way_round(found[name])
         left = found["left_ball"]
         found["left_ball"] = np.where(left > 1, cage.ball_count + 2 - left, left)
-    shaped = {name: values.reshape(len(speeds), runs, *values.shape[1:]) for name, values in found.items()}
+    shaped: dict[str, Any] = {
+        name: values.reshape(len(speeds), runs, *values.shape[1:]) for name, values in found.items()
+    }
     return Ensemble(kicks=speeds, duration=settings.duration, **shaped)
 
 
@@ -357,7 +359,7 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
     each = np.arange(len(looks))
 
     def mean(first: Array, last: Array) -> Array:
-        return (sums[each, last] - sums[each, first]) / (last - first)[:, np.newaxis]
+        return np.asarray((sums[each, last] - sums[each, first]) / (last - first)[:, np.newaxis])
 
     length = np.array([piece.numbers.numbers[of(rows.STEP)] * piece.numbers.kind.steps for piece in pieces])
     speed = np.array([piece.cage.cage_speed for piece in pieces])

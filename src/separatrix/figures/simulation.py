@@ -73,8 +73,8 @@ def course(data: xr.Dataset) -> Figure:
             (1e3 * np.hypot(*data["lean"].values.T), "tilt [mrad]", "Angle between the axes of cage and bearing"),
         ]
     drawn.append((1e3 * data["rotation"].values, "rotation [mrad]", "Rotation of the cage against the ball set"))
-    figure = Figure(figsize=(PAGE, 2.7 + 1.22 * len(drawn)), layout="constrained")
-    heights = [2.7, 1.22 * len(drawn)]
+    heights = [2.4, 1.25 * len(drawn)]
+    figure = Figure(figsize=(PAGE, sum(heights)), layout="constrained")
     above, below = figure.subfigures(nrows=2, height_ratios=heights, squeeze=False)[:, 0]
     orbit, beside = above.subplots(ncols=2)
     motion.draw_orbit(orbit, data)
@@ -296,9 +296,9 @@ def _contacts(axes: Axes, data: xr.Dataset) -> None:
     axes.axhline(100 / places.size, color=GREY, lw=0.8, ls=(0, (4, 1.5)), label="even share")
     axes.set(xlabel="pocket", ylabel="share of touches [%]", xlim=(0.3, places.size + 0.7))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-    axes.set_ylim(0, 1.3 * max(low.max(), 100 / places.size))
-    axes.set_title("e  Ways in which pockets push their balls")
-    axes.legend(loc="upper left", ncols=4, handlelength=1.2, columnspacing=1.0)
+    axes.set_ylim(0, 1.4 * max(low.max(), 100 / places.size))
+    axes.set_title("e  How pockets push their balls")
+    axes.legend(loc="upper left", ncols=2, handlelength=1.2, columnspacing=1.0)
 
 
 def _sizes(axes: Axes, data: xr.Dataset) -> None:
@@ -306,7 +306,7 @@ def _sizes(axes: Axes, data: xr.Dataset) -> None:
     axes.stairs(count, edges, color=BLUE, fill=True, alpha=0.6)
     axes.set(xscale="log", xlabel="peak force [N]", ylabel="touches", xlim=(edges[0], edges[-1]))
     axes.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-    axes.set_title(f"f  {count.sum():.0f} touches in samples")
+    axes.set_title(f"f  {count.sum():.0f} touches")
 
 
 def _clock(axes: Axes, data: xr.Dataset) -> None:
