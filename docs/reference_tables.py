@@ -124,7 +124,10 @@ COUNTS = tuple(
 ROWS = (
     *OF_CAGE,
     *(
-        Line(f"uncertain_{name}", meaning=f"`{name}` where every run draws its own bearing; null without uncertain inputs")
+        Line(
+            f"uncertain_{name}",
+            meaning=f"`{name}` where every run draws its own bearing; null without uncertain inputs",
+        )
         for name in ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
     ),
 )

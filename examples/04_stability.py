@@ -5,14 +5,13 @@ from dataclasses import replace
 import matplotlib.pyplot as plt
 
 import separatrix
-from separatrix.cage import moving_cage
 
 study = separatrix.read_study("cryogenic-turbopump")
 # a small ensemble, for a quick look: 12 runs of 0.05 s from two kicks
 settings = replace(
     study.stability, kicks=(0.5, 2.0), runs=12, duration=0.05, restitution_factors=(0.3, 0.6, 0.9)
 )
-cage = moving_cage(separatrix.solve(study), friction=0.1)  # the curve replaces it
+cage = separatrix.moving_cage(separatrix.solve(study), friction=0.1)  # the curve replaces it
 found = separatrix.stability_curve(cage, settings, runner=separatrix.Runner(jobs=2))
 
 for point, limit in zip(found.curve, found.linear_limit, strict=True):

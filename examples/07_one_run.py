@@ -4,7 +4,6 @@ import warnings
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
-import numpy as np
 
 import separatrix
 
@@ -14,11 +13,9 @@ with warnings.catch_warnings(action="ignore"):  # the notes are printed below
     answer = separatrix.simulate(study, kick="0.5 m/s")
 history = answer.history
 
-outcome = separatrix.RunOutcome(history.outcome).name
-offset = np.hypot(*history.position.T)
-pocket, land = np.abs(history.contact_force).max(), history.land_force.max()
-print(f"{outcome}: offset up to {1e6 * offset.max():.0f} um")
-print(f"force at a pocket up to {pocket:.0f} N, on the land {land:.0f} N")
+outcome = history.outcome.name
+print(f"{outcome}: offset up to {1e6 * history.largest_offset:.0f} um")
+print(f"whirl at {history.whirl_frequency:.0f} Hz, the centre at {answer.analysis.whirl_speed:.2f} m/s")
 print(*answer.notes, sep="\n")
 
 figure, (orbit, energy) = plt.subplots(1, 2, figsize=(8, 4), layout="constrained")

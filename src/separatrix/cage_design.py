@@ -60,8 +60,8 @@ class PocketContact(Enum):
 class BallModel(Enum):
     """What a ball does that its pocket pushes (docs/theory/cage.md).
 
-    A damper as in the paper; one state, with inertia and saturating traction; free, with its three spins too; or one state
-    by itself where that is enough, and free balls before a cage is called UNSTABLE.
+    A damper as in the paper; one state, with inertia and saturating traction; free, with its three spins;
+    or one state by itself where that is enough, and free balls before a cage is called UNSTABLE.
     """
 
     DAMPER = "damper"

@@ -40,7 +40,7 @@ def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
 
 
 def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """The cage's ring lies between the grooves, and the walls of its pockets reach the equator of the balls."""
+    """The ring lies between the grooves, and the walls of its pockets reach the equator of the balls."""
     if not cage.has_shape:
         return
     inner, outer, width = cage.inner_diameter or 0.0, cage.outer_diameter or 0.0, cage.width or 0.0

@@ -45,7 +45,7 @@ class Expecting(Progress, Protocol):
 LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
 PART = 64  # runs from each kick that the ledger keeps together
 GRACE = 1.0
-"""Time that an interrupt waits for the work under way [s]: runs end within it, a compilation is left behind."""
+"""Time that an interrupt waits for the work under way [s]: runs end within it, compilation is left behind."""
 
 NAMES = tuple(field.name for field in fields(Ensemble))
 
@@ -65,8 +65,8 @@ class Interrupted(KeyboardInterrupt):
 class Runner:
     """How a long job runs; its numbers do not depend on it.
 
-    An interrupt (Ctrl-C or SIGTERM) ends the runs under way at their next look and starts no others; work that
-    does not end within `GRACE`, or before a second interrupt, is left behind.
+    An interrupt (Ctrl-C or SIGTERM) ends the runs under way at their next look and starts no others; work
+    that does not end within `GRACE`, or before a second interrupt, is left behind.
 
     Parameters
     ----------

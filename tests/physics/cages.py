@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from separatrix.cage import Cause, Ensemble, History, PlanarCage, RunOutcome, follow
+from separatrix.cage import Cause, Ensemble, History, MovingCage, RunOutcome, follow
 from separatrix.cage.closed_forms import whirl_rate
 from separatrix.distribution import Distribution
 from separatrix.limits.curve import Tracer, rising, threshold_factors
@@ -15,7 +15,7 @@ from separatrix.runner import Runner
 from separatrix.study import BallBearing, Guidance, Material, PocketShape, Study
 from separatrix.study_numbers import settled_in, with_values
 
-AT_REST = PlanarCage(
+AT_REST = MovingCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,
     inner_speed=1500.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=2000.0,
     ball_cage_friction=0.1,
@@ -25,7 +25,7 @@ AT_REST = PlanarCage(
 SMALL = replace(AT_REST, moment_of_inertia=0.05 * 0.03**2, pitch_radius=0.03, inner_speed=1000.0)
 """The same in a smaller bearing."""
 
-TURNING = PlanarCage(
+TURNING = MovingCage(
     mass=0.025, moment_of_inertia=0.025 * 0.0325**2, ball_count=13, pitch_radius=0.0325, cage_speed=670.0,
     inner_speed=1570.0, outer_speed=0.0, pocket_clearance=6e-4, ball_cage_stiffness=3e6, race_damping=800.0,
     ball_cage_friction=0.12,
@@ -42,7 +42,7 @@ EVERYTHING = replace(
     land_out_of_round=2e-5, land_lobes=3, land_count=2, unbalance=1e-6, gravity=9.81, hertz_coefficient=3e8,
     pocket_shape=PocketShape.CYLINDRICAL, pocket_axial_offset=1e-4, pocket_angles=UNEVEN, **WAVES, **RAMP,
 )  # fmt: skip
-"""Every input of the planar cage at once."""
+"""Every input of a cage in the plane at once."""
 
 STEEL = Material(name="440C", elastic_modulus=205e9, poisson_ratio=0.285, density=7650.0)
 BEARING = BallBearing(
@@ -72,7 +72,7 @@ def damping_of(eta: float) -> float:
     return math.sqrt(AT_REST.ball_cage_stiffness * AT_REST.mass) / (2 * zeta)
 
 
-def linear_roots(cage: PlanarCage) -> np.ndarray:
+def linear_roots(cage: MovingCage) -> np.ndarray:
     """Exact rates of small motions without clearance, fastest growing first, shape (3,) or (4,) [rad/s].
 
     (lambda + i Omega)^2 (lambda D + k) + (1 - i sigma f) omega_0^2 lambda D = 0, D = m_e lambda + C.
@@ -93,7 +93,7 @@ def whirl_probability(found: Ensemble) -> np.ndarray:
 
 
 def followed(
-    cage: PlanarCage,
+    cage: MovingCage,
     duration: float,
     *,
     kick: float = 0.5,
@@ -110,7 +110,7 @@ def followed(
 NOTHING = (
     *("largest_offset", "mean_offset", "offset_spread", "orbit_speed", "drift_rate", "end_energy"),
     *("whirl_frequency", "largest_land_force", "energy_imbalance", "pocket_power", "land_power"),
-    *("rubbing_force", "rubbing_speed"),
+    *("rubbing_force", "rubbing_speed", "strike_rate", "left_time"),
 )
 KICKS = np.array([0.1, 0.5, 2.0, 4.0, 8.0])
 
@@ -127,14 +127,15 @@ def ensemble(rows: object, balls: int = AT_REST.ball_count, **evidence: object) 
     cause = np.where(
         outcome == RunOutcome.UNRESOLVED, int(evidence.pop("cause", Cause.FALLING)), int(Cause.NONE)
     )
-    whole = {"whirl_direction": 0, "land_impacts": 0, "cause": cause}
+    whole = {"whirl_direction": 0, "land_impacts": 0, "left_ball": 0, "cause": cause}
     changed = {name: evidence.pop(name) for name in list(evidence) if name in floats | whole}
     spread = {
         name: np.broadcast_to(np.asarray(value, dtype=float if name in floats else int), outcome.shape).copy()
         for name, value in (floats | whole | changed).items()
     }
-    impacts = np.zeros((*outcome.shape, balls), dtype=np.int64)
-    given = {"kicks": KICKS[: len(outcome)], "pocket_impacts": impacts, "duration": 0.3}
+    by_ball = {"pocket_impacts": np.zeros((*outcome.shape, balls), dtype=np.int64)}
+    by_ball["pocket_rubbing"] = np.zeros((*outcome.shape, balls))
+    given = by_ball | {"kicks": KICKS[: len(outcome)], "duration": 0.3}
     return Ensemble(outcome=outcome, **{**spread, **given, **evidence})
 
 

@@ -7,12 +7,14 @@ from cages import ON_A_LAND, ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.cage import CageMotion, Cause, Ensemble, RunOutcome, Verdict, judge
+from separatrix.cage import Cause, Ensemble, RunOutcome
+from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge
+from separatrix.verdict.reasons import CageMotion
 
 quick = settings(derandomize=True, max_examples=150, deadline=None)
 
 CAGE = replace(ON_A_LAND, ball_count=3)
-SETTLES, WHIRLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS)
+SETTLES, WHIRLS, ROLLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS), int(RunOutcome.ROLLS)
 
 
 @st.composite
@@ -44,9 +46,24 @@ def test_a_kick_from_which_all_runs_settle_changes_neither_verdict_nor_probabili
     assert after.verdict is before.verdict
     for name in ("probability_stable", "probability_low", "probability_high"):
         assert getattr(after, name) == getattr(before, name)
-    ends = [(k.settles, k.whirls, k.drifts, k.unresolved) for k in after.by_kick]
+    ends = list(map(ends_of, after.by_kick))
     del ends[at]
-    assert ends == [(k.settles, k.whirls, k.drifts, k.unresolved) for k in before.by_kick]
+    assert ends == list(map(ends_of, before.by_kick))
+
+
+def ends_of(count: KickCount) -> tuple[int, ...]:
+    """Runs of each outcome."""
+    return count.settles, count.rolls, count.whirls, count.drifts, count.unresolved
+
+
+@quick
+@given(ensembles())
+def test_a_run_that_rolls_counts_as_one_that_settles(runs):
+    """Neither verdict nor probability tells them apart, but for how they are named."""
+    found = judge(CAGE, runs)
+    settled = np.where(runs.outcome == ROLLS, SETTLES, runs.outcome)
+    other = judge(CAGE, replace(runs, outcome=settled))
+    assert (found.verdict, found.probability_stable) == (other.verdict, other.probability_stable)
 
 
 @quick
@@ -57,15 +74,15 @@ def test_no_verdict_contradicts_its_counts(runs):
     assert 0.0 <= found.probability_low <= found.probability_stable <= found.probability_high <= 1.0
     kicks = {k.kick: k for k in found.by_kick}
     worst = kicks[found.worst_kick]
-    assert found.probability_stable == worst.settles / worst.runs
+    assert found.probability_stable == worst.calm / worst.runs == (worst.settles + worst.rolls) / worst.runs
     assert sum(k.runs for k in found.by_kick) == runs.outcome.size
     most_whirl = any(k.whirls > 0.5 * k.runs for k in found.by_kick)
     if found.verdict is Verdict.UNSTABLE:
-        assert worst.settles < 0.5 * worst.runs < worst.whirls
+        assert worst.calm < 0.5 * worst.runs < worst.whirls
     if found.verdict is Verdict.STABLE:
-        assert all(k.whirls <= 0.1 * k.runs and k.settles >= 0.9 * k.runs for k in found.by_kick)
+        assert all(k.whirls <= 0.1 * k.runs and k.calm >= 0.9 * k.runs for k in found.by_kick)
         assert not most_whirl
-    if worst.whirls == 0 and worst.settles == worst.runs:
+    if worst.whirls == 0 and worst.calm == worst.runs:
         assert found.verdict is not Verdict.UNSTABLE
 
 
@@ -76,13 +93,13 @@ def test_the_evidence_is_that_of_the_motion_that_is_named(runs):
     marked = replace(runs, end_energy=runs.outcome.astype(float))
     found = judge(CAGE, marked)
     worst = next(k for k in found.by_kick if k.kick == found.worst_kick)
-    ends = {CageMotion.WHIRLING: RunOutcome.WHIRLS, CageMotion.DRIFTING: RunOutcome.DRIFTS}
     if found.cage_motion is not None:
-        assert found.end_energy == ends.get(found.cage_motion, RunOutcome.SETTLES)
-    least = max(1, worst.settles, worst.drifts + 1, worst.unresolved)
+        assert found.end_energy == ENDS[found.cage_motion]
+    least = max(1, worst.calm, worst.drifts + 1, worst.unresolved)
     assert (found.cage_motion is CageMotion.WHIRLING) == (worst.whirls >= least)
-    if found.cage_motion in (CageMotion.CENTRED, CageMotion.ON_THE_LAND):
-        assert worst.settles > worst.whirls
+    if found.cage_motion in (CageMotion.CENTRED, CageMotion.ON_THE_LAND, CageMotion.ROLLING):
+        assert worst.calm > worst.whirls
+        assert (found.cage_motion is CageMotion.ROLLING) == (worst.rolls > worst.settles)
 
 
 @quick
@@ -92,7 +109,7 @@ def test_a_kick_from_which_all_runs_whirl_is_the_worst(runs):
     found = judge(CAGE, with_kick(runs, 0, WHIRLS))
     if runs.outcome.shape[1] >= 4:
         assert (found.verdict, found.probability_stable) == (Verdict.UNSTABLE, 0.0)
-    assert found.worst_kick in {k.kick for k in found.by_kick if k.settles == 0 or k.whirls > 0.5 * k.runs}
+    assert found.worst_kick in {k.kick for k in found.by_kick if k.calm == 0 or k.whirls > 0.5 * k.runs}
 
 
 @quick

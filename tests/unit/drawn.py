@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import xarray as xr
 
@@ -11,40 +9,82 @@ MADE = 12
 """Samples of a run."""
 
 
-def run(*, count=5, samples=MADE, outcome="WHIRLS", guidance="outer", touching=True, play=0.6e-3, **changes):
-    """One run of a cage of `count` pockets whose centre goes around."""
+def run(
+    *, count=5, samples=MADE, outcome="WHIRLS", guidance="outer", touching=True, play=0.6e-3, space=False, **changes
+):
+    """One run of a cage of `count` pockets whose centre goes around, in the plane or in space."""
     time = np.linspace(0.0, 0.01, samples)
     around = 900.0 * time
     position = 4e-4 * np.stack([np.cos(around), np.sin(around)], axis=1)
+    velocity = 900.0 * position[:, ::-1] * [-1.0, 1.0]
     force = np.where(np.arange(samples)[:, None] % 3 == np.arange(count) % 3, 20.0, 0.0) * touching
+    angle = np.where(np.arange(count) % 2, np.pi, 0.0) * (force > 0.0)
     variables = {
-        "position": (("time", "axis"), position),
-        "velocity": (("time", "axis"), 900.0 * position[:, ::-1] * [-1.0, 1.0]),
+        "position": (("time", "across"), position),
+        "velocity": (("time", "across"), velocity),
         "rotation": ("time", 1e-3 * time),
+        "axial_place": np.nan,
+        "lean": np.nan,
+        "lean_rate": np.nan,
         "ball_lead": (("time", "ball"), np.zeros((samples, count))),
-        "contact_force": (("time", "ball"), force * np.where(np.arange(count) % 2, -1.0, 1.0)),
+        "ball_axial": np.nan,
+        "contact_force": (("time", "ball"), force),
+        "contact_angle": (("time", "ball"), angle),
         "land_force": ("time", np.where(np.arange(samples) % 4 == 1, 7.0, 0.0) * touching),
+        "largest_contact_force": 20.0 * touching,
         "kinetic_energy": ("time", 1e-3 + time),
-        "spring_energy": ("time", np.zeros(samples)),
+        "stored_energy": ("time", np.zeros(samples)),
         "work_pocket_friction": ("time", 3.0 * time * touching),
-        "work_race_dampers": ("time", -2.0 * time * touching),
+        "work_land_friction": ("time", np.zeros(samples)),
+        "work_balls": ("time", -2.0 * time * touching),
+        "energy_imbalance": 1e-3,
         "outcome": outcome,
         "kick": 0.5,
         "cage_pitch_radius": 0.0325,
         "cage_cage_speed": 600.0,
+        "cage_ball_diameter": 0.0111,
         "cage_guidance": guidance,
+        "cage_land_clearance": np.nan if guidance == "ball" else 1e-3,
         "cage_land_out_of_round": 0.0,
         "cage_land_lobes": 2,
+        "cage_land_count": 1,
+        "cage_land_spacing": np.nan,
+        "cage_land_width": 3e-3,
         "cage_ramp_time": 0.0,
         "cage_ramp_start": 0.1,
+        "cage_pocket_shape": "square",
+        "cage_pocket_clearance": play,
+        "cage_pocket_axial_clearance": np.nan,
         "pocket_angle": ("ball", 2 * np.pi * np.arange(count) / count),
         "half_play": ("ball", np.full(count, 0.5 * play)),
         "judged_from": 0.0,
         "judged_until": 0.0,
-        "cage_land_clearance": np.nan if guidance == "ball" else 1e-3,
+        "frequency": ("frequency", np.arange(-8.0, 8.0)),
+        "tone": ("tone", np.arange(8.0)),
+        "analysis_spectra_offset": ("frequency", np.full(16, 1e-4)),
+        "analysis_spectra_slip_rate": ("tone", np.full(8, 0.1 * touching)),
+        "analysis_whirl_cage_speed": 600.0,
+        "analysis_whirl_window_time": ("window", [0.002, 0.008]),
+        "analysis_whirl_window_offset_ratio": ("window", [1.5, np.nan]),
+        "analysis_whirl_window_cage_slip": ("window", [0.0, 1e-3]),
+        "analysis_impacts_force_edges": ("edge", np.logspace(-3.0, 1.0, 4)),
+        "analysis_impacts_force_count": ("bin", [0.0, 0.0, 8.0 * touching]),
+        "analysis_impacts_clock_edges": ("edge", np.linspace(-np.pi / 3.0, 5.0 * np.pi / 3.0, 4)),
+        "analysis_impacts_clock_impulse": ("bin", np.array([1.0, 0.0, 2.0]) * touching),
+        "analysis_rubbing_pocket_power": ("ball", np.full(count, 0.3)),
+        "analysis_rubbing_land_power": 1.0,
     }
-    study = {"bearing": {"ball_diameter": {"value": 0.0111}}}
-    made = xr.Dataset(variables | changes, coords={"time": time}, attrs={"study": json.dumps(study)})
+    if space:
+        variables |= {
+            "axial_place": ("time", 1e-5 * np.sin(around)),
+            "lean": (("time", "across"), 10.0 * position),
+            "lean_rate": (("time", "across"), 10.0 * velocity),
+            "ball_axial": (("time", "ball"), np.zeros((samples, count))),
+            "analysis_spectra_lean": ("frequency", np.full(16, 1e-3)),
+            "analysis_spectra_axial": ("tone", np.full(8, 1e-5)),
+            "analysis_whirl_window_tilt_ratio": ("window", [1.0, np.nan]),
+        }
+    made = xr.Dataset(variables | changes, coords={"time": time}, attrs={"study": "{}"})
     return made.transpose("time", ...)
 
 

@@ -14,7 +14,14 @@ from separatrix.chain.solution import solve
 from separatrix.errors import InputError
 from separatrix.limits.response import cage_at
 from separatrix.runner import Runner
-from separatrix.study import BallModel, MotionModel, PocketContact, PocketShape, StabilitySettings, with_models
+from separatrix.study import (
+    BallModel,
+    MotionModel,
+    PocketContact,
+    PocketShape,
+    StabilitySettings,
+    with_models,
+)
 from separatrix.study_file import read_study
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
@@ -144,7 +151,9 @@ def test_a_model_of_a_cage_that_is_not_there_is_refused(verb, capsys, tmp_path, 
     assert "[cage] is missing; `--motion` needs it" in refused(capsys, verb, "le7", "--motion", "space")
 
 
-@pytest.mark.parametrize(("option", "known"), [("--motion", "plane, space"), ("--ball", "damper, traction, free, auto")])
+@pytest.mark.parametrize(
+    ("option", "known"), [("--motion", "plane, space"), ("--ball", "damper, traction, free, auto")]
+)
 def test_an_unknown_model_is_refused(option, known, capsys, tmp_path, monkeypatch):
     """One line names the models there are."""
     monkeypatch.chdir(tmp_path)

@@ -52,6 +52,7 @@ KEYS = {
     ("restitution", ""): " ".join(f"{name} {name}_free_spin" for name in DAMPING.split()),
     ("mobility", ""): "rates damping damping_relaxed effective_mass capacity speed force_forward force_law",
     ("mobility", "impacts"): "speed restitution_forward restitution_law nominal_restitution_factor",
+    ("simulate", ""): "outcome largest_offset whirl_frequency whirl_speed pocket_power",
     ("stability", "curve"): CRITICAL,
     ("stability", "linear_limit"): "restitution_factor critical_friction",
     ("rank", ""): "restitution_factor",
@@ -72,6 +73,7 @@ LONG = ("traction", "simulate", "rank", "sensitivity")
 
 KEPT = {verb.name: {NAME} for verb in VERBS if verb.keeps_runs}
 KEPT["rank"] = {NAME, "rank.xlsx"}
+KEPT["simulate"] = {"simulation.html"}
 KEPT["sweep"] = {"sweep.csv", "sweep.xlsx"}
 """Files beside the answer."""
 
@@ -222,8 +224,8 @@ def test_every_dimensional_variable_has_a_unit(folder):
     """Whatever is a plain number without a unit is in this list of counts and names."""
     counts = (
         *("most_loaded", "iterations", "whirling", "ball", "run", "runs", "nodes", "sweeps", "slip", "rank"),
-        *("whirl_direction", "within_reach", "friction_scatter_assumed", "settles", "whirls", "drifts"),
-        *("unresolved", "kept_by_land"),
+        *("whirl_direction", "within_reach", "friction_scatter_assumed", "settles", "rolls", "whirls"),
+        *("drifts", "unresolved", "kept_by_land", "left_pocket", "force_exceeds_races"),
         *("input_mean", "input_standard_deviation"),  # each in the unit beside it, in input_unit
     )
     for verb in (verb.name for verb in VERBS if verb.writes_files):

@@ -45,7 +45,8 @@ OF_A_ROW = (
     "name friction friction_deviation friction_scatter_assumed extrapolation probability_lowest_friction "
     "restitution_factor restitution_factor_low restitution_factor_high verdict probability_stable "
     "probability_low probability_high worst_kick by_kick runs cage_motion largest_offset drift_rate "
-    "largest_contact_force largest_land_force energy_imbalance duration longest_run reason"
+    "largest_contact_force force_exceeds_races largest_land_force energy_imbalance duration longest_run ball "
+    "reason"
 )
 
 
@@ -78,9 +79,9 @@ def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
         assert 0.0 <= one["probability_low"] <= one["probability_stable"] <= one["probability_high"] <= 1.0
         assert one["runs"] == 64
         assert one["largest_offset"] > 0.0
-        assert one["energy_imbalance"] < 1e-9
+        assert one["energy_imbalance"] < 3e-2
         (count,) = one["by_kick"]
-        assert count["settles"] == round(64 * one["probability_stable"])
+        assert count["settles"] + count["rolls"] == round(64 * one["probability_stable"])
     assert found["complete"] is True
 
 

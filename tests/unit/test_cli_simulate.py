@@ -1,8 +1,10 @@
-"""Which run `simulate` follows, its animation, and two of them side by side."""
+"""One run by the verb: its document, text, dataset, pictures, film and page; two of them side by side."""
 
 from __future__ import annotations
 
+import html
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -10,9 +12,12 @@ import numpy as np
 import pytest
 from commands import document, refused
 
+import separatrix
 from separatrix import figures, present
+from separatrix.cage import run_ensemble, settings_for
 from separatrix.cli import main
 from separatrix.figures.animation import animate
+from separatrix.figures.cage_page import page, view
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -26,18 +31,56 @@ kicks = ["0.5 m/s"]
 duration = "4 ms"
 """
 
+TITLE = 'A cage in space & <b>"two lands"</b> </script> $1$'
+
+SPACE = f"""
+extends = "cryogenic-turbopump"
+title = '{TITLE}'
+
+[cage]
+motion = "space"
+ball_cage_friction = 0.2
+guidance = "inner"
+land_clearance = "0.5 mm"
+land_count = 2
+land_spacing = "10 mm"
+inner_diameter = "60 mm"
+outer_diameter = "70 mm"
+width = "14 mm"
+
+[stability]
+kicks = ["0.5 m/s"]
+tilt_kick = 1.0
+axial_kick = 0.5
+duration = "10 ms"
+"""
+
+PICTURES = ("simulation", "simulation-whirl", "simulation-forces", "simulation-energy")
+CONTRACT = ("outcome", "largest_offset", "whirl_frequency", "whirl_speed", "pocket_power")
+"""Keys that scripts rely on."""
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A folder with two simulations of studies that differ in the cage's mass."""
+    """A folder with two simulations of studies that differ in the cage's mass, and one in space."""
     place = tmp_path_factory.mktemp("runs")
-    (place / "small.toml").write_text(SMALL)
     heavy = SMALL.replace("A small run", "A heavy cage").replace("[cage]", '[cage]\nmass = "50 g"')
-    (place / "heavy.toml").write_text(heavy)
-    for name in ("small", "heavy"):
-        options = ["--out", str(place / name), "--quiet"]
-        assert main(["simulate", str(place / f"{name}.toml"), *options]) == 0
+    for name, text in (("small", SMALL), ("heavy", heavy), ("space", SPACE)):
+        (place / f"{name}.toml").write_text(text)
+        assert main(["simulate", str(place / f"{name}.toml"), "--out", str(place / name), "--quiet"]) == 0
     return place
+
+
+@pytest.fixture(scope="module", params=["small", "space"])
+def answered(request, folder):
+    """Folder of an answer in the plane, and of one in space."""
+    return folder / request.param
+
+
+@pytest.fixture(scope="module")
+def data(answered):
+    """The saved dataset."""
+    return separatrix.load(answered / "simulate.nc")
 
 
 @pytest.fixture(autouse=True)
@@ -50,8 +93,13 @@ def simulated(folder: Path, capsys, *options: str) -> dict:
     return document(capsys, "simulate", str(folder / "small.toml"), *options)
 
 
+def words(text: str) -> str:
+    """Return a text on one line."""
+    return " ".join(text.split())
+
+
 def test_kick_and_run_are_those_asked_for(folder, capsys):
-    """By default the first run from the middle kick; another kick and run give another motion."""
+    """By default the first run from the reference kick; another kick and run give another motion."""
     usual = simulated(folder, capsys)
     assert (usual["kick"], usual["run"]) == (0.502, 0)
     other = simulated(folder, capsys, "--run", "3")
@@ -59,9 +107,121 @@ def test_kick_and_run_are_those_asked_for(folder, capsys):
     assert other["velocity"][0] != usual["velocity"][0]
     harder = simulated(folder, capsys, "--kick", "200 cm/s")
     assert harder["kick"] == 2.0
-    # the same direction: energy goes as the square of the kick, to rounding
+    # the same direction: energy goes as the square of the kick, in single precision
     expected = (2.0 / 0.502) ** 2 * usual["kinetic_energy"][0]
-    assert harder["kinetic_energy"][0] == pytest.approx(expected, rel=1e-12)
+    assert harder["kinetic_energy"][0] == pytest.approx(expected, rel=1e-6)
+
+
+def test_all_files_of_the_answer_are_written(answered):
+    """Text, document, dataset, pictures in both formats and page; nothing half-written."""
+    pictures = {f"{name}.{ending}" for name in PICTURES for ending in ("png", "svg")}
+    others = {"simulate.json", "simulate.nc", "simulate.txt", "simulation.html"}
+    assert {path.name for path in answered.iterdir()} == pictures | others
+
+
+def test_the_document_has_the_keys_that_scripts_rely_on(answered, capsys):
+    """In the plane and in space the same keys; what only space has is null in the plane."""
+    found = json.loads((answered / "simulate.json").read_text(), parse_constant=pytest.fail)
+    assert set(CONTRACT) <= found.keys()
+    is_flat, whirls = answered.name == "small", found["outcome"] in ("WHIRLS", "ROLLS")
+    assert {(found[name] is None) for name in ("lean", "axial_place", "ball_axial", "largest_tilt")} == {
+        is_flat
+    }
+    assert {(found[name] is not None) for name in ("whirl_frequency", "whirl_speed")} == {whirls}
+    assert (len(found["position"]), len(found["position"][0])) == (len(found["time"]), 2)
+    assert found["energy_imbalance"] < 3e-3
+    impacts = found["analysis"]["impacts"]
+    assert sum(impacts[f"{side}_share"] for side in ("front", "rear", "axial")) == pytest.approx(1.0)
+    answer = separatrix.simulate(answered.with_suffix(".toml"))
+    assert answer.document()["analysis"] == found["analysis"]
+    capsys.readouterr()
+
+
+def test_peaks_of_the_samples_are_near_those_of_the_engine(data):
+    """Of a short run every step is a sample."""
+    for sampled, counted in (
+        ("contact_force", "largest_contact_force"),
+        ("land_force", "largest_land_force"),
+    ):
+        most = float(data[counted])
+        assert 0.98 * most <= float(data[sampled].max()) <= most * (1.0 + 1e-6)
+    offset = float(np.hypot(*data["position"].values.T).max())
+    assert offset == pytest.approx(float(data["largest_offset"]), rel=1e-6)
+
+
+def test_whirl_of_the_samples_is_that_of_the_engine(answered):
+    """Whirl ratios, tilt and axial place of the judged part, which the engine sums up step by step."""
+    answer = separatrix.simulate(answered.with_suffix(".toml"))
+    settings = settings_for(answer.study.stability, answer.cage)
+    engine = run_ensemble(answer.cage, settings, kicks=[answer.kick], runs=1)
+    found, turn = answer.analysis, answer.cage.cage_speed
+    whirl = found.whirl
+    assert whirl.offset_ratio * whirl.cage_speed == pytest.approx(engine.orbit_speed[0, 0], abs=1e-3 * turn)
+    assert found.mean_offset == pytest.approx(engine.mean_offset[0, 0], rel=1e-3)
+    if answer.cage.is_in_space:
+        assert whirl.tilt_ratio * whirl.cage_speed == pytest.approx(engine.cone_speed[0, 0], abs=1e-3 * turn)
+        assert found.mean_tilt == pytest.approx(engine.mean_tilt[0, 0], rel=1e-3)
+
+
+def test_work_and_energy_balance_in_the_samples(data):
+    """Energy at each sample is that of the start and the work since then, to the error of a step."""
+    energy = data["kinetic_energy"].values + data["stored_energy"].values
+    work = sum(data[name].values for name in data.data_vars if str(name).startswith("work_"))
+    assert energy - energy[0] == pytest.approx(work - work[0], abs=3e-3 * float(energy.max()))
+
+
+def test_the_text_has_the_outcome_first_and_fits_a_screen(answered):
+    """Outcome, motion, forces; plain ASCII, at most 50 lines."""
+    text = (answered / "simulate.txt").read_text(encoding="ascii")
+    lines = text.splitlines()
+    assert "Outcome" in lines[5]
+    for word in ("Whirl ratio", "Cage slip", "Pocket, largest", "Rubbing", "Drift rate", "Work on the cage"):
+        assert word in text
+    assert ("Tilt" in text, "Axial place" in text) == (answered.name == "space",) * 2
+    assert len(lines) < 50
+    assert max(map(len, lines)) <= 96
+
+
+def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_the_races(folder):
+    """Its frequency and speed in the document and in the text; no digits of a force that no ball can take."""
+    (folder / "whirl.toml").write_text(SMALL.replace("= 0.1", "= 0.6"))
+    with pytest.warns(separatrix.errors.ValidityWarning):
+        answer = separatrix.simulate(folder / "whirl.toml", kick=2.0)
+    found, text = answer.document(), words(answer.summary())
+    assert found["outcome"] == "WHIRLS"
+    assert found["time"][-1] * found["whirl_frequency"] > 49.0
+    assert 0.1 < found["whirl_speed"] < 100.0
+    assert re.search(r"Whirl \d\S* k?Hz (forward|backward), seen from the balls; the centre moves at", text)
+    assert found["force_exceeds_races"] is (found["largest_contact_force"] > found["force_limit"])
+    assert found["force_limit"] == pytest.approx(95.7 / 0.6, rel=0.01)
+    assert "Pocket, largest above what the races hold, 159.5 N" in text or "160 N" in text
+
+
+def test_a_cage_on_its_land_is_told_to_rub_there(folder):
+    """Not only that it comes to rest: where, with which force and power."""
+    (folder / "tight.toml").write_text(SMALL.replace("[cage]", '[cage]\nland_clearance = "0.4 mm"'))
+    found = separatrix.simulate(folder / "tight.toml")
+    assert found.history.outcome.name == "SETTLES"
+    said = r"Its centre is 200\.?\d* um from the axis on average, and it rubs on its land with \S+ N, \S+ W\."
+    assert re.search(said, words(found.summary()))
+
+
+def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):
+    """A wall that ends 0.2 mm from the balls' equator, and a strong kick: the run decides nothing."""
+    walls = '[cage]\ninner_diameter = "64.6 mm"\nouter_diameter = "75 mm"'
+    (folder / "edge.toml").write_text(SMALL.replace("[cage]", walls))
+    found = separatrix.simulate(folder / "edge.toml", kick=2.0)
+    assert (found.history.outcome.name, found.history.cause.name) == ("UNRESOLVED", "LEFT_POCKET")
+    assert 1 <= found.history.left_ball <= 13
+    said = f"Ball {found.history.left_ball} reaches the edge of its pocket's wall at "
+    assert said in words(found.summary())
+
+
+@pytest.mark.parametrize(("ball", "said"), [("free", "free"), ("auto", "one state"), ("damper", "damper")])
+def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
+    """`--ball` forces one; auto is one state."""
+    assert main(["simulate", str(folder / "small.toml"), "--ball", ball, "--out", "one", "--quiet"]) == 0
+    assert f"Pocket friction; ball 0.100; {said} " in words(capsys.readouterr().out)
 
 
 @pytest.mark.parametrize(
@@ -94,7 +254,7 @@ def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("separatrix.figures.scene.Scene.bars", stop)
+    monkeypatch.setattr("separatrix.figures.scene.Scene.faces", stop)
     assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
     assert "no file was written" in capsys.readouterr().err
     assert not list(Path().iterdir())
@@ -200,9 +360,67 @@ def test_balls_that_their_races_grip_have_an_infinite_damping(folder, capsys, mo
     """A restitution factor of 1, the end of a map's axis: null in the document, in words in the text."""
     asked = ["simulate", str(folder / "small.toml"), "--restitution-factor", "1", "--motion", motion]
     assert main([*asked, "--out", "gripped", "--quiet"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
+    text = words(capsys.readouterr().out)
     found = json.loads(Path("gripped/simulate.json").read_text())
     assert found["cage"]["race_damping"] is None
     assert found["chain"]["race_damping"] > 0.0
     assert not [one for one in found["warnings"] if "not finite" in one]
     assert "infinite, for a restitution factor of 1 in place of the study's" in text
+
+
+def test_every_picture_is_drawn_again_from_the_saved_dataset(answered, data, tmp_path):
+    """To the byte."""
+    for name, figure in figures.draw("simulate", data):
+        figures.save(figure, tmp_path / f"{name}.svg")
+        assert (tmp_path / f"{name}.svg").read_bytes() == (answered / f"{name}.svg").read_bytes()
+    assert page(data) == (answered / "simulation.html").read_text(encoding="utf-8")
+
+
+def test_the_page_needs_no_network_and_its_words_are_escaped(folder):
+    """No address in it; the title of the study cannot end its script; under 1 MB."""
+    text = page(separatrix.load(folder / "space" / "simulate.nc"))
+    assert len(text.encode()) < 1_000_000
+    assert not re.search(r"https?:|//[a-z]|src=|href=|@import|url\(|fetch|XMLHttp|import\s*\(", text)
+    assert "default-src 'none'" in text
+    assert text.count("</script>") == 2
+    assert "<b>" not in text
+    (found,) = re.findall(r'id="run">(.*?)</script>', text, re.DOTALL)
+    assert f'<h1 id="title">{html.escape(TITLE)}</h1>' in text
+    assert len(json.loads(found)["time"]) > 2
+    assert "NaN" not in found
+
+
+def test_a_long_title_or_none_leaves_the_operating_point_to_the_view(data):
+    """The words under the title are those of the run, however many lines the title would take."""
+    about = re.search('class="about">(.*?)</p>', view(data), re.DOTALL)[1]
+    assert "inner ring" in about
+    for title in ("", "A long title of a study. " * 9):
+        other = view(data.assign_attrs(title=title))
+        assert re.search('class="about">(.*?)</p>', other, re.DOTALL)[1] == about
+
+
+def test_a_bearing_that_turns_backward_is_its_mirror_image(folder, capsys):
+    """The same sizes; what is across the axis has another sign."""
+    turned = SPACE.replace("[cage]", '[operation]\ninner_speed = "-15000 rpm"\n\n[cage]')
+    (folder / "backward.toml").write_text(turned)
+    usual = document(capsys, "simulate", str(folder / "space.toml"))
+    found = document(capsys, "simulate", str(folder / "backward.toml"))
+    assert found["largest_tilt"] == pytest.approx(usual["largest_tilt"], rel=1e-6)
+    assert np.allclose(found["position"], np.array(usual["position"]) * [1.0, -1.0], rtol=1e-6)
+    whirls = (one["analysis"]["whirl"]["offset_ratio"] for one in (found, usual))
+    assert next(whirls) == pytest.approx(next(whirls), rel=1e-6)
+
+
+def test_a_ball_guided_cage_has_no_land(folder):
+    """No land in the text and the pictures; the dataset is saved and read all the same."""
+    text = SPACE.replace('guidance = "inner"', 'guidance = "ball"')
+    for key in ("land_clearance", "land_count", "land_spacing"):
+        text = re.sub(rf"{key} = .*\n", "", text)
+    (folder / "ball.toml").write_text(text)
+    answer = separatrix.simulate(folder / "ball.toml")
+    present.save(answer.to_xarray(), folder / "ball.nc")
+    saved = separatrix.load(folder / "ball.nc")
+    assert float(saved["land_force"].max()) == 0.0
+    for _, figure in figures.draw("simulate", saved):
+        assert figure.axes
+    assert "no land" in answer.summary()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import json
 import sys
 from types import SimpleNamespace
 
@@ -12,19 +14,20 @@ from PIL import Image
 from scipy.integrate import quad
 
 from separatrix.errors import InputError
-from separatrix.figures import animation, motion, scene
+from separatrix.figures import animation, cage_page, motion, scene
 from separatrix.figures.animation import animate
 from separatrix.figures.motion import A_TURN, MOST_FRAMES, frame_moments
 
 SMALL, LONG = drawn.run(samples=4), drawn.run(samples=5000)
-SETTLING = drawn.run(samples=5000, outcome="SETTLES")
+SPACE = drawn.run(samples=4, space=True, cage_land_count=2, cage_land_spacing=1e-2)
 ODD = {
     "ordinary": SMALL,
-    "one sample": drawn.run(samples=1, outcome="SETTLES"),
+    "in space": SPACE,
+    "one sample": drawn.run(samples=1, outcome="SETTLES", space=True),
     "nothing touches": drawn.run(samples=3, guidance="ball", touching=False),
     "one ball": drawn.run(samples=2, count=1, guidance="inner"),
     "no play": drawn.run(samples=2, play=0.0, cage_land_out_of_round=1e-5),
-    "hundred balls": drawn.run(samples=2, count=100, outcome="STALLED"),
+    "hundred balls": drawn.run(samples=2, count=100, outcome="UNRESOLVED"),
     "a land only": drawn.run(samples=2, play=1e-2),
 }
 
@@ -116,7 +119,7 @@ def whirling(samples, whirl):
     """A run of 10 ms whose centre turns at a frequency."""
     made = drawn.run(samples=samples)
     around = 2 * np.pi * whirl * made["time"].values
-    return made.assign(velocity=(("time", "axis"), motion.ring(1.0, around)))
+    return made.assign(velocity=(("time", "across"), motion.ring(1.0, around)))
 
 
 @pytest.mark.parametrize(("whirl", "parts"), [(50e3, 2), (2e3, 1)])
@@ -131,7 +134,7 @@ def test_a_fast_whirl_is_never_strobed(whirl, parts):
     assert animation.notes(data, scene.scene(data, moments), moments)[-1].startswith("Shown: 0 to")
 
 
-@pytest.mark.parametrize("data", [*(whirling(20_000, whirl) for whirl in (50e3, 2e3)), LONG, SETTLING])
+@pytest.mark.parametrize("data", [*(whirling(20_000, whirl) for whirl in (50e3, 2e3)), LONG])
 def test_frames_are_few_and_run_from_start_to_end(data):
     """However many samples: rising, with the first and the last."""
     moments = frame_moments(data)
@@ -141,10 +144,12 @@ def test_frames_are_few_and_run_from_start_to_end(data):
 
 
 def test_a_picture_says_how_many_times_too_large_movements_are():
-    """Number for number, and how time runs."""
-    seen, moments = with_film(SMALL), np.arange(SMALL.sizes["time"])
-    assert f"{seen.enlarged:g} times" in animation.notes(SMALL, seen, moments)[0]
-    assert animation.notes(SETTLING, with_film(SETTLING), np.arange(5000))[-1] == "Logarithmic time."
+    """Number for number, and how time runs; a film of few moments has the force between them."""
+    moments = np.array([0, 3])
+    seen = scene.scene(SMALL, moments)
+    assert f"enlarged {seen.enlarged:g} times" in animation.notes(SMALL, seen, moments)[3]
+    assert seen.force[1].max() == seen.largest[0] == 20.0
+    assert animation.notes(SMALL, seen, moments)[1] == "Land: grey to red, 0 to 7 N."
 
 
 def test_a_wall_meets_its_ball_when_the_pocket_touches():
@@ -152,40 +157,33 @@ def test_a_wall_meets_its_ball_when_the_pocket_touches():
     still = drawn.run(samples=1, count=13)
     seen = with_film(still.assign(position=still["position"] * 0.0 + [0.0, 3e-4]))
     assert seen.enlarged > 2
-    behind = seen.bars(0)[-1][8]  # the end of the bar behind ball 0, at its inner edge
-    wall = seen.offset[0] + scene.ring(seen.radius, -seen.walls[0])
+    wall = seen.moved(np.append(scene.ring(seen.radius, -seen.reaches()[:1])[0], 0.0), 0)
     # rounding: tangent to the ball that lies at (R, 0)
     assert wall[1] == pytest.approx(-seen.ball, rel=1e-9)
-    toward = np.arctan2(*(behind - seen.offset[0])[::-1])
-    assert toward == pytest.approx(-seen.walls[0], rel=1e-9)
+    bars = seen.faces()[-13 * scene.BAR_POINTS :]
+    last = np.arctan2(bars[-1, 1, 1], bars[-1, 1, 0])  # the end of the bar behind ball 0
+    assert last == pytest.approx(-seen.reaches()[0], rel=1e-9)
 
 
 @pytest.mark.parametrize(("guidance", "side"), [("outer", 1), ("inner", -1)])
 def test_the_cage_meets_its_land_when_it_touches(guidance, side):
-    """At an offset of the gap the guided edge reaches the land, outside and inside."""
+    """At an offset of the gap the surface of the cage reaches the land, outside and inside."""
     data = drawn.run(samples=1, guidance=guidance)
     seen = with_film(data.assign(position=data["position"] * 0.0 + [5e-4, 0.0]))
-    reached = np.hypot(*seen.rails(0)[0 if side < 0 else 1].T)
-    farthest = reached.max() if side > 0 else reached.min()
+    reached = seen.moved(np.array([[side * seen.land, 0.0, 0.0]]), 0)
     # rounding
-    assert farthest == pytest.approx(seen.land, rel=1e-12)
+    assert side * reached[0, 0] == pytest.approx(seen.land_radius, rel=1e-12)
 
 
-def test_forces_push_the_cage_against_the_ball_forces():
-    """N > 0 pushes the ball forward and the cage back; no force is no arrow; the land pushes inward."""
-    data = drawn.run(samples=2, count=4)
-    force = np.array([[0.0, 0, 0, 0], [4.0, 0, -1.0, 0]])
-    seen = with_film(data.assign(contact_force=(("time", "ball"), force), land_force=("time", [0.0, 2.0])))
-    _, along = seen.pocket_arrows(1)
-    # rounding
-    assert along[0] == pytest.approx([0.0, -1.0], abs=1e-12)
-    # root of a quarter, forward at the far side
-    assert along[2] == pytest.approx([0.0, -0.5], abs=1e-12)
-    assert np.isnan(along[[1, 3]]).all()
-    foot, push = seen.land_arrow(1)
-    assert push @ seen.offset[1] < 0
-    assert np.isnan(seen.land_arrow(0)[1]).all()
-    assert np.hypot(*foot) == pytest.approx(seen.land)
+def test_in_the_plane_the_picture_is_seen_along_the_axis():
+    """x to the right and y upward, as in the orbit; in space from above the plane, and the lean moves its edge."""
+    points = np.array([[1.0, 2.0, 3.0]])
+    assert animation.seen(points, with_film(SMALL).view, 0.0)[0] == pytest.approx(points[:, :2])
+    seen = with_film(SPACE)
+    assert animation.seen(points, seen.view, 0.0)[1] > 0.0
+    rim = np.array([seen.radius, 0.0, 0.0])
+    expected = seen.axial[0] - seen.radius * seen.lean[0, 0]
+    assert seen.moved(rim, 0)[2] == pytest.approx(seen.enlarged * expected)
 
 
 def test_the_ball_set_turns_by_the_integral_of_its_speed():
@@ -201,15 +199,31 @@ def test_the_ball_set_turns_by_the_integral_of_its_speed():
     assert scene.turned_by(ramped).tolist() == pytest.approx(expected, rel=1e-9)
 
 
-def test_in_the_fixed_frame_everything_turns_and_nothing_else_changes():
-    """Balls and bars by the same angle."""
-    turning, fixed, angle = with_film(SMALL), with_film(SMALL, fixed=True), scene.turned_by(SMALL)[2]
-    for part in (lambda s: s.ball_places(2), lambda s: np.concatenate(s.bars(2))):
-        # rounding
-        assert scene.turned(part(turning), angle) == pytest.approx(part(fixed), abs=1e-12)
+def test_in_the_fixed_frame_the_picture_turns_with_the_ball_set():
+    """Balls by the angle of the ball set, and nothing else changes."""
+    fixed = with_film(SMALL, fixed=True)
+    assert fixed.frame.tolist() == scene.turned_by(SMALL).tolist()
+    places = fixed.ball_places(2)
+    shown, _ = animation.seen(places, fixed.view, fixed.frame[2])
+    # rounding
+    assert scene.turned(places[:, :2], fixed.frame[2]) == pytest.approx(shown, abs=1e-12)
 
 
-def test_without_a_study_the_ball_fills_three_quarters_of_its_place():
-    """A dataset whose attributes were lost still makes a film."""
-    assert with_film(SMALL.drop_attrs()).ball == pytest.approx(0.375 * 2 * np.pi * 0.0325 / 5)
+def test_a_ball_of_unknown_size_fills_three_quarters_of_its_place():
+    """A cage by itself has no diameter of its balls."""
+    assert with_film(drawn.run(samples=1, cage_ball_diameter=0.0)).ball == pytest.approx(0.375 * 2 * np.pi * 0.0325 / 5)
     assert with_film(SMALL).ball == 0.5 * 0.0111
+
+
+@pytest.mark.parametrize("data", [SMALL, SPACE, drawn.run(samples=1, guidance="ball")])
+def test_a_page_has_its_run_as_numbers_and_escapes_the_study(data):
+    """Under a megabyte; tilt only in space; a study's text ends no script."""
+    title = "</script><b> & $1$"
+    text = cage_page.page(data.assign_attrs(title=title))
+    assert title not in text
+    assert html.escape(title) in text
+    run = json.loads(text.partition('id="run">')[2].partition("</script>")[0])
+    assert (run["lean"] is None) is not motion.is_in_space(data)
+    assert len(run["time"]) == data.sizes["time"]
+    assert len(run["force"]) == data["contact_force"].size
+    assert "@" not in text.partition("<body>")[2].partition("<script")[0]

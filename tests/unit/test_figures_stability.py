@@ -15,10 +15,7 @@ ON = "restitution_factor"
 NAN = np.nan
 CURVES = {
     "ordinary": drawn.curve(),
-    "with every limit": drawn.curve(
-        hard_limit_critical_friction=(ON, [0.2, 0.1, NAN, 0.0]),
-        kick_critical_friction=((ON, "kick"), [[0.1] * 3] * 4),
-    ),
+    "with every kick": drawn.curve(kick_critical_friction=((ON, "kick"), [[0.1] * 3] * 4)),
     "no threshold": drawn.curve(
         **{f"critical_friction{end}": (ON, [NAN] * 4) for end in ("", "_low", "_high")}
     ),

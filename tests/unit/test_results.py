@@ -142,7 +142,7 @@ def test_what_has_no_plain_form_is_refused():
 def test_a_row_that_was_not_measured_has_all_keys():
     """Null but for its name, the reason and the empty list; none of the ranked one's is missing."""
     found = plain(NotMeasured(name="A", reason="not measured"))
-    assert {f.name for f in fields(Ranked)} - {"judgement", "over_inputs", "other_ball"} <= set(found)
+    assert {f.name for f in fields(Ranked)} - {"judgement", "over_inputs"} <= set(found)
     given = {key: value for key, value in found.items() if value is not None}
     assert given == {"name": "A", "reason": "not measured", "extrapolation": []}
 
@@ -194,5 +194,5 @@ def test_every_answer_of_a_verb_is_arranged():
     from separatrix.present.shapes import shape
 
     records = {one for one in vars(answers).values() if getattr(one, "__name__", "").endswith("Answer")}
-    assert len(records) == 10
+    assert len(records) == 9
     assert records <= set(shape.registry)

@@ -84,7 +84,7 @@ def counted_among(
 
 
 def settles_more(count: KickCount, judged: Judgement) -> bool:
-    """Whether significantly more settle or roll from a kick than from the worst, most do, and in their pockets."""
+    """Whether significantly more settle or roll from a kick than from the worst; most, in their pockets."""
     worst = next(one for one in judged.by_kick if one.kick == judged.worst_kick)
     low = wilson_interval(count.calm, count.runs, NORMAL)[0]
     return 2 * count.kept_by_land <= count.runs and low > max(

@@ -22,7 +22,6 @@ from separatrix.errors import InputError
 from separatrix.figures.motion import (
     AROUND,
     frame_moments,
-    is_logarithmic,
     land_boundary,
     milliseconds,
     pocket_boundary,
@@ -172,7 +171,8 @@ def pictures(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Iterat
         _energy(figure.add_axes((0.73, 0.1, 0.255, 0.16)), data, moments),
     ]
     pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
-    boundaries = [(ring(one, AROUND), look) for one, look in ((land, {"lw": 1.2}), (pockets, {"lw": 0.6})) if one is not None]
+    known = [(one, width) for one, width in ((land, 1.2), (pockets, 0.6)) if one is not None]
+    boundaries = [(ring(np.where(np.isfinite(one), one, np.nan), AROUND), {"lw": width}) for one, width in known]
     paths = [("position", "velocity", "centre [mm]", boundaries)]
     paths += [("lean", "lean_rate", "lean [mrad]", [])] if at.in_space else []
     for place, (name, rate, label, limits) in enumerate(paths):
@@ -204,7 +204,8 @@ def _path(
     axes: Axes, samples: Sequence[Array], label: str, limits: Sequence[tuple[Array, Look]], at: Scene, moments: Array
 ) -> Part:
     """Draw boundaries, the last frames of a path and its end, in mm or mrad; they turn in a fixed frame."""
-    far = [float(np.hypot(*one.T)[np.isfinite(one[:, 0])].max(initial=0.0)) for one in (samples[1], *(b for b, _ in limits))]
+    shapes = [samples[1], *(boundary for boundary, _ in limits)]
+    far = [float(np.nan_to_num(np.hypot(*one.T)).max(initial=0.0)) for one in shapes]
     most = 1.15e3 * (max(one for one in far if one <= 3.0 * (far[0] or 1.0)) or 1e-9)
     axes.set(xlim=(-most, most), ylim=(-most, most), aspect="equal")
     axes.tick_params(labelsize=5.5, pad=1.5, length=2.0)
@@ -231,7 +232,7 @@ def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
     parts = shown_parts(data, moments)
     for first, last in parts if len(parts) > 1 else ():
         axes.axvspan(first, last, color=SHADE, lw=0, zorder=0)
-    time = np.maximum(milliseconds(data)[moments], axes.get_xlim()[0])
+    time = milliseconds(data)[moments]
     energy = np.asarray(axes.lines[0].get_ydata(), dtype=float)[moments]
     (dot,) = axes.plot([], [], "o", color=BLACK, ms=4, clip_on=False)
     return [dot], lambda frame: dot.set_data([time[frame]], [energy[frame]])
@@ -254,16 +255,18 @@ def _pose(body: PolyCollection, at: Scene, faces: Array, frame: int) -> None:
     middle, depth = seen(at.ball_places(frame), at.view, turn)
     discs = middle[:, np.newaxis] + at.ball * DISC
     rings, ring_depth = _rings(at, turn)
-    shares = [np.sqrt(one / (most or 1.0)) for one, most in zip((at.force[frame], at.land_force[frame]), at.largest, strict=True)]
+    forces = zip((at.force[frame], at.land_force[frame]), at.largest, strict=True)
+    shares = [np.sqrt(force / (most or 1.0)) for force, most in forces]
     cage, red = _shades(faces, turn), np.array(to_rgb(VERMILION))
     balls = np.ones(3) + shares[0][:, np.newaxis] * (red - 1.0)
     land = np.array(to_rgb(GREY)) + shares[1] * (red - np.array(to_rgb(GREY)))
     fills = [*map(tuple, cage), *map(tuple, balls), *["none"] * len(rings)]
-    outlines = cage * np.where(np.arange(len(cage)) < len(cage) - at.angles.size * BAR_POINTS, 0.8, 1.0)[:, np.newaxis]
+    is_bar = np.arange(len(cage)) >= len(cage) - at.angles.size * BAR_POINTS  # pieces, not outlined each
+    outlines = cage * np.where(is_bar, 1.0, 0.8)[:, np.newaxis]
     edges = [*map(tuple, outlines), *[BLACK] * len(discs), *[tuple(land)] * len(rings)]
     widths = np.repeat([0.25, 0.8, 1.6], [len(flat), len(discs), len(rings)])
     shapes = [*flat, *discs, *rings]
-    order = np.argsort(np.concatenate([near.mean(axis=1), depth, ring_depth]), kind="stable")
+    order = np.argsort(np.concatenate([near.mean(axis=1), depth, ring_depth]).round(9), kind="stable")
     body.set_verts([shapes[i] for i in order])
     body.set_facecolor([fills[i] for i in order])
     body.set_edgecolor([edges[i] for i in order])
@@ -299,10 +302,10 @@ def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
     size = "to scale" if at.enlarged == 1.0 else f"enlarged {format_number(at.enlarged, 2)} times"
     return [
         f"Balls: white to red, 0 to {pocket} N in the pocket.",
-        *([f"Land: grey to red, 0 to {land} N."] if at.side else []),
+        *([f"Land: grey to red, 0 to {land} N." if at.largest[1] else "Land: not touched."] if at.side else []),
         "Root scale; the largest since the last frame.",
         f"Movements and clearances {size};",
         "overlaps are contact deformation.",
         "Fixed frame." if at.frame.any() else "Frame of the ball set.",
-        "Logarithmic time." if is_logarithmic(data) else f"Shown: {spans}, {pace}.",
+        f"Shown: {spans}, {pace}.",
     ]

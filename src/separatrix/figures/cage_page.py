@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from separatrix.figures.motion import frame_moments, is_logarithmic, shown_parts
+from separatrix.figures.motion import frame_moments, shown_parts
 from separatrix.figures.scene import BAR_POINTS, POCKET_POINTS, RIM, Scene, scene, turned_by
 from separatrix.figures.style import WIDTH, cut, heading
 from separatrix.units import Array, format_number
@@ -59,7 +59,7 @@ def view(data: xr.Dataset) -> str:
     parts = {
         "ABOUT": html.escape("\n".join(heading(data)[len(title) :])),
         "MOST": ", ".join(forces[: 1 + abs(at.side)]),
-        "SHOWN": f"Frames show {spans}{', on logarithmic time' if is_logarithmic(data) else ''}.",
+        "SHOWN": f"Frames show {spans}.",
         "DATA": found,
     }
     return _filled(_text(PARTS / "view.html"), parts)

@@ -37,9 +37,6 @@ SHORTEST, BANDS = 8, 12.0
 STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
 
-GOES_ON = 1e-3
-"""Mean kinetic energy in the last fifth of a run, over its largest, from which the cage moves on."""
-
 MOST_FRAMES, A_TURN = 360, 6
 """Most frames of a film; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
 
@@ -57,26 +54,10 @@ def is_in_space(data: xr.Dataset) -> bool:
     return "lean" in data and data["lean"].ndim == 2
 
 
-def is_logarithmic(*runs: xr.Dataset) -> bool:
-    """Whether time is drawn logarithmic: where a motion comes to rest, it does so early."""
-    energies = [run["kinetic_energy"].values for run in runs if run.sizes["time"] > 2]
-    return any(float(one[-(one.size // 5) - 1 :].mean()) <= GOES_ON * float(one.max()) for one in energies)
-
-
-def time_limits(*runs: xr.Dataset) -> tuple[float, float]:
-    """Return both ends of the axis of time [ms]; a millisecond if the run has only its start."""
-    times = [time for time in map(milliseconds, runs) if time.size > 1]
-    last = max((float(time[-1]) for time in times), default=0.0)
-    first = min(float(time[1]) for time in times) if is_logarithmic(*runs) else 0.0
-    return first, last if last > first else first + 1.0
-
-
 def time_axis(axes: Axes, *runs: xr.Dataset) -> None:
-    """Set the axis of time for one or several runs."""
-    axes.set(xlim=time_limits(*runs), xlabel="time [ms]")
-    if is_logarithmic(*runs):
-        axes.set(xscale="log", xlim=time_limits(*runs), xlabel="time, logarithmic [ms]")
-        axes.xaxis.set_major_formatter("{x:g}")
+    """Set the axis of time for one or several runs; a millisecond if they have only their start."""
+    last = max(float(milliseconds(run)[-1]) for run in runs)
+    axes.set(xlim=(0.0, last or 1.0), xlabel="time [ms]")
 
 
 def ring(radius: Array | float, angle: Array) -> Array:
@@ -204,7 +185,7 @@ def draw_path(
     axes.set(xlim=(-most, most), ylim=(-most, most))
     axes.set_aspect("equal", adjustable="box", anchor="NW")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_locator(MaxNLocator(4))
     first = last_turns(path)
     if first:
         axes.plot(*path.T, color=SKY, lw=0.35, alpha=0.8, rasterized=True, label="path")
@@ -258,9 +239,15 @@ def spectrum_against_time(time: Array, velocity: Array, reach: Hertz = 0.0) -> t
     return even[starts] + 0.5 * (even[length - 1] - even[0]), frequency, amplitude / (amplitude.max() or 1.0)
 
 
+def forward_velocity(data: xr.Dataset) -> Array:
+    """Return the velocity of the centre, seen from the side from which the ball set turns anticlockwise [m/s]."""
+    sense = -1.0 if float(data["cage_cage_speed"]) < 0.0 else 1.0
+    return np.asarray(data["velocity"].values * np.array([1.0, sense]))
+
+
 def of_run(data: xr.Dataset) -> tuple[Array, Array]:
     """Return the spectrum of a simulation."""
-    return whirl_spectrum(data["time"].values, data["velocity"].values)
+    return whirl_spectrum(data["time"].values, forward_velocity(data))
 
 
 def spectrum_reach(data: xr.Dataset) -> Hertz:
@@ -290,7 +277,7 @@ def draw_spectrum(axes: Axes, *runs: xr.Dataset, looks: tuple[Look, ...] = ({"co
 def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
     """Draw the spectrum against linear time while there is a whirl to see, darker for a stronger one."""
     most, whole = spectrum_reach(data), 1e3 * float(data["time"].values[-1]) or 1.0
-    middles, frequency, share = spectrum_against_time(data["time"].values, data["velocity"].values, most)
+    middles, frequency, share = spectrum_against_time(data["time"].values, forward_velocity(data), most)
     shown = np.abs(frequency) <= max(1.1 * most, 2.1 * (frequency[1] - frequency[0]))
     level = 20.0 * np.log10(np.maximum(share[:, shown], 10.0 ** (FAINTEST / 20.0)))
     step = frequency[1] - frequency[0]
@@ -309,15 +296,14 @@ def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
 def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
     """Return the samples that become frames, rising, with the first and the last.
 
-    Where time is drawn logarithmic they are evenly spaced so. Else they are close enough to show each turn
-    of the whirl; if the whole run would take too many, its beginning and its end are shown.
+    They are close enough to show each turn of the whirl; if the whole run would take too many, its beginning
+    and its end are shown.
     """
-    time, (first, last), logarithmic = milliseconds(data), time_limits(data), is_logarithmic(data)
-    wanted = np.searchsorted(time, (np.geomspace if logarithmic else np.linspace)(first, last, most))
-    even = np.unique(np.append(0, wanted.clip(0, time.size - 1)))[-most:]
+    time = milliseconds(data)
+    even = np.unique(np.linspace(0, time.size - 1, min(most, time.size)).astype(int))
     turns = fastest_whirl(data) * float(data["time"].values[-1])
     step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
-    if logarithmic or int(np.diff(even).max(initial=1)) <= step:
+    if int(np.diff(even).max(initial=1)) <= step:
         return even
     half = np.arange(most // 2) * step
     return np.unique(np.concatenate([half, time.size - 1 - half]))
@@ -326,7 +312,7 @@ def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:
 def shown_parts(data: xr.Dataset, moments: Array) -> list[tuple[float, float]]:
     """Return beginning and end of each part of the run that the frames show [ms]."""
     time = milliseconds(data)[moments]
-    if is_logarithmic(data) or time.size < 3:
+    if time.size < 3:
         return [(float(time[0]), float(time[-1]))]
     steps = np.diff(moments)
     cuts = np.flatnonzero(steps > GAP * np.median(steps) + 1) + 1

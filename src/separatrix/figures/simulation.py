@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from separatrix.figures import motion
-from separatrix.figures.motion import is_in_space, is_logarithmic, milliseconds, time_axis
+from separatrix.figures.motion import is_in_space, milliseconds, time_axis
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -132,7 +132,7 @@ def whirl(data: xr.Dataset) -> Figure:
     grid = figure.add_gridspec(count + 2, 2)
     for place, (frequency, scale, name, label, title) in enumerate(drawn):
         axes = figure.add_subplot(grid[place // 2, place % 2])
-        turn = float(data["analysis_whirl_cage_speed"]) / (2.0 * np.pi)
+        turn = abs(float(data["analysis_whirl_cage_speed"])) / (2.0 * np.pi)
         _spectrum(axes, frequency, scale * data[f"analysis_spectra_{name}"].values, turn)
         axes.set(ylabel=label)
         axes.set_title(f"{'abcd'[place]}  {title}")
@@ -190,8 +190,8 @@ def forces(data: xr.Dataset) -> Figure:
     above, below = figure.subfigures(nrows=2, height_ratios=[3.4, 2.6], squeeze=False)[:, 0]
     panels = above.subplots(nrows=2, ncols=2, height_ratios=[1.5, 1.0], width_ratios=[2.2, 1.0])
     near, largest = close_view(data), max(float(largest_force(data).max()), 1e-9)
-    mesh = raster(panels[0, 0], data, largest, logarithmic=is_logarithmic(data))
-    raster(panels[0, 1], near, largest, logarithmic=False)
+    mesh = raster(panels[0, 0], data, largest)
+    raster(panels[0, 1], near, largest)
     colour_bar(mesh, [*panels[0]], "force [N], root scale", pad=0.01, aspect=14)
     top = 1.05 * max(largest, float(data["land_force"].max()))
     for axes, part in zip(panels[1], (data, near), strict=True):
@@ -255,13 +255,11 @@ def pooled(time: Array, force: Array, edges: Array) -> Array:
     return np.array([force[a:b].max(axis=0) if b > a else force[max(0, b - 1)] for a, b in spaces])
 
 
-def raster(axes: Axes, data: xr.Dataset, largest: float, *, logarithmic: bool) -> ScalarMappable:
+def raster(axes: Axes, data: xr.Dataset, largest: float) -> ScalarMappable:
     """Draw the force in each pocket against time: white for none."""
     time = milliseconds(data)
-    first = float(time[min(1, time.size - 1)]) if logarithmic else float(time[0])
-    last = float(time[-1]) if time[-1] > first else first + 1.0
-    space = np.geomspace if logarithmic else np.linspace
-    edges = space(first, last, min(COLUMNS, max(2, time.size)) + 1)
+    last = float(time[-1]) if time[-1] > time[0] else float(time[0]) + 1.0
+    edges = np.linspace(float(time[0]), last, min(COLUMNS, max(2, time.size)) + 1)
     force = pooled(time, data["contact_force"].values, edges)
     look: Look = {"cmap": "Greys", "norm": PowerNorm(0.5, 0.0, largest), "rasterized": True}
     mesh = axes.pcolormesh(edges, np.arange(force.shape[1] + 1) + 0.5, force.T, **look)
@@ -336,16 +334,15 @@ def energy(data: xr.Dataset) -> Figure:
     for name in ("energy", "work"):
         motion.shade_judged(panels[name], data)
     axes = panels["rubbing"]
-    pockets, land = (np.atleast_1d(data[f"analysis_rubbing_{name}_power"].values) for name in ("pocket", "land"))
-    axes.bar(np.arange(1, pockets.size + 1), pockets, 0.7, color=BLUE)
-    axes.bar(pockets.size + 1 + np.arange(1, land.size + 1), land, 0.7, color=ORANGE)
-    lands = ["land"] if land.size == 1 else [f"land {i + 1}" for i in range(land.size)]
-    names = {**{i: str(i) for i in range(1, pockets.size + 1)}, **dict(enumerate(lands, pockets.size + 2))}
-    step = max(1, len(names) // 20)
-    shown = [i for i in names if i > pockets.size or (i - 1) % step == 0]
-    axes.set_xticks(shown, [names[i] for i in shown])
-    axes.set(ylabel="friction power [W]", xlabel="pocket", xlim=(0.3, max(names, default=1) + 0.7))
-    axes.set_title("c  Rubbing, mean of the run")
+    power = data["analysis_rubbing_pocket_power"].values
+    names = {i: str(i) for i in range(1, power.size + 1, max(1, power.size // 20))}
+    axes.bar(np.arange(1, power.size + 1), power, 0.7, color=BLUE)
+    if motion.land_boundary(data) is not None:
+        names[power.size + 2] = "land"
+        axes.bar([power.size + 2], [float(data["analysis_rubbing_land_power"])], 0.7, color=ORANGE)
+    axes.set_xticks([*names], [*names.values()])
+    axes.set(ylabel="friction power [W]", xlabel="pocket", xlim=(0.3, max([power.size, *names]) + 0.7))
+    axes.set_title("c  Rubbing: in pockets, mean of the run; on the land, mean of its judged part")
     return figure
 
 

@@ -149,7 +149,7 @@ def _decided_ensemble(
 
 
 def _tally(ensemble: Ensemble) -> Tally:
-    whirls, calm = int(ensemble.count(RunOutcome.WHIRLS)[0]), np.count_nonzero(is_calm(ensemble.outcome))
+    whirls, calm = int(ensemble.count(RunOutcome.WHIRLS)[0]), int(is_calm(ensemble.outcome).sum())
     return Tally(runs=ensemble.outcome.shape[1], whirls=whirls, settles=calm)
 
 

@@ -25,6 +25,7 @@ from separatrix.limits.response import (
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio
 
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinearLimit:
     """Critical friction without clearance in a ball set at rest, in closed form."""

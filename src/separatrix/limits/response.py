@@ -71,8 +71,8 @@ def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> Mov
 def with_damping(cage: MovingCage, damping: NewtonSecondPerMetre) -> MovingCage:
     """Return the same cage with another race damping [N s/m].
 
-    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; with an
-    infinite damping their races grip them.
+    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at an
+    infinite damping the races grip them.
     """
     if damping == inf:
         return replace(cage, race_damping=inf, traction=None, free_ball=None)
@@ -128,15 +128,16 @@ class GrowthCounter:
         first_run: int,
         runs: int,
     ) -> Count:
-        """Count the whirling runs among those numbered from `first_run`."""
+        """Count the runs, from `first_run` on, that whirl or bring a ball to the edge of its wall."""
         cage = self.cage_at(restitution_factor, friction)
         found = self.runner.ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
-        unresolved = found.outcome == RunOutcome.UNRESOLVED
+        left = found.cause == Cause.LEFT_POCKET
+        unresolved = (found.outcome == RunOutcome.UNRESOLVED) & ~left
         open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
         if open_ends:  # a motion that still falls does not whirl
             note = UNRESOLVED.format(open_ends, runs, kick, friction)
             warnings.warn(note, ValidityWarning, stacklevel=2)
-        return Count(int(found.count(RunOutcome.WHIRLS)[0]), runs)
+        return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs)
 
 
 SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
@@ -149,7 +150,7 @@ LADDER: tuple[Ratio, ...] = (
 
 LAST = len(LADDER) - 1
 STEP = math.log(10.0) / _STEPS_A_DECADE
-BATCH = LANES  # runs counted at a time, which the engine has side by side, or a twelfth of all if that is more
+BATCH = LANES  # runs counted at a time, as many as go side by side; or a twelfth of all if that is more
 TURNS = 40
 """Counts for one crossing at most, where a dozen do: a centre may move away from what was counted before."""
 

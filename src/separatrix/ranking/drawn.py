@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
@@ -132,7 +132,9 @@ def run_bearings(
     shape = len(kicks), len(bearings)
     left, count = found["left_ball"], bearings[0].cage.ball_count
     found["left_ball"] = np.where(backward & (left > 1), count + 2 - left, left)
-    shaped = {name: values.reshape(*shape, *values.shape[1:]) for name, values in found.items()}
+    shaped: dict[str, Any] = {
+        name: values.reshape(*shape, *values.shape[1:]) for name, values in found.items()
+    }
     return Ensemble(kicks=np.array(kicks), duration=bearings[0].settings.duration, **shaped)
 
 

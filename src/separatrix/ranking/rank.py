@@ -256,9 +256,11 @@ def _more(
     question: _Question, piece: Piece, results: Mapping[Piece, CriticalFriction | Judgement]
 ) -> list[Piece]:
     """Nodes of the same curve that are wanted once this one is known."""
-    if isinstance(piece, Case) or not isinstance(piece[1], tuple):
+    if isinstance(piece, Case):
         return []
     pocket, node = piece
+    if not isinstance(node, tuple):
+        return []
     wanted = question.tracers[pocket].more(node, _points_of(results, pocket))
     return [(pocket, node) for node in wanted]
 

@@ -132,8 +132,8 @@ class Judgement:
     largest_contact_force, largest_land_force : float
         Largest force between a ball and its pocket, and of the land, in any run [N].
     force_limit : float or None
-        Force of a pocket whose friction is all that the races hold, beyond which this ball has no meaning; None without
-        one [N].
+        Force of a pocket whose friction is all that the races hold, beyond which this ball has no meaning;
+        None without one [N].
     force_exceeds_races : bool
         Whether `largest_contact_force` is beyond that.
     left_pocket : int
@@ -168,8 +168,8 @@ class Judgement:
         Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m], any run;
         None in the plane.
     cone_ratio : float or None
-        The same median, in space: speed at which the lean of the axis goes round, in the fixed frame, over the ball
-        set's [-]; None in the plane.
+        The same median, in space: speed at which the lean of the axis goes round, in the fixed frame, over
+        the ball set's [-]; None in the plane.
     """
 
     verdict: Verdict
@@ -248,9 +248,10 @@ def kick_counts(ensemble: Ensemble) -> tuple[KickCount, ...]:
 
 
 def worst(counts: tuple[KickCount, ...]) -> int:
-    """Place of the worst kick: of those from which most runs whirl, if any, the one with fewest that settle or roll.
+    """Place of the worst kick: of those from which most runs whirl, if any, the one with fewest calm runs.
 
-    Of several it is the one with most whirls, then with most runs that the land keeps moving, then with most that roll.
+    Calm runs settle or roll. Of several it is the one with most whirls, then with most runs that the land
+    keeps moving, then with most that roll.
     """
     whirling = [i for i, count in enumerate(counts) if _mostly(count.whirls, count.runs)]
 
@@ -265,10 +266,10 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     """Judge a cage by its ensemble, at the worst kick.
 
     UNSTABLE: the 95 % interval of the share of its runs that whirl lies above one half. STABLE: at least 90 %
-    settle or roll in their pockets, the lower end of that share's 95 % interval is above one half, and the cage neither
-    drifts nor ends outside its pockets nor left its room nor, in any run, the range of numbers, nor does friction on the
-    land keep it moving in more than a tenth of the runs from a kick. UNDECIDED otherwise. The rule is ours;
-    it asks more of a stable cage than of an unstable one.
+    settle or roll in their pockets, the lower end of that share's 95 % interval is above one half, and the
+    cage neither drifts nor ends outside its pockets nor left its room nor, in any run, the range of numbers,
+    nor does friction on the land keep it moving in more than a tenth of the runs from a kick. UNDECIDED
+    otherwise. The rule is ours; it asks more of a stable cage than of an unstable one.
 
     Parameters
     ----------
@@ -277,7 +278,8 @@ def judge(cage: MovingCage, ensemble: Ensemble, *, capacity: Newton | None = Non
     ensemble : Ensemble
         The runs.
     capacity : float, optional
-        Largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N]; by default what its law of traction has.
+        Largest force that the races transmit to a ball, f_BT (Q_i + Q_o) [N]; by default that of its law of
+        traction.
     """
     counts = kick_counts(ensemble)
     verdict, because = decide(cage, ensemble, counts)

@@ -35,7 +35,7 @@ OUTCOME_SENTENCES = {
 }
 
 CAUSES = {
-    Cause.LEFT_POCKET: "a ball reaches the edge of its pocket's wall; check the diameters and clearances of [cage]",
+    Cause.LEFT_POCKET: "a ball reaches the edge of its pocket's wall; check [cage] diameters and clearances",
     Cause.NO_CONTACT: "nothing touches; raise [stability] duration or kicks",
     Cause.FALLING: "the motion still loses energy at the end; raise [stability] duration",
     Cause.LAND_FRICTION: "friction on the land, not in the pockets, keeps the cage moving",
@@ -87,10 +87,10 @@ def ball_words(cage: MovingCage) -> str:
 
 
 def force_limit(cage: MovingCage, capacity: Newton | None = None) -> Newton:
-    """Force of a pocket whose friction is all that the races hold of a ball [N]; beyond it the ball has no meaning.
+    """Force of a pocket whose friction is all that the races hold of a ball [N].
 
-    Infinite among free balls, which slide as they do, without friction, and where nothing says what the races hold:
-    `capacity`, f_BT (Q_i + Q_o) [N], or the law of traction.
+    Beyond it damper and one state have no meaning. Infinite among free balls, without friction, and where
+    nothing states what the races hold: `capacity`, f_BT (Q_i + Q_o) [N], or the law of traction.
     """
     held = cage.traction.capacity if cage.traction is not None else math.inf
     if cage.free_ball is not None or cage.ball_cage_friction == 0.0:
@@ -121,13 +121,14 @@ def too_few(runs: int) -> str:
 
 
 def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
-    """Return what share of the runs from the worst kick settles or rolls, and how hard the cage then rolls or rubs."""
+    """Return what share of the runs from the worst kick settles or rolls, and how hard they roll or rub."""
     outcome = ensemble.outcome[kick]
     settled, rolling = outcome == RunOutcome.SETTLES, outcome == RunOutcome.ROLLS
     ends = "settle or roll in their pockets" if rolling.any() else "settle"
     said = f"{_share(settled | rolling)} of the runs {ends} from the worst kick, {ensemble.kicks[kick]:g} m/s"
     if np.count_nonzero(rolling) > np.count_nonzero(settled):
-        force, power = (_median(x[kick][rolling]) for x in (ensemble.largest_contact_force, ensemble.pocket_power))
+        force = _median(ensemble.largest_contact_force[kick][rolling])
+        power = _median(ensemble.pocket_power[kick][rolling])
         many = f"{100.0 * float(rolling.mean()):.0f} %"
         said += f"; {many} roll, with up to {_three(force)} N in a pocket, fed {_watt(power)} (medians)"
     elif (force := _median(ensemble.rubbing_force[kick][settled])) > 0.0:
@@ -147,7 +148,7 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
         return f"{first}; the energy passes {GROWN:g} times that of kick and frame."
-    by_land = 2 * np.count_nonzero(ensemble.cause[kick][whirling] == Cause.LAND_FRICTION) > np.count_nonzero(whirling)
+    by_land = np.mean(ensemble.cause[kick][whirling] == Cause.LAND_FRICTION) > 0.5
     what = "friction on the land, more than that in the pockets," if by_land else "friction"
     return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}."
 
@@ -161,8 +162,8 @@ def not_finite(ensemble: Ensemble) -> str:
 def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
     """Return what the runs from the worst kick do; of unresolved ones also why."""
     count = counts[kick]
-    parts = [(count.settles, "settle"), (count.rolls, "roll"), (count.whirls, "whirl"), (count.drifts, "drift")]
-    said = ", ".join(f"{n} {word}" for n, word in parts if n)
+    parts = {"settle": count.settles, "roll": count.rolls, "whirl": count.whirls, "drift": count.drifts}
+    said = ", ".join(f"{n} {word}" for word, n in parts.items() if n)
     if count.unresolved:
         said = f"{said}{', ' if said else ''}{count.unresolved} are unresolved"
         causes = ensemble.cause[kick][ensemble.outcome[kick] == RunOutcome.UNRESOLVED]

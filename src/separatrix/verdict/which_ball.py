@@ -1,8 +1,8 @@
-"""Which ball a verdict rests on: the one that the study forces, or one state until free balls have to be asked.
+"""Which ball a verdict rests on: the one of the study, or one state until free balls have to be asked.
 
-With friction along the true sliding the critical friction of the ball of one state is 0.74 to 1.00 of that of free
-balls (ten bearings, the worse of two speeds): its STABLE is safe, its UNSTABLE may be too early. They agree while the
-friction of a sustained whirl stays below a quarter of what the races hold.
+The critical friction with one state is 0.74 to 1.00 of that among free balls (ten bearings, the worse of two
+speeds): its STABLE is safe, its UNSTABLE may be too early. They agree while the friction of a sustained whirl
+stays below a quarter of what the races hold.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def transmitted_force(solution: Solution) -> Newton:
 def whirl_share(cage: MovingCage, capacity: Newton) -> Ratio:
     r"""Friction of a sustained whirl over what the races hold [-].
 
-    :math:`f N / f_{BT}(Q_i + Q_o)` with the force :math:`N = 2.5\,\Omega c_p \sqrt{k m}` of an impact on the mass m
-    that it feels.
+    :math:`f N / f_{BT}(Q_i + Q_o)` with the force :math:`N = 2.5\,\Omega c_p \sqrt{k m}` of an impact, whose
+    mass m is that which it feels.
     """
     speed = REFERENCE * abs(cage.cage_speed) * cage.half_play
     return cage.ball_cage_friction * speed * math.sqrt(cage.ball_cage_stiffness * felt_mass(cage)) / capacity
@@ -49,8 +49,10 @@ def asks_free_balls(level: BallModel, first: Judgement, share: Ratio) -> bool:
     return level is BallModel.AUTO and first.verdict is not Verdict.STABLE and share > ENOUGH
 
 
-def with_reason(level: BallModel, found: Judgement, share: Ratio, first: Judgement | None = None) -> Judgement:
-    """Return the verdict with the reason why its ball decided; `first` is that with one state, if free balls did."""
+def with_reason(
+    level: BallModel, found: Judgement, share: Ratio, first: Judgement | None = None
+) -> Judgement:
+    """Return the verdict with the reason why its ball decided; `first`: with one state, if free balls did."""
     if level is not BallModel.AUTO:
         return found
     part = f"{100.0 * share:.2g} % of what the races hold"

@@ -59,7 +59,7 @@ function eye(point, turn, scale, width, height) {
   const across = c * point[0] - s * point[1], away = s * point[0] + c * point[1];
   const up = Math.cos(view.high) * point[2] + Math.sin(view.high) * away;
   return [width / 2 + scale * across, height / 2 - scale * up,
-    Math.sin(view.high) * point[2] - Math.cos(view.high) * away];
+    Math.round(1e9 * (Math.sin(view.high) * point[2] - Math.cos(view.high) * away))];
 }
 
 function sized(canvas) {
