@@ -1,48 +1,23 @@
-"""Compile the kernels once, before the tests: else each of their workers would compile the same.
+"""Compile, once before the tests, the kernels that most of them use: of `plane` or of `space`."""
 
-`python tests/kernels.py plane` and, beside it, `python tests/kernels.py space` have about equal work. Kernels
-that share functions are compiled by one process, where the shared ones are compiled once.
-"""
-
-import contextlib
-import os
 import sys
+import warnings
 from dataclasses import replace
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "physics"))
-
-from cages import TURNING
-from space_cages import ROUND, course
-from test_equilibrium import FREE, test_at_rest_both_angles_are_equal
-
-from separatrix import StabilitySettings, run_ensemble, run_hard_ensemble
-from separatrix.cli import main
-
-FEW = StabilitySettings(kicks=(0.5,), runs=1, duration=1e-3)
+import separatrix
+from separatrix.cage import moving_cage, run_ensemble
+from separatrix.study import BallModel, MotionModel, StabilitySettings
 
 
-def plane() -> None:
-    """Equilibrium and traction, then the cage in the plane."""
-    _answer("traction")
-    test_at_rest_both_angles_are_equal(FREE)
-    for cage in (TURNING, replace(TURNING, gravity=9.81)):
-        run_ensemble(cage, FEW)
-    run_hard_ensemble(TURNING, FEW)
-
-
-def space() -> None:
-    """The cage in space, then the ball's mobility: by then the other process has the equilibrium."""
-    run_ensemble(ROUND, FEW)
-    course(ROUND, 1e-3)
-    _answer("mobility")
-
-
-def _answer(verb: str) -> None:
-    with open(os.devnull, "w", encoding="utf-8") as nowhere, contextlib.redirect_stdout(nowhere):
-        if code := main([verb, "cryogenic-turbopump", "--json", "--quiet"]):
-            sys.exit(code)
+def main(where: str) -> None:
+    """Run one cage among each ball that the tests use there, for a moment."""
+    warnings.simplefilter("ignore")
+    study = separatrix.read_study("cryogenic-turbopump")
+    balls = {"plane": [BallModel.DAMPER, BallModel.TRACTION], "space": [BallModel.TRACTION, BallModel.DAMPER]}
+    solution = separatrix.solve(replace(study, cage=replace(study.cage, motion=MotionModel(where))))
+    for ball in balls[where]:
+        run_ensemble(moving_cage(solution, 0.05, ball), StabilitySettings(kicks=(0.1,), runs=1))
 
 
 if __name__ == "__main__":
-    {"plane": plane, "space": space}[sys.argv[1]]()
+    main(sys.argv[1])

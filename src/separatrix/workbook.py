@@ -83,10 +83,12 @@ EVIDENCE = (
     Column("growth_rate_high", "growth rate, high end (1/s)", "0.00", 11),
     Column("largest_offset", "largest offset (mm)", width=11, factor=1e3),
     Column("largest_contact_force", "largest pocket force (N)", "0.0", 11),
+    Column("force_limit", "pocket force that the races hold (N)", "0.0", 11),
     Column("largest_land_force", "largest land force (N)", "0.0", 11),
     Column("whirl_frequency", "whirl (Hz)", "0.00", 11),
     Column("whirl_ratio", "whirl ratio (-)", width=11),
     Column("ball_cage_stiffness", "pocket stiffness (N/um)", "0.00", 11, 1e-6),
+    Column("ball", "ball", width=11),
     Column("runs", "runs", "0", 7),
 )
 ALWAYS, WRAPS = ("rank", "name", "verdict"), ("extrapolation", "reason")

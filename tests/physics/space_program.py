@@ -11,10 +11,9 @@ import math
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from separatrix.cage import PlanarCage
+from separatrix.cage import MovingCage
 from separatrix.units import Array
 
 
@@ -36,28 +35,6 @@ def bore_contact(
     return offset, height, across / offset
 
 
-def edge_contact(place: Array, bore: float, surface: float) -> tuple[float, Array]:
-    """Distance and direction of the nearest point of the edge of a bore from a ball, by search.
-
-    All in the axes of the pocket (outward, along the orbit, along the axis) from the centre of the cage; the
-    bore has its axis along the first and meets the cylinder of a radius about the third.
-    """
-
-    def away(angle: float) -> tuple[float, float, float]:
-        along, axial = bore * math.cos(angle), bore * math.sin(angle)
-        return math.sqrt(surface**2 - along**2) - place[0], along - place[1], axial - place[2]
-
-    def slope(angle: float) -> float:
-        c, s, (out, along, axial) = bore * math.cos(angle), bore * math.sin(angle), away(angle)
-        return out * c * s / math.sqrt(surface**2 - c**2) - along * s + axial * c
-
-    step = math.pi / 36.0
-    first = min((i * step for i in range(72)), key=lambda angle: sum(x * x for x in away(angle)))
-    found = np.array(away(brentq(slope, first - step, first + step, xtol=1e-13)))
-    distance = float(np.linalg.norm(found))
-    return distance, found / distance
-
-
 def sliding(
     centre_speed: Array, spin: Array, centre: Array, ball: Array, ball_speed: Array, ball_spin: Array,
     direction: Array, ball_radius: float,
@@ -71,26 +48,6 @@ def sliding(
     return -normal, relative - normal * direction
 
 
-def land_gap(
-    centre: Array, turned: Rotation, height: float, cage_radius: float, clearance: float
-) -> tuple[float, float]:
-    """Smallest gap of the cage's circle at a height to an outer land, and its azimuth, by search."""
-    axis_x, axis_y, axis_z = turned.apply(np.eye(3))
-
-    def gap(a: Array) -> Array:
-        rim = cage_radius * (np.cos(a)[:, None] * axis_x + np.sin(a)[:, None] * axis_y)
-        place = centre + height * axis_z + rim
-        return np.asarray(cage_radius + clearance - np.hypot(place[:, 0], place[:, 1]))
-
-    low, high = 0.0, 2.0 * math.pi
-    for _ in range(12):
-        a = np.linspace(low, high, 2001)
-        best = float(a[np.argmin(gap(a))])
-        low, high = best - (high - low) / 1000.0, best + (high - low) / 1000.0
-    place = centre + height * axis_z + cage_radius * (math.cos(best) * axis_x + math.sin(best) * axis_y)
-    return float(gap(np.array([best]))[0]), math.atan2(place[1], place[0])
-
-
 class SmallSteps:
     """A cage in space with bores and dampers, in the frame of the housing.
 
@@ -98,12 +55,10 @@ class SmallSteps:
     its lead and its place along the groove.
     """
 
-    def __init__(self, cage: PlanarCage) -> None:
-        if cage.space is None:
-            raise LookupError
-        self.cage, self.plane = cage.space, cage
+    def __init__(self, cage: MovingCage) -> None:
+        self.cage, self.plane = cage, cage
         self.angles = np.array(cage.ball_angles)
-        across = cage.space.transverse_inertia
+        across = cage.transverse
         self.inertia = np.diag([across, across, cage.moment_of_inertia])
 
     def forces(self, t: float, state: Array) -> tuple[Array, Array, Array]:
@@ -119,8 +74,6 @@ class SmallSteps:
             ball = plane.pitch_radius * out + lead * along + np.array([0.0, 0.0, axial])
             offset, _, away = bore_contact(r, turned, phi, plane.pitch_radius, ball)
             depth = offset - plane.pocket_clearance / 2.0
-            if depth > 0.0:
-                depth, away = self.touch(depth, away, r, turned, phi, ball)
             pull = np.zeros(3)
             if depth > 0.0:
                 push = plane.ball_cage_stiffness * depth
@@ -136,22 +89,6 @@ class SmallSteps:
             rates[j, 0] = -pull @ along / plane.race_damping
             rates[j, 1] = (-pull[2] - cage.groove_stiffness * axial) / cage.groove_damping
         return force, moment, rates
-
-    def touch(
-        self, depth: float, away: Array, centre: Array, turned: Rotation, angle: float, ball: Array
-    ) -> tuple[float, Array]:
-        """Depth and direction of a contact with the wall, or with its edge where the wall has ended."""
-        bore, cage = (self.plane.pocket_clearance + self.cage.ball_diameter) / 2.0, self.cage
-        axes = np.array([*ring_axes(angle), [0.0, 0.0, 1.0]])
-        place = axes @ turned.inv().apply(ball - centre)
-        wall = place[:2] + np.array([0.0, bore * (axes @ turned.inv().apply(away))[1] - place[1]])
-        reach = float(np.hypot(*wall))
-        inner, outer = cage.edges
-        if inner <= reach <= outer:
-            return depth, away
-        surface = outer if reach > outer else inner
-        distance, direction = edge_contact(place, bore, surface)
-        return cage.ball_diameter / 2.0 - distance, turned.apply(axes.T @ direction)
 
     def rates(self, t: float, state: Array) -> Array:
         """Time derivative of the state."""

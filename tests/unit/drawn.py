@@ -10,7 +10,15 @@ MADE = 12
 
 
 def run(
-    *, count=5, samples=MADE, outcome="WHIRLS", guidance="outer", touching=True, play=0.6e-3, space=False, **changes
+    *,
+    count=5,
+    samples=MADE,
+    outcome="WHIRLS",
+    guidance="outer",
+    touching=True,
+    play=0.6e-3,
+    space=False,
+    **changes,
 ):
     """One run of a cage of `count` pockets whose centre goes around, in the plane or in space."""
     time = np.linspace(0.0, 0.01, samples)

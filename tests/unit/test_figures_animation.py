@@ -176,7 +176,7 @@ def test_the_cage_meets_its_land_when_it_touches(guidance, side):
 
 
 def test_in_the_plane_the_picture_is_seen_along_the_axis():
-    """x to the right and y upward, as in the orbit; in space from above the plane, and the lean moves its edge."""
+    """With x to the right and y upward, as in the orbit; in space from above, and the lean moves the edge."""
     points = np.array([[1.0, 2.0, 3.0]])
     assert animation.seen(points, with_film(SMALL).view, 0.0)[0] == pytest.approx(points[:, :2])
     seen = with_film(SPACE)
@@ -211,7 +211,9 @@ def test_in_the_fixed_frame_the_picture_turns_with_the_ball_set():
 
 def test_a_ball_of_unknown_size_fills_three_quarters_of_its_place():
     """A cage by itself has no diameter of its balls."""
-    assert with_film(drawn.run(samples=1, cage_ball_diameter=0.0)).ball == pytest.approx(0.375 * 2 * np.pi * 0.0325 / 5)
+    assert with_film(drawn.run(samples=1, cage_ball_diameter=0.0)).ball == pytest.approx(
+        0.375 * 2 * np.pi * 0.0325 / 5
+    )
     assert with_film(SMALL).ball == 0.5 * 0.0111
 
 

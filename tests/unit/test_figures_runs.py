@@ -32,7 +32,9 @@ def compared(data):
     return simulation.comparison(data, drawn.run(), ("one", "the other"))
 
 
-@pytest.mark.parametrize("draw", [simulation.course, simulation.whirl, simulation.forces, simulation.energy, compared])
+@pytest.mark.parametrize(
+    "draw", [simulation.course, simulation.whirl, simulation.forces, simulation.energy, compared]
+)
 @pytest.mark.parametrize("data", ODD.values(), ids=ODD.keys())
 def test_every_run_is_drawn_without_a_warning(draw, data):
     """Warnings are errors here."""
@@ -138,7 +140,11 @@ def test_a_contact_is_counted_once_and_on_its_side():
     signed = np.array([[5.0, 0.0, 0.0], [4.0, -1.0, 2.0], [0.0, 0.0, -2.0], [3.0, -1.0, -2.0]])
     found = simulation.contact_counts(np.abs(signed), np.where(signed > 0.0, np.pi, 0.0))
     assert found.tolist() == [[2, 0, 1], [0, 2, 1], [0, 0, 0]]
-    assert simulation.contact_counts(np.ones((4, 1)), np.full((4, 1), -0.5 * np.pi)).tolist() == [[0], [0], [1]]
+    assert simulation.contact_counts(np.ones((4, 1)), np.full((4, 1), -0.5 * np.pi)).tolist() == [
+        [0],
+        [0],
+        [1],
+    ]
 
 
 @pytest.mark.parametrize("columns", [3, 10, 40])

@@ -323,8 +323,9 @@ def run_rows(
     *,
     record: Array | None = None,
     every: int = 1,
+    equations: Callable[..., None] | None = None,
 ) -> Raw:
-    """Put runs of one kind through the queue."""
+    """Put runs of one kind through the queue; by other `equations` than those of `motion` if given."""
     count, most = (
         len(numbers),
         int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers)),
@@ -341,7 +342,7 @@ def run_rows(
         np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits")
     )
     values, strips, waves, limits = given
-    follow_queue = run.queue(kind.ball, kind.space, kind.leans, kind.hertz, kind.lobes, real)
+    follow_queue = run.queue(kind.ball, kind.space, kind.leans, kind.hertz, kind.lobes, real, equations)
     follow_queue(
         states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits,
         raw.heat, raw.record, every, stop.flag,

@@ -34,7 +34,7 @@ Nodes = dict[Place, dict[str, Plain]]
 NOT_RESULTS = frozenset(
     {"study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"}
     | {"complete", "reason", "static_reason", "impacts_reason", "outcome_sentence", "paper_statement"}
-    | {"words", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"}
+    | {"words", "ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"}
 )
 """Inputs, sentences that follow from numbers, and single drawn bearings."""
 
@@ -53,7 +53,8 @@ UNCOUNTED_VERBS = ("check", "bearing", "traction", "restitution", "mobility")
 UNCOUNTED_PLACES = ("chain", "pocket", "static")
 UNCOUNTED_NAMES = frozenset(
     {"friction", "restitution_factor", "restitution_factor_free_spin", "ball_cage_stiffness", "capacity"}
-    | {"cage_speed", "drift_rate_law", "kick", "worst_kick", "runs", "duration", "friction_deviation"}
+    | {"cage_speed", "drift_rate_law", "force_limit", "kick", "worst_kick", "runs", "duration"}
+    | {"friction_deviation"}
 )
 """What is computed without runs: its differences are exact up to the model."""
 

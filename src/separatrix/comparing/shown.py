@@ -197,7 +197,8 @@ def pictures(first: Saved, second: Saved) -> Iterator[tuple[str, Figure]]:
     pair = [one.data for one in (first, second) if one.data is not None]
     if len(pair) < 2 or first.verb not in NEEDED:
         return
-    if first.verb != "simulate" and any("restitution_factor" not in one.sizes for one in pair):  # an interrupted one has no curve
+    has_curves = all("restitution_factor" in one.sizes for one in pair)  # an interrupted one has none
+    if first.verb != "simulate" and not has_curves:
         return
     for data, saved in zip(pair, (first, second), strict=True):
         _check(data, saved)

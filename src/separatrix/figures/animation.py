@@ -172,7 +172,9 @@ def pictures(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Iterat
     ]
     pockets = pocket_boundary(data["pocket_angle"].values, data["half_play"].values)
     known = [(one, width) for one, width in ((land, 1.2), (pockets, 0.6)) if one is not None]
-    boundaries = [(ring(np.where(np.isfinite(one), one, np.nan), AROUND), {"lw": width}) for one, width in known]
+    boundaries = [
+        (ring(np.where(np.isfinite(one), one, np.nan), AROUND), {"lw": width}) for one, width in known
+    ]
     paths = [("position", "velocity", "centre [mm]", boundaries)]
     paths += [("lean", "lean_rate", "lean [mrad]", [])] if at.in_space else []
     for place, (name, rate, label, limits) in enumerate(paths):
@@ -201,7 +203,12 @@ def filmed(figure: Figure, parts: Sequence[Part], count: int) -> Iterator[Image.
 
 
 def _path(
-    axes: Axes, samples: Sequence[Array], label: str, limits: Sequence[tuple[Array, Look]], at: Scene, moments: Array
+    axes: Axes,
+    samples: Sequence[Array],
+    label: str,
+    limits: Sequence[tuple[Array, Look]],
+    at: Scene,
+    moments: Array,
 ) -> Part:
     """Draw boundaries, the last frames of a path and its end, in mm or mrad; they turn in a fixed frame."""
     shapes = [samples[1], *(boundary for boundary, _ in limits)]
@@ -228,7 +235,8 @@ def _path(
 
 def _energy(axes: Axes, data: xr.Dataset, moments: Array) -> Part:
     draw_energy(axes, data)
-    axes.get_legend().set_visible(False)
+    if (legend := axes.get_legend()) is not None:
+        legend.remove()
     parts = shown_parts(data, moments)
     for first, last in parts if len(parts) > 1 else ():
         axes.axvspan(first, last, color=SHADE, lw=0, zorder=0)
@@ -302,7 +310,11 @@ def notes(data: xr.Dataset, at: Scene, moments: Array) -> list[str]:
     size = "to scale" if at.enlarged == 1.0 else f"enlarged {format_number(at.enlarged, 2)} times"
     return [
         f"Balls: white to red, 0 to {pocket} N in the pocket.",
-        *([f"Land: grey to red, 0 to {land} N." if at.largest[1] else "Land: not touched."] if at.side else []),
+        *(
+            [f"Land: grey to red, 0 to {land} N." if at.largest[1] else "Land: not touched."]
+            if at.side
+            else []
+        ),
         "Root scale; the largest since the last frame.",
         f"Movements and clearances {size};",
         "overlaps are contact deformation.",

@@ -32,7 +32,8 @@ from separatrix.figures.style import (
     Json,
     with_ends,
 )
-from separatrix.present.text.tables import interval, number, quantity, significant
+from separatrix.present.text.sentences import pocket_force
+from separatrix.present.text.tables import ABSENT, interval, number, significant
 
 Floats = tuple[float | None, ...]
 """Numbers along a series; None where there is none."""
@@ -174,15 +175,18 @@ def _candidate_text(one: xr.Dataset, name: str, prefix: str) -> str:
         for key in (
             *("friction", "restitution_threshold", "margin"),
             *("probability_stable", "probability_low", "probability_high", "largest_contact_force"),
+            "force_limit",
         )
     }
     share = interval(known["probability_stable"], known["probability_low"], known["probability_high"])
     verdict = str(one[f"{prefix}verdict"].values) or "no verdict"
+    largest = known["largest_contact_force"]
+    force = ABSENT if largest is None else pocket_force(largest, known["force_limit"])
     margin = "" if known["margin"] is None else f"{known['margin']:+.2f}"
     return (
         f"{name}: {verdict}; friction {significant(known['friction'], 3)}, threshold "
         f"{number(known['restitution_threshold'], 2)}, margin {margin or '-'}, P(stable) {share}, "
-        f"pocket force up to {quantity(known['largest_contact_force'], 'N', 3)}"
+        f"pocket force up to {force}"
     )
 
 

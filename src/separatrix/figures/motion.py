@@ -1,4 +1,4 @@
-"""What figures and films of a run share: its time, boundaries and paths, whirl spectrum, moments of a film."""
+"""What figures and films of a run share: time, boundaries, paths, whirl spectrum, moments of a film."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def land_heights(data: xr.Dataset) -> Array:
 
 
 def lean_limits(data: xr.Dataset) -> list[tuple[float, Look, str]]:
-    """Return the tilts at which a centred cage touches its balls, and its lands, each with look and name [mrad]."""
+    """Return the tilts at which a centred cage touches balls and lands, each with look and name [mrad]."""
     play, land = axial_play(data) / float(data["cage_pitch_radius"]), land_boundary(data)
     found: list[tuple[float, Look, str]] = [(1e3 * play, POCKETS, "pockets")] if play > 0.0 else []
     reach = float(land_heights(data).max(initial=0.0)) + 0.5 * float(data["cage_land_width"])
@@ -240,7 +240,7 @@ def spectrum_against_time(time: Array, velocity: Array, reach: Hertz = 0.0) -> t
 
 
 def forward_velocity(data: xr.Dataset) -> Array:
-    """Return the velocity of the centre, seen from the side from which the ball set turns anticlockwise [m/s]."""
+    """Return the velocity of the centre, seen from where the ball set turns anticlockwise [m/s]."""
     sense = -1.0 if float(data["cage_cage_speed"]) < 0.0 else 1.0
     return np.asarray(data["velocity"].values * np.array([1.0, sense]))
 

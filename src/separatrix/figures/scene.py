@@ -12,7 +12,7 @@ from separatrix.figures.style import stated, study_of
 from separatrix.units import Array
 
 BAR_SHARE, FARTHEST = 0.4, 0.25
-"""Least share of the bar in the room between two balls; largest movement in the picture over the pitch radius."""
+"""Least share of the bar in the room between two balls; largest movement drawn over the pitch radius."""
 
 THICK, WIDE, RIM = 0.28, 1.35, 0.88
 """Half the radial thickness of the cage over the ball's diameter; its width over that, if it is not stated;
@@ -22,7 +22,7 @@ POCKET_POINTS, BAR_POINTS = 24, 6
 """Points around a pocket; pieces of a bar between two pockets, in the plane of the balls."""
 
 VIEWS = ((0.5 * np.pi, 0.0), tuple(np.deg2rad([28.0, -62.0])))
-"""Height of the eye over the plane of the bearing and the angle around it [rad], for a cage in the plane, in space."""
+"""Height of the eye over the plane of the bearing, and angle around it [rad]: in the plane, in space."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -77,12 +77,14 @@ class Scene:
         return np.column_stack([ring(self.radius, angle), self.enlarged * self.ball_axial[moment]])
 
     def reaches(self) -> Array:
-        """Return half the angle of each pocket, its clearance enlarged: there a radial wall touches its ball [rad]."""
+        """Return half the angle of each enlarged pocket, where a radial wall touches its ball [rad]."""
         return np.arcsin(np.clip((self.ball + self.enlarged * self.plays) / self.radius, 0.0, 1.0))
 
     def faces(self) -> Array:
-        """Return the faces of the cage at rest, shape (face, 4, 3): both surfaces around the pockets, and the bars
-        between them in the plane of the balls."""
+        """Return the faces of the cage at rest, shape (face, 4, 3).
+
+        Both surfaces around the pockets come first, then the bars between them in the plane of the balls.
+        """
         around = 2.0 * np.pi * (np.arange(POCKET_POINTS) + 0.5) / POCKET_POINTS
         c, s = np.cos(around), np.sin(around)
         square = np.maximum(np.abs(c), np.abs(s))
@@ -128,7 +130,10 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     axial = data["axial_place"].values if in_space else np.zeros(count)
     across, land, turned = axial_play(data) if in_space else 0.0, land_boundary(data), turned_by(data)
     side = 0 if land is None else (-1 if str(data["cage_guidance"].values) == "inner" else 1)
-    far = max(float(np.abs(one).max(initial=0.0)) for one in (np.hypot(*centre.T), radius * np.hypot(*lean.T), axial))
+    far = max(
+        float(np.abs(one).max(initial=0.0))
+        for one in (np.hypot(*centre.T), radius * np.hypot(*lean.T), axial)
+    )
     limits = [
         (0.5 * (1.0 - BAR_SHARE) * (pitch - 2.0 * ball), float(plays.max())),
         (RIM * half_width - ball, across),

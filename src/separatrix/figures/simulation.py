@@ -1,4 +1,4 @@
-"""Pages of one run of the cage, in the plane or in space: course, whirl, forces, energy; two runs together."""
+"""Pages of a run of the cage, in the plane or in space: course, whirl, forces, energy; two runs together."""
 
 from __future__ import annotations
 
@@ -53,6 +53,14 @@ SEEN, DEEPEST = 0.02, 1e-4
 POLES = ("front", "+ axial", "rear", "\N{MINUS SIGN} axial")
 """Poles of a pocket at 0, 90, 180 and 270 deg."""
 
+COURSES = (
+    ("position", "offset [mm]", "Offset of the centre from the bearing axis"),
+    ("axial_place", "axial place [mm]", "Axial place of the cage"),
+    ("lean", "tilt [mrad]", "Angle between the axes of cage and bearing"),
+    ("rotation", "rotation [mrad]", "Rotation of the cage against the ball set"),
+)
+"""Variables against time, each with label and title."""
+
 CAGE_MARK: Look = {"color": GREY, "lw": 0.7, "ls": (0, (4, 1.5)), "zorder": 1.5}
 
 
@@ -65,14 +73,8 @@ def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def course(data: xr.Dataset) -> Figure:
-    """Orbit of the cage centre and its spectrum, in space lean of the axis; offsets and rotation against time."""
-    drawn = [(1e3 * np.hypot(*data["position"].values.T), "offset [mm]", "Offset of the centre from the bearing axis")]
-    if is_in_space(data):
-        drawn += [
-            (1e3 * data["axial_place"].values, "axial place [mm]", "Axial place of the cage"),
-            (1e3 * np.hypot(*data["lean"].values.T), "tilt [mrad]", "Angle between the axes of cage and bearing"),
-        ]
-    drawn.append((1e3 * data["rotation"].values, "rotation [mrad]", "Rotation of the cage against the ball set"))
+    """Orbit of the centre, and its spectrum or, in space, lean; offsets and rotation against time."""
+    drawn = [one for one in COURSES if data[one[0]].ndim > 0]
     heights = [2.4, 1.25 * len(drawn)]
     figure = Figure(figsize=(PAGE, sum(heights)), layout="constrained")
     above, below = figure.subfigures(nrows=2, height_ratios=heights, squeeze=False)[:, 0]
@@ -86,7 +88,9 @@ def course(data: xr.Dataset) -> Figure:
         motion.draw_spectrum(beside, data)
         beside.set_title("b  Whirl, turning frame")
     rows = below.subplots(nrows=len(drawn), sharex=True)
-    for axes, letter, (values, label, title) in zip(rows, "cdef", drawn, strict=False):
+    for axes, letter, (name, label, title) in zip(rows, "cdef", drawn, strict=False):
+        values = 1e3 * data[name].values
+        values = np.hypot(*values.T) if values.ndim > 1 else values
         axes.plot(milliseconds(data), values, color=BLUE, lw=0.7, zorder=3)
         axes.set(ylabel=label)
         axes.set_title(f"{letter}  {title}{'; shaded: the judged part' if letter == 'c' else ''}")
@@ -209,7 +213,9 @@ def forces(data: xr.Dataset) -> Figure:
     panels[1, 0].set(title="c  Largest forces", ylabel="force [N]")
     panels[1, 1].set_title("d  The same")
     legend_above(panels[1, 0], columns=2)
-    grid = below.add_gridspec(1, 3 if is_in_space(data) else 2, width_ratios=[1.6, 1.0, 1.0][: 2 + is_in_space(data)])
+    grid = below.add_gridspec(
+        1, 3 if is_in_space(data) else 2, width_ratios=[1.6, 1.0, 1.0][: 2 + is_in_space(data)]
+    )
     _contacts(below.add_subplot(grid[0]), data)
     _sizes(below.add_subplot(grid[1]), data)
     if is_in_space(data):
@@ -268,13 +274,15 @@ def raster(axes: Axes, data: xr.Dataset, largest: float) -> ScalarMappable:
 
 
 def contact_counts(force: Array, angle: Array) -> Array:
-    """Return how often each pocket begins to push its ball forward, backward, and along the axis; shape (3, ball).
+    """Return how often each pocket begins to push its ball forward, backward, and axially; shape (3, ball).
 
-    From samples of the force and of where on the ball it acts, shape (time, ball): what falls between two of them
-    is not seen.
+    From samples of the force and of where on the ball it acts, shape (time, ball): what falls between two
+    samples is not seen.
     """
     pole = np.sqrt(0.5)
-    sides = np.stack([np.cos(angle) <= -pole, np.cos(angle) >= pole, np.abs(np.cos(angle)) < pole]) & (force > 0.0)
+    sides = np.stack([np.cos(angle) <= -pole, np.cos(angle) >= pole, np.abs(np.cos(angle)) < pole]) & (
+        force > 0.0
+    )
     before = np.concatenate([np.zeros_like(sides[:, :1]), sides[:, :-1]], axis=1)
     return np.asarray((sides & ~before).sum(axis=1), dtype=float)
 
@@ -347,7 +355,7 @@ def energy(data: xr.Dataset) -> Figure:
 
 
 def works(data: xr.Dataset) -> dict[str, tuple[Array, Look]]:
-    """Return the work of each source that did any [J], with its colour, which is the same in every picture."""
+    """Return the work of each source that did any [J], with its colour, the same in every picture."""
     names = [str(name) for name in data.data_vars if str(name).startswith("work_")]
     found = {
         name.removeprefix("work_").replace("_", " "): (data[name].values, {"color": colour})

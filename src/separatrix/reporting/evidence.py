@@ -47,12 +47,18 @@ def evidence(rank: Kept) -> Section:
 def _evidence(rank: Row) -> Iterator[Block]:
     rows = own_rows(rank)
     words = (
-        "A verdict counts the runs in which the cage settles, or rolls in its pockets with less energy than its "
-        "loads can give it, from each disturbance; the worst one decides."
+        "A verdict counts the runs in which the cage settles, or rolls in its pockets with less energy than "
+        "its loads can give it, from each disturbance; the worst one decides."
     )
     yield Paragraph(words)
     yield Table(
-        ("candidate", "friction", "threshold (95 %)", "runs that settle or roll, from each disturbance", "verdict"),
+        (
+            "candidate",
+            "friction",
+            "threshold (95 %)",
+            "runs that settle or roll, from each disturbance",
+            "verdict",
+        ),
         tuple(
             (
                 str(row["name"]),
@@ -79,6 +85,8 @@ def _evidence(rank: Row) -> Iterator[Block]:
     yield facts(
         *((", ".join(who), reason) for reason, who in grouped((r["reason"], r["name"]) for r in rows).items())
     )
+    balls = grouped((_ball(row), row["name"]) for row in rows if row.get("ball"))
+    yield facts(*((", ".join(who), words) for words, who in balls.items()))
     beyond = grouped((one, row["name"]) for row in rows for one in row.get("extrapolation") or ())
     for sentence, who in beyond.items():
         whose = "every candidate" if len(who) == len(rows) else ", ".join(who)
@@ -87,6 +95,11 @@ def _evidence(rank: Row) -> Iterator[Block]:
     for name, each in [*((one["name"], one["materials"]) for one in others), ("overall", rank["overall"])]:
         if others:
             yield _short(name, each)
+
+
+def _ball(row: Row) -> str:
+    """Return the model of the ball that decided, and why."""
+    return f"Ball: {row['ball']}. {row['ball_reason'] or 'The study asks for it.'}"
 
 
 def _calm(count: Row) -> str:

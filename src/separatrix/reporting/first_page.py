@@ -8,6 +8,7 @@ from separatrix.present.text.sentences import (
     drift,
     drift_sentence,
     margin,
+    pocket_force,
     probability,
     rank_texts,
     verdict,
@@ -33,9 +34,9 @@ HEAD = (
 )
 EXPLAINED = (
     "Margin: largest stable restitution factor less the bearing's own. P(stable): share of the runs that "
-    "settle or roll from the worst disturbance, with its 95 % interval. Offset of the cage centre and forces: "
-    "largest of all runs. Drift: median growth rate of the mean offset. Runs: from each disturbance, up to "
-    "this length."
+    "settle or roll from the worst disturbance, with its 95 % interval. Offset of the centre and forces: "
+    "largest of all runs; > what the races hold: there it has no meaning. Drift: median growth rate of the "
+    "mean offset. Runs: from each disturbance, up to this length."
 )
 
 
@@ -74,7 +75,7 @@ def _evidence(row: Row) -> tuple[str, ...]:
     return (
         quantity(row["largest_offset"], "m", 3),
         drift(row),
-        quantity(row["largest_contact_force"], "N", 3),
+        pocket_force(row["largest_contact_force"], row["force_limit"], short=True),
         quantity(row["largest_land_force"], "N", 3),
         f"{row['runs']} x {quantity(row['longest_run'], 's', 3)}",
     )

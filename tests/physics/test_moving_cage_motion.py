@@ -1,0 +1,307 @@
+"""The motion of the cage against closed forms, its own order, symmetries and conservation laws."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cages import AT_REST, ON_A_LAND, TURNING, damping_of, linear_roots
+from space_program import SmallSteps
+
+from separatrix.ball_traction import BallTraction
+from separatrix.cage import (
+    MovingCage,
+    RunOutcome,
+    follow,
+    impact_restitution,
+    linear_critical_friction,
+    linear_whirl_frequency,
+    run_ensemble,
+)
+from separatrix.cage.disturbance import ball_places, random_starts, start_states
+from separatrix.cage.ensemble import Stop, run_rows
+from separatrix.cage.motion import rates
+from separatrix.cage.numbers import numbers_of
+from separatrix.cage.rows import LANES, VX, VY
+from separatrix.compiled import inlined
+from separatrix.study import Guidance, MotionModel, PocketShape, StabilitySettings
+
+LAW = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)
+SPIN = {"ball_spin": (-4083.2, 1942.6, -3.5), "ball_diameter": 11.1125e-3}
+SPACE = SPIN | {"motion": MotionModel.SPACE, "groove_damping": 766.0, "groove_stiffness": 5.05e6}
+
+
+def gripped(friction: float, damping: float = 2000.0, **change: object) -> MovingCage:
+    """Cage whose pockets have no play."""
+    grip = {"pocket_clearance": 0.0, "race_damping": damping, "ball_cage_friction": friction}
+    return replace(AT_REST, **grip | change)
+
+
+def run(cage: MovingCage, duration: float, *, kick: float = 0.5, direction: float = 0.3, **given: object):
+    """One run to its whole duration, in double precision, its balls in the middle of their pockets."""
+    whole = {"duration": duration, "until": duration, "ball_lead": np.zeros(cage.ball_count)}
+    return follow(cage, kick=kick, direction=direction, **whole | given)
+
+
+def growth(cage: MovingCage, duration: float) -> float:
+    """Growth rate of the amplitude over the second half of a run [1/s], from means over five whole whirls."""
+    found = run(cage, duration, samples=20000)
+    width, end = 5.0 / linear_whirl_frequency(cage), found.time[-1]
+    means = []
+    for until in (0.5 * end, end):
+        window = (found.time > until - width) & (found.time <= until)
+        means.append(np.trapezoid(found.kinetic_energy[window], found.time[window]))
+    return 0.5 * math.log(means[1] / means[0]) / (0.5 * end)
+
+
+@pytest.mark.parametrize("law", [None, LAW], ids=["damper", "one state"])
+def test_the_linear_limit_is_met_within_one_per_cent(law):
+    """Below the critical friction of the closed form by 1 % a whirl decays, 1 % above it grows."""
+    damping = damping_of(0.6)
+    limit = linear_critical_friction(gripped(0.0, damping, traction=law))
+    assert growth(gripped(0.99 * limit, damping, traction=law), 0.08) < 0.0
+    assert growth(gripped(1.01 * limit, damping, traction=law), 0.08) > 0.0
+
+
+@pytest.mark.parametrize("speed", [0.0, 700.0])
+@pytest.mark.parametrize("law", [None, replace(LAW, slope=2000.0, speed=50.0)], ids=["damper", "one state"])
+def test_a_whirl_grows_at_the_rate_of_the_exact_root(speed, law):
+    """Roots of the polynomial of small motions; 1 % of what the friction adds (the step has 1/3 radian)."""
+    cage = gripped(0.095, 2000.0, cage_speed=speed, traction=law)
+    whirl = max(linear_roots(cage)[np.abs(linear_roots(cage).imag) > 5000.0], key=lambda root: root.real)
+    added = 0.5 * 0.095 * 2.0 * math.pi * linear_whirl_frequency(cage)
+    assert growth(cage, 0.012) == pytest.approx(whirl.real, abs=0.01 * added)
+
+
+@pytest.mark.parametrize("eta", [0.1, 0.5, 0.9])
+def test_an_impact_returns_what_its_closed_form_says(eta):
+    """A series spring and damper on the felt mass: to 1e-3 of the speed, what a kink costs at this step."""
+    cage = replace(AT_REST, ball_count=1, race_damping=damping_of(eta), ball_cage_friction=0.0)
+    found = run(cage, 4e-3, kick=0.5, direction=math.pi / 2.0, samples=400)
+    closing = found.velocity[:, 1] + found.rotation_rate * cage.pitch_radius
+    assert closing[0] == pytest.approx(0.5, rel=1e-12)
+    assert -closing[-1] / 0.5 == pytest.approx(impact_restitution(cage), abs=1e-3)
+
+
+def test_without_kinks_the_error_falls_with_the_fourth_power_of_the_step():
+    """A whirl in gripped pockets: half the step, a sixteenth of the error within a fifth."""
+    cage = gripped(0.05, 2000.0, cage_speed=300.0, ball_spin=(0.0, 1.0, 0.0))
+    ends = [run(cage, 2e-3, refine=n, samples=2).position[-1] for n in (1, 2, 8)]
+    coarse, fine = (math.dist(one, ends[-1]) for one in ends[:2])
+    assert coarse / fine == pytest.approx(16.0, rel=0.25)
+
+
+def test_each_touch_is_a_kink_and_the_ledger_falls_with_the_square_of_the_step():
+    """Over many touches the open part of the ledger falls by 4 with each halving; 2.5 to 8 are allowed."""
+    cage = replace(ON_A_LAND, **SPIN, ball_cage_friction=0.3)
+    lead = 1e-4 * np.sin(np.arange(cage.ball_count))
+    opens = [run(cage, 0.04, refine=n, ball_lead=lead).energy_imbalance for n in (1, 2, 4, 8)]
+    assert opens[0] < 3e-3
+    ratio = (opens[0] / opens[-1]) ** (1.0 / 3.0)
+    assert 2.5 < ratio < 8.0
+
+
+M, R, C_G, G = 0.025, 0.036, 0.5e-3, 9.80665
+
+
+def on_a_land(**changes: object) -> MovingCage:
+    """A cage whose pockets are so wide that it never meets a ball, on a stiff land."""
+    given = {
+        "mass": M, "moment_of_inertia": M * R * R, "ball_count": 13, "pitch_radius": R, "cage_speed": 0.0,
+        "inner_speed": 0.0, "outer_speed": 0.0, "pocket_clearance": 10e-3, "ball_cage_stiffness": 3e6,
+        "race_damping": 300.0, "ball_cage_friction": 0.0, "guidance": Guidance.INNER,
+        "land_clearance": 2.0 * C_G, "land_stiffness": 1e9, "land_restitution": 0.0, "land_friction": 0.0,
+    }  # fmt: skip
+    return MovingCage(**given | changes)
+
+
+@pytest.mark.parametrize(("friction", "frequency"), [(0.0, 22.28925), (0.8, 15.76088)])
+def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
+    """Sliding sqrt(g/c)/2 pi, rolling with a thin ring's inertia 1/sqrt 2 of it (dynamics3d E5).
+
+    A swing of 12 mrad lengthens the period by 1e-5; friction in proportion below the pivoting
+    speed lets a rolling cage creep: 2e-3.
+    """
+    cage = on_a_land(gravity=G, land_friction=friction)
+    found = run(cage, 0.4, kick=5e-4, direction=math.pi / 2, samples=8001)
+    late = found.time > 0.2
+    t, y = found.time[late], found.position[late, 1]
+    i = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
+    crossings = t[i] - y[i] * (t[i + 1] - t[i]) / (y[i + 1] - y[i])
+    assert np.diff(crossings).mean() == pytest.approx(1.0 / frequency, rel=1e-4 if friction == 0.0 else 2e-3)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_dry_land_speeds_up_a_whirl(sense):
+    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held.
+
+    The land gives way a little: 4.9e-6 at 1e9 N/m; the step adds some 1e-4.
+    """
+    f = 0.1
+    cage = on_a_land(moment_of_inertia=1e3, guidance=Guidance.OUTER, outer_speed=1e4 * sense, land_friction=f)
+    found = run(cage, 0.04, kick=0.3, direction=0.0, samples=4001)
+    late = found.time > 0.02
+    (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
+    nu = (x * vy - y * vx) / (x * x + y * y)
+    assert np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0] == pytest.approx(-f, rel=1e-3)
+
+
+SETTINGS = StabilitySettings(kicks=(0.5,), runs=64, duration=0.3, ball_scatter=0.3)
+
+
+@pytest.mark.parametrize(("eta", "friction"), [(0.9, 0.078), (0.8, 0.115), (0.6, 0.165)])
+def test_one_half_of_the_runs_whirl_at_the_known_friction(eta, friction):
+    """By a line through the shares at seven frictions; other programs' values, 100 seeds: within 10 %.
+
+    They count runs that end with more energy than they began with.
+    """
+    frictions, energy = friction * np.linspace(0.8, 1.2, 7), 0.5 * AT_REST.mass * 0.5**2
+    shares = []
+    for f in frictions:
+        cage = replace(AT_REST, race_damping=damping_of(eta), ball_cage_friction=f)
+        shares.append(np.mean(run_ensemble(cage, SETTINGS, jobs=2).end_energy > energy))
+    slope, offset = np.polyfit(frictions, shares, 1)
+    assert (0.5 - offset) / slope == pytest.approx(friction, rel=0.10)
+
+
+def test_same_bits_for_any_number_of_threads_and_any_neighbours():
+    """Runs 0 to 11 and 12 to 39, one thread or two, beside other disturbances: not one bit differs."""
+    cage = replace(ON_A_LAND, **SPIN, traction=LAW, ball_cage_friction=0.3)
+    whole = run_ensemble(cage, SETTINGS, kicks=[0.5, 2.0], runs=40, jobs=2)
+    parts = [
+        run_ensemble(cage, SETTINGS, kicks=[2.0], runs=12),
+        run_ensemble(cage, SETTINGS, kicks=[2.0], runs=28, first_run=12),
+    ]
+    for name in (
+        "outcome",
+        "end_energy",
+        "largest_offset",
+        "pocket_impacts",
+        "pocket_rubbing",
+        "energy_imbalance",
+    ):
+        joined = np.concatenate([getattr(part, name) for part in parts], axis=1)
+        np.testing.assert_array_equal(getattr(whole, name)[1], joined[0])
+
+
+@pytest.mark.parametrize("space", [{}, SPACE], ids=["plane", "space"])
+def test_a_bearing_that_turns_backward_is_its_mirror_image(space):
+    """The same evidence run by run, with the balls counted the other way round."""
+    cage = replace(ON_A_LAND, **SPIN | space, ball_cage_friction=0.25)
+    spin = cage.ball_spin
+    back = replace(
+        cage,
+        cage_speed=-cage.cage_speed,
+        inner_speed=-cage.inner_speed,
+        ball_spin=(-spin[0], -spin[1], spin[2]),
+    )
+    one, other = (run_ensemble(each, SETTINGS, runs=8) for each in (cage, back))
+    np.testing.assert_array_equal(one.end_energy, other.end_energy)
+    np.testing.assert_array_equal(one.pocket_impacts[..., 1], other.pocket_impacts[..., -1])
+
+
+def test_tilt_and_axial_motion_held_space_is_the_plane():
+    """Square pockets, everything held: positions over 5 ms to 0.1 um, by their different steps."""
+    plane = replace(TURNING, **SPIN, ball_cage_friction=0.2)
+    held = replace(plane, **SPACE, is_tilt_held=True, is_axially_held=True)
+    one, other = (run(each, 5e-3, samples=50) for each in (plane, held))
+    np.testing.assert_allclose(one.position, other.position, atol=1e-7)
+
+
+def differences(scale: float) -> float:
+    """Largest difference of place and tilt from exact rotations over 2.5 ms, shrunk by the scale [m]."""
+    cage = replace(
+        TURNING, **SPACE, race_damping=356.58, ball_cage_friction=0.2, pocket_shape=PocketShape.CYLINDRICAL,
+        pocket_clearance=6e-4 * scale, pivot_speed=0.05, axial_kick=0.2, tilt_kick=0.4,
+    )  # fmt: skip
+    lead, kick, R = 8e-5 * scale * np.sin(2.0 * np.arange(13)), 0.5 * scale, cage.pitch_radius
+    here = run(cage, 2.5e-3, kick=kick, ball_lead=lead, samples=7, refine=8)
+    assert here.pocket_impacts.sum() > 3
+    start = kick * np.array([math.cos(0.3), math.sin(0.3), 0.2]), np.array([0.4 * kick / R, 0.0, 0.0])
+    there = SmallSteps(cage).run(*start, lead, here.time, 1e-5)
+    tilt = np.stack([-here.lean[:, 1], here.lean[:, 0]], axis=1)
+    ours = np.column_stack([here.position, here.axial_place, R * tilt])
+    return float(np.abs(ours - there[:, :5] * [1.0, 1.0, 1.0, R, R]).max())
+
+
+def test_it_moves_as_exact_rotations_in_the_housing_to_first_order():
+    """Scipy's DOP853 on exact rotations: the difference falls by 4 for half the motion, within a third."""
+    full, half = differences(1.0), differences(0.5)
+    assert full < 3e-6
+    assert full / half == pytest.approx(4.0, rel=0.33)
+
+
+RANDOM = np.random.default_rng(7)
+
+
+def random_cage(space: bool) -> MovingCage:
+    """A cage with every feature drawn; ranges of real bearings."""
+    draw = RANDOM.uniform
+    mass, radius, balls = 10.0 ** draw(-3.0, -0.8), draw(0.01, 0.06), int(RANDOM.integers(7, 16))
+    shape = PocketShape(RANDOM.choice(["square", "cylindrical", "elongated"]))
+    clearance, speed = draw(1e-4, 6e-4), draw(20.0, 900.0)
+    return MovingCage(
+        mass=mass, moment_of_inertia=mass * radius**2, ball_count=balls, pitch_radius=radius,
+        cage_speed=speed, inner_speed=2.3 * speed, outer_speed=0.0,
+        ball_spin=(-6.0 * speed, 2.0 * speed, draw(-1.0, 1.0)),
+        ball_diameter=0.3 * radius, pocket_clearance=clearance, pocket_shape=shape,
+        pocket_axial_clearance=0.6 * clearance if shape is PocketShape.ELONGATED else None,
+        ball_cage_stiffness=10.0 ** draw(5.5, 6.8), race_damping=10.0 ** draw(1.7, 3.2),
+        traction=LAW if draw() < 0.5 else None, ball_cage_friction=draw(0.02, 0.4),
+        guidance=Guidance(RANDOM.choice(["outer", "inner"])), land_clearance=draw(1e-4, 1e-3),
+        land_out_of_round=draw(0.0, 5e-6), land_count=2, land_spacing=0.2 * radius, land_width=0.05 * radius,
+        unbalance=1e-5 * mass, dynamic_unbalance=1e-4, gravity=draw(0.0, 10.0), axial_gravity=draw(0.0, 10.0),
+        added_mass=0.1 * mass, pivot_speed=0.05, groove_damping=700.0, groove_stiffness=4e6,
+        orbital_cosines=(draw(-0.02, 0.02),), orbital_sines=(draw(-0.02, 0.02),),
+        ramp_time=2e-3, ramp_start=0.3, pocket_spacing_scatter=0.05, ball_diameter_scatter=1e-6,
+        pocket_position_scatter=1e-6, axial_kick=0.1, tilt_kick=0.1,
+        motion=MotionModel.SPACE if space else MotionModel.PLANE,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("space", [False, True], ids=["plane", "space"])
+def test_random_cages_end_and_close_their_ledger(space):
+    """Ten with every input at once: each run ends, every number is finite, and the ledger closes to 3e-2."""
+    for _ in range(10):
+        found = run_ensemble(random_cage(space), SETTINGS, kicks=[0.3], runs=4)
+        assert np.all(found.outcome >= 0)
+        for name in ("end_energy", "largest_offset", "whirl_frequency", "largest_contact_force", "followed"):
+            assert np.all(np.isfinite(getattr(found, name))), name
+        assert np.all(found.energy_imbalance < 3e-2)
+
+
+@inlined
+def braked(s, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number):
+    """The equations of motion, and a brake of 50 1/s on the centre of the cage."""
+    rates(s, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
+    for lane in range(LANES):
+        d[VX + lane] -= np.float32(50.0) * s[VX + lane]
+        d[VY + lane] -= np.float32(50.0) * s[VY + lane]
+
+
+def test_a_force_is_added_without_touching_the_package():
+    """A cage in free flight slows down as exp(-50 t) by a term that a test adds; rounding of 500 steps."""
+    cage = replace(AT_REST, pocket_clearance=0.2, cage_speed=0.0)
+    settings = replace(SETTINGS, ball_scatter=0.0)
+    starts, numbers = random_starts(cage, settings, 0, 1), numbers_of(cage, 0.5, 0.01)
+    states, places = start_states(cage, 0.5, starts), ball_places(cage, starts)
+    record = np.zeros((11, 2 + states.shape[1] + 8 + cage.ball_count))
+    raw = run_rows(
+        numbers.kind,
+        [numbers],
+        states,
+        places,
+        Stop(),
+        record=record,
+        every=numbers.kind.steps // 10,
+        equations=braked,
+    )
+    time, speed = raw.record[:, 0], np.hypot(raw.record[:, 1 + VX // LANES], raw.record[:, 1 + VY // LANES])
+    np.testing.assert_allclose(speed, 0.5 * np.exp(-50.0 * time), rtol=1e-4)
+
+
+def test_a_cage_without_friction_settles_and_one_with_much_whirls():
+    """A turbopump's cage on its land: all runs settle at 0.02, all whirl at 0.6."""
+    for friction, end in ((0.02, RunOutcome.SETTLES), (0.6, RunOutcome.WHIRLS)):
+        found = run_ensemble(replace(ON_A_LAND, **SPIN, ball_cage_friction=friction), SETTINGS, runs=16)
+        assert np.all(found.outcome == end)
