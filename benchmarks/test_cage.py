@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_step
+from separatrix.cage.space_body import SpaceBody
 
 from separatrix.ball_traction import BallTraction
 from separatrix.cage import PlanarCage, run_ensemble, run_hard_ensemble
-from separatrix.cage.space_body import SpaceBody
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance, StabilitySettings
 

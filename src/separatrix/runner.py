@@ -9,16 +9,16 @@ import zlib
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import fields
-from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.ensemble import BY_BALL, SPACE_ONLY, WHOLE_NUMBERS, Ensemble, Stop, run_ensemble
+from separatrix.cage.ensemble import BY_BALL, SPACE_ONLY, WHOLE_NUMBERS, Ensemble, Stop
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.ledger import Ledger, key_of
+from separatrix.side_by_side import Gathered, Runs, Turns, ensemble_of, pieces_of, run_each
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio, Second
 
@@ -46,6 +46,9 @@ LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
 PART = 64  # runs from each kick that the ledger keeps together
 GRACE = 1.0
 """Time that an interrupt waits for the work under way [s]: runs end within it, compilation is left behind."""
+
+WAITING = 64
+"""Threads for each that may work, most of which wait for their runs."""
 
 NAMES = tuple(field.name for field in fields(Ensemble))
 
@@ -90,6 +93,7 @@ class Runner:
     ) -> None:
         self.jobs, self.progress, self.ledger, self.executor = jobs, progress, ledger, executor
         self.stop = Stop()
+        self._gathered: Gathered | None = None  # while `work_out` is at work
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Report what the work will take; at most that where an earlier call has kept runs."""
@@ -107,44 +111,33 @@ class Runner:
         first_run: int = 0,
     ) -> Ensemble:
         """Run a cage as `run_ensemble` does, unless the ledger has these runs; or raise `Interrupted`."""
-        asked = tuple(kicks), runs, first_run
-        run = partial(run_ensemble, cage, settings, kicks=kicks, runs=runs, first_run=first_run)
-        return self.kept(run, cage, (len(kicks), runs), cage, of_runs(settings), *asked)
+        return self.ensemble_of([Runs(cage, settings, first_run, runs)], kicks)
 
-    def kept(
-        self, run: Callable[..., Ensemble], cage: MovingCage, shape: tuple[int, int], *key: object
-    ) -> Ensemble:
-        """Ensemble that `run` makes, given a `Stop`, unless the ledger has it; or raise `Interrupted`.
-
-        Parameters
-        ----------
-        run : callable
-            Makes the runs, here or elsewhere.
-        cage : MovingCage
-            One of the cages.
-        shape : tuple
-            Kicks and runs.
-        key
-            All that the runs depend on.
-        """
+    def ensemble_of(self, asked: Sequence[Runs], kicks: Sequence[MetrePerSecond]) -> Ensemble:
+        """Run several cages of as many balls, as `run_each` does, unless the ledger has these runs."""
         if self.ledger is None:
-            return self._followed(run)
-        known = _unpacked(self.ledger.get(key_of(*key)), cage, shape)
+            return self._followed(asked, kicks)
+        key = key_of([(one.cage, _of_runs(one.settings), *one[2:]) for one in asked], tuple(kicks))
+        cage, shape = asked[0].cage, (len(kicks), sum(one.runs for one in asked))
+        known = _unpacked(self.ledger.get(key), cage, shape)
         if known is not None:
             self.ledger.taken += shape[0] * shape[1]
             return known
-        found = self._followed(run)
+        found = self._followed(asked, kicks)
         arrays = (np.asarray(getattr(found, name)) for name in _names(cage))
-        self.ledger.put(key_of(*key), zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
+        self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
         return found
 
-    def _followed(self, run: Callable[..., Ensemble]) -> Ensemble:
-        """Follow runs here or elsewhere; an interrupt ends them."""
+    def _followed(self, asked: Sequence[Runs], kicks: Sequence[MetrePerSecond]) -> Ensemble:
+        """Follow runs elsewhere, or here with those of other places; an interrupt ends them."""
         if self.stop.is_set:
             raise Interrupted
         if self.executor is not None:
-            return self._elsewhere(self.executor.submit(run))
-        found = run(stop=self.stop)
+            return self._elsewhere(self.executor.submit(run_each, asked, kicks))
+        if self._gathered is None:
+            found = run_each(asked, kicks, stop=self.stop)
+        else:
+            found = ensemble_of(asked, kicks, self._gathered.follow(pieces_of(asked, kicks)))
         if self.stop.is_set:  # it may have ended these runs
             raise Interrupted
         return found
@@ -203,12 +196,21 @@ class Runner:
         results: dict[Place, Result] = {}
         done: SimpleQueue[tuple[Place, Future[Result]]] = SimpleQueue()
         wanted: dict[Place, Future[Result]] = {}
-        pool = ThreadPoolExecutor(max_workers=self.jobs)
+        # threads that wait for their runs let others work, so that many runs go side by side
+        turns, waiting = Turns(self.jobs), 1 if self.executor is not None else WAITING
+        pool = ThreadPoolExecutor(max_workers=waiting * self.jobs)
+        self._gathered = Gathered(turns, self.jobs, self.stop)
+
+        def in_turn(place: Place) -> Result:
+            with turns:
+                if self.stop.is_set:
+                    raise Interrupted
+                return compute(place)
 
         def submit(new: Iterable[Place]) -> None:
             for place in new:
                 if place not in wanted:
-                    wanted[place] = pool.submit(compute, place)
+                    wanted[place] = pool.submit(in_turn, place)
                     wanted[place].add_done_callback(lambda finished, at=place: done.put((at, finished)))  # type: ignore[misc]
 
         with _noticed(self.stop):
@@ -225,8 +227,9 @@ class Runner:
                 self.stop.set()
             finally:
                 pool.shutdown(wait=not self.stop.is_set, cancel_futures=True)
-            if self.stop.is_set:
-                wait(wanted.values(), timeout=GRACE)
+                if self.stop.is_set:
+                    wait(wanted.values(), timeout=GRACE)
+                self._gathered = None
             while self.stop.is_set and not done.empty():
                 place, future = done.get()
                 if not future.cancelled() and future.exception() is None:
@@ -274,7 +277,7 @@ def joined(parts: Sequence[Ensemble]) -> Ensemble:
     return Ensemble(**{name: column(name) for name in NAMES})
 
 
-def of_runs(settings: StabilitySettings) -> tuple[int, Second, Ratio]:
+def _of_runs(settings: StabilitySettings) -> tuple[int, Second, Ratio]:
     """What a run takes of the settings, besides disturbance and number."""
     return settings.seed, settings.duration, settings.ball_scatter
 

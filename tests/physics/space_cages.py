@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from cages import AT_REST, TURNING
-
-from separatrix.cage import PlanarCage
-from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.cage.space.ensemble import kick_speeds
 from separatrix.cage.space.history import MOTIONS, SOURCES, row_length
 from separatrix.cage.space.inputs import land_strips, numbers, parts_of
 from separatrix.cage.space.records import Books, Parts, books_for
 from separatrix.cage.space.run import FIRST_LEAD, follow_run
 from separatrix.cage.space_body import SpaceBody
+
+from separatrix.cage import PlanarCage
+from separatrix.cage.closed_forms import moving_mass, time_unit
 from separatrix.pocket_shape import PocketShape
 from separatrix.units import Array
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from cages import SMALL as CAGE
 from cages import whirl_probability
+from separatrix.cage.ending import BEAT, LONGEST
 
 from separatrix.cage import linear_critical_friction, run_ensemble, run_hard_ensemble
 from separatrix.cage.closed_forms import time_unit
-from separatrix.cage.ending import BEAT, LONGEST
 from separatrix.limits.response import cage_at
 from separatrix.study import StabilitySettings
 

@@ -6,6 +6,9 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from cages import linear_roots
+from separatrix.cage.ending import LONGEST
+from separatrix.cage.reason import largest_room
+from separatrix.cage.verdict import kick_counts
 
 from separatrix.cage import (
     CageMotion,
@@ -20,9 +23,6 @@ from separatrix.cage import (
     simulate,
 )
 from separatrix.cage.closed_forms import drive_energy
-from separatrix.cage.ending import LONGEST
-from separatrix.cage.reason import largest_room
-from separatrix.cage.verdict import kick_counts
 from separatrix.chain.solution import solve
 from separatrix.limits.response import cage_at
 from separatrix.study import Guidance, StabilitySettings

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from raw_logs import anton_paar
+from separatrix.figures.space import is_in_space
 from test_cli_answers import SMALL
 
 from separatrix.app.jobs import Job, Jobs
@@ -19,7 +20,6 @@ from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.server import application, made_ready
 from separatrix.app.worker import Task
 from separatrix.chain.solution import Solution, solve
-from separatrix.figures.space import is_in_space
 from separatrix.limits.map_records import varied
 from separatrix.present import load
 from separatrix.study_file import read_study

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.special import expit, ndtr
+from separatrix.cage.verdict import CLEAR, FEW
 
 from separatrix.cage import KickCount, RunOutcome, SpaceEnsemble, Verdict, wilson_interval
-from separatrix.cage.verdict import CLEAR, FEW
 from separatrix.distribution import LogNormal, Normal
 from separatrix.draws import UncertainInput
 from separatrix.explore import counting

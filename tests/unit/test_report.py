@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from separatrix.cage import CageMotion, Judgement, KickCount, Verdict
 from separatrix.chain.pocket import PocketConditions
 from separatrix.present import in_words, whereabouts
 from separatrix.present.text import ranking
@@ -17,13 +16,15 @@ from separatrix.present.text.sentences import verdict_sentences
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
 from separatrix.study import BallModel, MotionModel
 from separatrix.study_file import read_study
+from separatrix.verdict.judgement import Judgement, KickCount, Verdict
+from separatrix.verdict.reasons import CageMotion
 
 STUDY = read_study("cryogenic-turbopump")
 
 
 def kick(speed: float, settles: int) -> KickCount:
     """Return 64 runs from a kick."""
-    given = dict.fromkeys(("whirls", "drifts", "unresolved", "kept_by_land"), 0)
+    given = dict.fromkeys(("rolls", "whirls", "drifts", "unresolved", "kept_by_land"), 0)
     shares = {f"probability_{name}": 0.9 for name in ("stable", "low", "high")}
     return KickCount(kick=speed, settles=settles, **given, **shares)
 
@@ -36,6 +37,7 @@ JUDGEMENT = Judgement(
     worst_kick=0.1,
     by_kick=(kick(0.1, 64), kick(2.0, 61)),
     reason="So it is.",
+    ball="damper",
     cage_motion=CageMotion.ON_THE_LAND,
     growth_rate=-16.04,
     growth_rate_low=-17.0,
@@ -47,6 +49,9 @@ JUDGEMENT = Judgement(
     drift_rate_law=0.0,
     largest_contact_force=80.0,
     largest_land_force=5.0,
+    force_limit=90.0,
+    force_exceeds_races=False,
+    left_pocket=0,
     pocket_impact_shares=(0.1, 0.7, 0.1, 0.1),
     land_impact_share=0.4,
     whirl_frequency=1445.0,
@@ -59,6 +64,7 @@ JUDGEMENT = Judgement(
     rubbing_force=5.2,
     rubbing_speed=6.0,
     rubbing_power=0.0312,
+    impact_rate=1200.0,
     energy_imbalance=0.0,
     duration=0.3,
     longest_run=0.6,
@@ -306,7 +312,18 @@ def lines(**changes: object) -> dict[str, str]:
         ("Offset", "4 mm at most; 200 um at the end, relative spread 0.02", {}),
         ("Drift rate", "1.97 1/s", {}),
         ("Drift rate", "1.97 1/s; by the linear law 2.04 1/s", {"drift_rate_law": 2.04}),
-        ("Largest forces", "80 N at a pocket, 5 N at the land", {}),
+        ("Largest forces", "80 N, at a pocket; 5 N at the land", {}),
+        (
+            "Largest forces",
+            "above what the races hold, 60 N, at a pocket; 5 N at the land",
+            {"force_limit": 60.0, "force_exceeds_races": True},
+        ),
+        ("Ball", "damper. The study asks for it.", {}),
+        (
+            "Left its pocket",
+            "in 3 of 128 runs a ball reached the edge of its pocket's wall",
+            {"left_pocket": 3},
+        ),
         (
             "Impacts",
             "pocket 2 takes 70 % of the impacts at pockets (even share 25 %); "

@@ -198,9 +198,21 @@ FREE = FreeBall(mass=1e-3, inertia=1e-8, inner=RACE, outer=RACE, fastest_rate=1e
 @pytest.mark.parametrize(
     ("level", "first", "share", "balls", "said"),
     [
-        (BallModel.AUTO, WHIRLS, 0.3, ["one state", "free"], "reaches 30 % of what the races hold; with one state"),
+        (
+            BallModel.AUTO,
+            WHIRLS,
+            0.3,
+            ["one state", "free"],
+            "reaches 30 % of what the races hold; with one state",
+        ),
         (BallModel.AUTO, WHIRLS, 0.2, ["one state"], "below 25 % one state is enough."),
-        (BallModel.AUTO, SETTLES, 0.3, ["one state"], "A cage that is stable with one state is stable among free"),
+        (
+            BallModel.AUTO,
+            SETTLES,
+            0.3,
+            ["one state"],
+            "A cage that is stable with one state is stable among free",
+        ),
         (BallModel.TRACTION, WHIRLS, 0.3, ["one state"], None),
         (BallModel.FREE, WHIRLS, 0.3, ["free"], None),
         (BallModel.DAMPER, WHIRLS, 0.3, ["damper"], None),
@@ -355,7 +367,9 @@ def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
     extra = drive_energy(loaded) - drive_energy(plain)
     assert extra == pytest.approx(6e-4 * (0.05 * 9.81 + tilting), rel=1e-9)
     assert axial_drive_energy(replace(loaded, is_tilt_held=True, is_axially_held=True)) == 0.0
-    assert axial_drive_energy(replace(loaded, pocket_shape=PocketShape.SQUARE, motion=MotionModel.PLANE)) == 0.0
+    assert (
+        axial_drive_energy(replace(loaded, pocket_shape=PocketShape.SQUARE, motion=MotionModel.PLANE)) == 0.0
+    )
     wet = replace(plain, added_mass=0.03)
     assert drive_energy(wet) == pytest.approx(0.08 / 0.05 * drive_energy(plain), rel=1e-12)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from separatrix.ball_traction import FreeBall
 from separatrix.cage_body import CageInertia, cage_inertia
-from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of, require_friction
+from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
@@ -40,20 +40,15 @@ from separatrix.chain.pocket import (
 from separatrix.chain.restitution import (
     Restitution,
     ball_pocket_stiffness,
-    hertz_coefficient_for,
     restitution,
 )
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import (
-    BallModel,
     CageDesign,
     Candidate,
     ClearanceState,
     Friction,
     Material,
-    MotionModel,
-    PocketContact,
-    StabilitySettings,
     Study,
 )
 from separatrix.units import (

@@ -30,7 +30,8 @@ from separatrix.figures.style import (
     label_lines,
     legend_above,
 )
-from separatrix.units import Array, format_number
+from separatrix.present.text.sentences import pocket_force
+from separatrix.units import Array
 
 MICRO = "\N{MICRO SIGN}"
 UNITS = ((1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, f"{MICRO}J"))
@@ -207,8 +208,9 @@ def forces(data: xr.Dataset) -> Figure:
     for whole, close in panels:
         time_axis(whole, data)
         close.set(xlabel="time [ms]", xlim=view_ends(near))
-    peak = format_number(float(data["largest_contact_force"]), 3)
-    panels[0, 0].set(title=f"a  Force in each pocket, up to {peak} N", ylabel="pocket", xlabel="")
+    limit = float(data.get("force_limit", np.nan))
+    peak = pocket_force(float(data["largest_contact_force"]), limit if limit > 0.0 else None, short=True)
+    panels[0, 0].set(title=f"a  Force in each pocket, largest {peak}", ylabel="pocket", xlabel="")
     panels[0, 1].set(title="b  Around the largest", xlabel="")
     panels[1, 0].set(title="c  Largest forces", ylabel="force [N]")
     panels[1, 1].set_title("d  The same")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import xarray as xr
 
-from separatrix.answers import MapAnswer, SensitivityAnswer, SimulationAnswer, TractionAnswer
+from separatrix.answers import MapAnswer, SensitivityAnswer, TractionAnswer
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
 from separatrix.present.contact import padded
@@ -256,25 +256,6 @@ def _(found: TractionAnswer) -> Node:
             shown = padded(value, tuple(size.get(axis, 2) for axis in axes))
             group.fields[f"area_{name}"] = Leaf(shown, unit, axes)
     return node
-
-
-@arranged.register
-def _(found: SimulationAnswer) -> Node:
-    """Without the arrays of tilt and axial motion in the plane."""
-    return _known(shape(found))
-
-
-def _known(node: Node) -> Node:
-    """Return a node without the arrays that are None, and so all groups in it."""
-    known = {
-        name: item
-        for name, item in node.items()
-        if not (isinstance(item, Leaf) and item.axes and item.value is None)
-    }
-    return {
-        name: Group(_known(item.fields), item.prefix) if isinstance(item, Group) else item
-        for name, item in known.items()
-    }
 
 
 @arranged.register

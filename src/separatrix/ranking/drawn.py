@@ -9,21 +9,20 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.ensemble import BY_BALL, Ensemble, Stop, check_length, follow, other_way_round, piece_of
-from separatrix.cage.moving_cage import MovingCage, moving_cage, turned_forward
+from separatrix.cage.ensemble import Ensemble
+from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction.fit import TestedFriction
-from separatrix.runner import Runner, of_runs
-from separatrix.study import BallModel, Friction, StabilitySettings, Study
+from separatrix.runner import Runner
+from separatrix.side_by_side import Runs
+from separatrix.study import BallModel, Friction, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import Array, MetrePerSecond, Ratio
 from separatrix.verdict.judgement import Judgement, judge
@@ -96,46 +95,13 @@ class DrawnBearings:
 
         `Interrupted` if the work was interrupted before the last run.
         """
-        bearings = []
+        asked = []
         for place in places:
             own = self.solved[place][case.candidate]
             cage = moving_cage(own, float(self.friction[case][place]), ball)
             cage = cage if change is None else change(place, cage)
-            bearings.append(Bearing(cage, own.study.stability, self.runs[place]))
-        key = [(one.cage, of_runs(one.settings), one.run) for one in bearings]
-        run = partial(run_bearings, bearings, kicks)
-        return runner.kept(run, bearings[0].cage, (len(kicks), len(bearings)), key, tuple(kicks))
-
-
-class Bearing(NamedTuple):
-    """A bearing of its own for one run: its cage, the settings of the run, and its number."""
-
-    cage: MovingCage
-    settings: StabilitySettings
-    run: int
-
-
-def run_bearings(
-    bearings: Sequence[Bearing], kicks: Sequence[MetrePerSecond], *, stop: Stop | None = None
-) -> Ensemble:
-    """Run each bearing once from every kick, all side by side; as `run_ensemble` does by itself."""
-    for one in bearings:
-        check_length(one.settings.duration, one.cage)
-    forward = [turned_forward(one.cage) for one in bearings]
-    each = list(zip(forward, bearings, strict=True))
-    found = follow(
-        [piece_of(cage, kick, one.settings, one.run, 1) for kick in kicks for cage, one in each], stop=stop
-    )
-    backward = np.tile([one.cage.rotation_sense < 0 for one in bearings], len(kicks))
-    for name in BY_BALL:
-        found[name][backward] = other_way_round(found[name][backward])
-    shape = len(kicks), len(bearings)
-    left, count = found["left_ball"], bearings[0].cage.ball_count
-    found["left_ball"] = np.where(backward & (left > 1), count + 2 - left, left)
-    shaped: dict[str, Any] = {
-        name: values.reshape(*shape, *values.shape[1:]) for name, values in found.items()
-    }
-    return Ensemble(kicks=np.array(kicks), duration=bearings[0].settings.duration, **shaped)
+            asked.append(Runs(cage, own.study.stability, self.runs[place], 1))
+        return runner.ensemble_of(asked, kicks)
 
 
 def drawn_bearings(study: Study, runs: int) -> DrawnBearings:

@@ -116,7 +116,14 @@ def free_ball(
     orbit = held.state[2] * p.speed + outer_speed
     fields = []
     for side, race, contact, f, ring, slip in (
-        (-1.0, held.rings - held.state[:2], state.inner, p.inner_conformity, p.speed + outer_speed, held.slips[0]),
+        (
+            -1.0,
+            held.rings - held.state[:2],
+            state.inner,
+            p.inner_conformity,
+            p.speed + outer_speed,
+            held.slips[0],
+        ),
         (1.0, held.state[:2], state.outer, p.outer_conformity, outer_speed, held.slips[1]),
     ):
         normal, a = side * race / np.hypot(*race), contact.ellipse.semi_major
