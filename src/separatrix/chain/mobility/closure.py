@@ -109,7 +109,7 @@ def free_ball(
     settings: TractionSettings,
     fastest_rate: PerSecond,
 ) -> tuple[FreeBall, tuple[RadianPerSecond, RadianPerSecond, RadianPerSecond]]:
-    """The most loaded ball with its two slip fields at free rolling, and its spin; it orbits in the positive sense."""
+    """The most loaded ball with its slip fields at free rolling, and its spin; it orbits positively."""
     held = held_ball(bearing, operation, kinematics, film, settings, SlipLaw.ELASTIC)
     state, p = bearing_state(bearing, operation, kinematics, film.race_friction), held.problem
     spin, outer_speed = held.state[3:] * p.speed, p.outer_speed
