@@ -146,7 +146,7 @@ def test_unresolved_runs_decide_nothing_and_say_why(cause, words):
 
 
 def test_balls_that_leave_their_pockets_are_counted_with_place_and_time():
-    """Their runs are unresolved, and the reason names the first ball; a few do not keep a cage from STABLE."""
+    """Their runs are unresolved, and the reason names the first ball; a few keep no cage from STABLE."""
     left, when = np.zeros((3, 16), dtype=int), np.zeros((3, 16))
     left[1, :2], when[1, :2] = (4, 9), (0.03, 0.012)
     many_left = ensemble(
@@ -219,14 +219,14 @@ FREE = FreeBall(mass=1e-3, inertia=1e-8, inner=RACE, outer=RACE, fastest_rate=1e
     ],
 )
 def test_free_balls_are_asked_before_unstable_is_said(level, first, share, balls, said, monkeypatch):
-    """Where the friction of a whirl is more than a quarter of what the races hold, and nothing forces a ball."""
+    """Where a whirl's friction is above a quarter of what the races hold, and no ball is forced."""
     kinds = {"damper": CAGE, "one state": replace(CAGE, traction=LAW), "free": replace(CAGE, free_ball=FREE)}
     names = {BallModel.DAMPER: "damper", BallModel.FREE: "free"}
     solution = SimpleNamespace(design=SimpleNamespace(ball=level))
     monkeypatch.setattr(which_ball, "transmitted_force", lambda _: 40.0)
     monkeypatch.setattr(which_ball, "whirl_share", lambda *_: share)
     monkeypatch.setattr(
-        which_ball, "moving_cage", lambda _, f, ball=level: kinds[names.get(ball, "one state")]
+        which_ball, "moving_cage", lambda _, _f, ball=level: kinds[names.get(ball, "one state")]
     )
     ran = []
 

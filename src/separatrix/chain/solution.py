@@ -313,6 +313,7 @@ class Solution:
 
     @cached_property
     def orbital_waves(self) -> OrbitalWaves:
+        """How the balls run faster and slower around, beyond their mean."""
         found = self.bearing.equilibrium
         return orbital_waves(found.orbital_speed, found.azimuth, self.study.bearing.pitch_diameter / 2.0)
 
