@@ -10,8 +10,8 @@ Only kernels that Python calls are cached, with all that they call in one file. 
 another name and then renames it, and a cached kernel has one signature only: processes that compile it at the
 same time write the same file, so that they can share a folder.
 
-Of numba this uses `njit`, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and one option that numba does
-not document, `_nrt`.
+Of numba this uses `njit`, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and one option that
+numba does not document, `_nrt`.
 """
 
 from __future__ import annotations

@@ -77,15 +77,16 @@ def test_a_whirl_grows_at_the_rate_of_the_exact_root(speed, law):
 def test_an_impact_returns_what_its_closed_form_says(eta):
     """A series spring and damper on the felt mass: to 1e-3 of the speed, what a kink costs at this step."""
     cage = replace(AT_REST, ball_count=1, race_damping=damping_of(eta), ball_cage_friction=0.0)
-    found = run(cage, 4e-3, kick=0.5, direction=math.pi / 2.0, samples=400)
+    found = run(cage, 1.2e-3, kick=0.5, direction=math.pi / 2.0, samples=400)
     closing = found.velocity[:, 1] + found.rotation_rate * cage.pitch_radius
+    apart = np.flatnonzero((found.contact_force[:-1, 0] > 0.0) & (found.contact_force[1:, 0] == 0.0))[0] + 1
     assert closing[0] == pytest.approx(0.5, rel=1e-12)
-    assert -closing[-1] / 0.5 == pytest.approx(impact_restitution(cage), abs=1e-3)
+    assert -closing[apart] / 0.5 == pytest.approx(impact_restitution(cage), abs=1e-3)
 
 
 def test_without_kinks_the_error_falls_with_the_fourth_power_of_the_step():
     """A whirl in gripped pockets: half the step, a sixteenth of the error within a fifth."""
-    cage = gripped(0.05, 2000.0, cage_speed=300.0, ball_spin=(0.0, 1.0, 0.0))
+    cage = gripped(0.05, 2000.0, cage_speed=300.0)
     ends = [run(cage, 2e-3, refine=n, samples=2).position[-1] for n in (1, 2, 8)]
     coarse, fine = (math.dist(one, ends[-1]) for one in ends[:2])
     assert coarse / fine == pytest.approx(16.0, rel=0.25)

@@ -7,13 +7,14 @@ import pytest
 from cages import SMALL as CAGE
 from cages import threshold_points
 
-from separatrix.cage import drift_law, judge, run_ensemble, wilson_interval
+from separatrix.cage import drift_law, run_ensemble
 from separatrix.limits.curve import curve_of_points, restitution_threshold, stability_curve
-from separatrix.limits.point import critical_friction, hard_limit, linear_limit
+from separatrix.limits.point import critical_friction, linear_limit
 from separatrix.limits.response import GrowthCounter, cage_at
 from separatrix.present.text.sentences import drift_sentence
 from separatrix.runner import PART, Interrupted, Runner
 from separatrix.study import Guidance, StabilitySettings
+from separatrix.verdict.judgement import judge, wilson_interval
 
 SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration=0.1, seed=3)
 
@@ -102,12 +103,9 @@ def curve():
 
 
 def test_restitution_factors_that_are_given_are_used_as_they_are(curve):
-    """Three were asked for; the bearing's own stands beside them, and hard limits, which fall."""
-    for points in (curve.curve, curve.hard_limit):
+    """Three were asked for; the bearing's own stands beside them."""
+    for points in (curve.curve, curve.linear_limit):
         assert [point.restitution_factor for point in points] == [0.3, 0.6, 0.9]
-    limits = [limit.critical_friction for limit in curve.hard_limit]
-    assert limits == sorted(limits, reverse=True)
-    assert curve.hard_limit_closed == pytest.approx(0.1438, abs=5e-5)  # four digits given
     assert not curve.adaptive
     assert curve.here.restitution_factor == pytest.approx(0.7367, abs=5e-5)  # the digits of C_mu = 2000
 
@@ -138,16 +136,6 @@ def test_below_the_band_kicks_die_and_above_they_grow(curve):
         assert wilson_interval(int((above.outcome[kick] != 1).sum()), 32)[0] < 0.1
 
 
-def test_hard_impacts_tend_to_the_closed_limit():
-    """Even pockets, eta of 1e-3: half grow from tan(pi/22) on, within 5 %.
-
-    Over six seeds 0.1399 to 0.1477 with 32 runs, 0.1415 to 0.1441 with 64. A pocket that grips has none.
-    """
-    found = hard_limit(CAGE, 1e-3, replace(SETTINGS, runs=64))
-    assert found.critical_friction == pytest.approx(0.1438, rel=0.05)
-    assert hard_limit(replace(CAGE, pocket_clearance=0.0), 0.5, SETTINGS) is None
-
-
 def test_a_whirl_of_the_land_leaves_no_crossing():
     """Where friction on the land drives the cage, that in the pockets, up to 1, feeds nothing."""
     land = {"land_clearance": 0.05e-3, "land_friction": 0.5, "land_restitution": 1.0}
@@ -168,8 +156,8 @@ def test_an_interrupted_curve_keeps_its_points_and_says_so():
         stability_curve(CAGE, replace(SETTINGS, runs=8, duration=0.02), runner=Runner(progress=interrupt))
     found = stop.value.finished
     assert 2 <= len(found.curve) < 5
-    for limits in (found.linear_limit, found.hard_limit):
-        assert [one.restitution_factor for one in limits] == [one.restitution_factor for one in found.curve]
+    limits = [one.restitution_factor for one in found.linear_limit]
+    assert limits == [one.restitution_factor for one in found.curve]
     assert found.complete is False
 
 

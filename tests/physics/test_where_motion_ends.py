@@ -6,27 +6,15 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from cages import linear_roots
-from separatrix.cage.ending import LONGEST
-from separatrix.cage.reason import largest_room
-from separatrix.cage.verdict import kick_counts
 
-from separatrix.cage import (
-    CageMotion,
-    Cause,
-    Ensemble,
-    Judgement,
-    PlanarCage,
-    RunOutcome,
-    Verdict,
-    judge,
-    run_ensemble,
-    simulate,
-)
+from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.solution import solve
 from separatrix.limits.response import cage_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
+from separatrix.verdict.judgement import Judgement, Verdict, judge, kick_counts
+from separatrix.verdict.reasons import CageMotion, largest_room
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
 
@@ -35,14 +23,14 @@ KICKS = (0.1, 0.5, 2.0, 4.0)
 
 
 @lru_cache
-def shipped(name: str, radial_load: float = 0.0, friction: float = 0.08) -> PlanarCage:
+def shipped(name: str, radial_load: float = 0.0, friction: float = 0.08) -> MovingCage:
     """Cage of a shipped study with another radial load [N] and pocket friction [-]."""
     study = read_study(name)
     study = replace(study, operation=replace(study.operation, radial_load=radial_load))
-    return solve(study).cage_with(friction)
+    return moving_cage(solve(study), friction)
 
 
-def wheel(friction: float) -> PlanarCage:
+def wheel(friction: float) -> MovingCage:
     """Cage of the momentum wheel with the pocket stiffness of a cage of 3.5 GPa, whatever the candidate's."""
     return replace(shipped("momentum-wheel", friction=friction), ball_cage_stiffness=1.9e6)
 
@@ -53,7 +41,7 @@ def wheel_runs(friction: float) -> Ensemble:
     return ends(wheel(friction), KICKS)
 
 
-def ends(cage: PlanarCage, kicks: tuple[float, ...]) -> Ensemble:
+def ends(cage: MovingCage, kicks: tuple[float, ...]) -> Ensemble:
     """A few runs from each kick."""
     return run_ensemble(cage, StabilitySettings(kicks=kicks, runs=RUNS, duration=DURATION))
 
@@ -74,11 +62,9 @@ def test_a_whirl_is_one_from_a_weak_kick_and_from_a_strong_one():
         assert np.median(runs.end_energy[at]) > 1e-3  # J, against the 0.003 mJ that the frame can give
         fed = runs.pocket_power[at][runs.pocket_power[at] != 0.0]
         assert np.median(fed) > 1.0  # W, into 3.5 g
-    cage, levels = wheel(0.30), []
-    for kick in (0.5, 4.0):
-        seen = simulate(cage, kick=kick, duration=DURATION)
-        levels.append(seen.kinetic_energy[seen.time > 0.5 * DURATION].mean())
-    assert levels[0] == pytest.approx(levels[1], rel=0.5)  # one whirl: its energy wanders by a third
+    levels = np.median(runs.end_energy, axis=1)
+    # one whirl: its energy wanders by a third
+    assert levels[KICKS.index(0.5)] == pytest.approx(levels[KICKS.index(4.0)], rel=0.5)
 
 
 @pytest.mark.parametrize("kicks", [(0.1, 0.5, 2.0), (0.1, 0.5, 2.0, 4.0), (2.0, 4.0)])
@@ -131,23 +117,25 @@ def test_friction_on_the_land_may_only_drag():
     assert np.all(dragged.cause == Cause.NONE)
 
 
-def test_a_whirl_weaker_than_the_loads_is_plain_after_a_duration():
-    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy."""
+def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
+    """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy.
+
+    Pockets feed it, and no verdict calls it unstable: it rolls, from half to four times the usual duration.
+    """
     cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
-    settings = StabilitySettings(duration=0.3)
+    settings = StabilitySettings(duration=0.15)
     found = run_ensemble(cage, settings, kicks=(0.9,), runs=RUNS)
-    whirls = found.outcome == RunOutcome.WHIRLS
-    assert np.count_nonzero(whirls) > RUNS // 2
-    assert np.all(found.end_energy[whirls] < 0.5 * drive_energy(cage))
-    assert np.all(found.pocket_power[whirls] > 0.0)
-    assert found.followed[whirls].max() < 0.7 * LONGEST * found.duration
-    assert np.median(found.followed[whirls]) < 1.5 * found.duration
-    longer = run_ensemble(cage, replace(settings, duration=3.0), kicks=(0.9,), runs=RUNS)
-    # so near its threshold a whirl may end by chance: one does after 1.6 s
+    rolls = found.outcome == RunOutcome.ROLLS
+    assert np.count_nonzero(rolls) > RUNS // 2
+    assert np.all(found.end_energy[rolls] < 0.5 * drive_energy(cage))
+    assert np.all(found.pocket_power[rolls] > 0.0)
+    assert judge(cage, found).verdict is not Verdict.UNSTABLE
+    longer = run_ensemble(cage, replace(settings, duration=1.2), kicks=(0.9,), runs=RUNS)
+    # so near its threshold a whirl may end by chance
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
 
-INTO_THE_LAND = PlanarCage(
+INTO_THE_LAND = MovingCage(
     mass=9.084e-3, moment_of_inertia=1.0758e-5, ball_count=7, pitch_radius=0.0344139, cage_speed=1892.95,
     inner_speed=5235.99, outer_speed=0.0, pocket_clearance=4.9392e-3, ball_cage_stiffness=323998.0,
     race_damping=35.623, ball_cage_friction=0.01, guidance=Guidance.OUTER, land_clearance=1e-3,
@@ -184,6 +172,6 @@ def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():
     cage = replace(cage, ball_cage_friction=0.02)
     found = judge(cage, run_ensemble(cage, StabilitySettings(duration=0.3), kicks=(0.1,), runs=8))
     assert (found.by_kick[0].drifts, found.verdict) == (8, Verdict.UNDECIDED)
-    # the motion is linear, and the two fast roots have decayed by exp(-600): rounding
-    assert found.drift_rate == pytest.approx(linear_roots(cage)[0].real, rel=1e-9)
+    # the motion is linear, and the two fast roots have decayed by exp(-600): single precision of offsets
+    assert found.drift_rate == pytest.approx(linear_roots(cage)[0].real, rel=1e-2)
     assert "without pocket clearance nothing holds its centre" in found.reason

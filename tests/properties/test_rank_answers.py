@@ -20,7 +20,8 @@ def test_no_verdict_is_contradicted_by_its_evidence(seed, tmp_path, capsys):
 
 def test_a_contradiction_is_found():
     """A whirl called stable, a probability outside its interval, a cage outside its room: each is told."""
-    count = {"kick": 0.5, "settles": 8, "whirls": 0, "drifts": 0, "unresolved": 0, "kept_by_land": 0}
+    ends = ("whirls", "drifts", "unresolved", "kept_by_land")
+    count = {"kick": 0.5, "settles": 5, "rolls": 3, **dict.fromkeys(ends, 0)}
     row = {
         "name": "x",
         "verdict": "STABLE",
@@ -36,8 +37,6 @@ def test_a_contradiction_is_found():
         "restitution_threshold_high": 0.8,
         "restitution_factor": 0.2,
         "energy_imbalance": 0.0,
-        "longest_run": 0.3,
-        "duration": 0.3,
         "worst_kick": 0.5,
         "largest_offset": 1e-4,
         "mean_offset": 1e-4,
@@ -54,6 +53,6 @@ def test_a_contradiction_is_found():
     assert len(told(probability_high=0.9)) == 1
     assert len(told(largest_offset=4e-4)) == 1
     assert len(told(mean_offset=2e-4)) == 1
-    assert len(told(by_kick=[count | {"settles": 4, "whirls": 4}])) == 1
+    assert len(told(by_kick=[count | {"settles": 4, "rolls": 0, "whirls": 4}])) == 1
     assert len(told(by_kick=[count | {"kept_by_land": 5}])) == 1
     assert len(told(margin=0.6)) == 1

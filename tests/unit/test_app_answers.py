@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from raw_logs import anton_paar
-from separatrix.figures.space import is_in_space
 from test_cli_answers import SMALL
 
 from separatrix.app.jobs import Job, Jobs
@@ -20,6 +19,7 @@ from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.server import application, made_ready
 from separatrix.app.worker import Task
 from separatrix.chain.solution import Solution, solve
+from separatrix.figures.motion import is_in_space
 from separatrix.limits.map_records import varied
 from separatrix.present import load
 from separatrix.study_file import read_study
@@ -102,12 +102,10 @@ def test_a_click_in_a_map_runs_the_point_next_to_it(page, root, x, y):
     data = load(place / "simulate.nc")
     assert float(data["cage_ball_cage_friction"]) == pytest.approx(friction)
     assert float(data["kick"]) == pytest.approx(float(load(root / "small" / "map.nc")["kick"]))
-    seen = page.get(f"/motion/small.toml?point={place.name}").json()
-    assert len(seen["offset"]) == len(seen["time"]) == len(seen["force"])
-    true = np.hypot(*data["position"].values[[0, -1]].T)
-    assert seen["true_offset"][0] == pytest.approx(true[0], rel=1e-4, abs=1e-12)  # 5 digits are sent
-    assert seen["true_offset"][-1] == pytest.approx(true[1], rel=1e-4)
-    assert page.get(f"/cage/small.toml?point={place.name}").status_code == 200
+    (run,) = re.findall('id="run">(.*?)</script>', page.get(f"/cage/small.toml?point={place.name}").text)
+    seen = json.loads(run)
+    assert seen["centre"][-2:] == pytest.approx(1e9 * data["position"].values[-1], abs=0.5)  # whole nanometres
+    assert seen["lean"] is None
 
 
 def test_the_damping_of_a_point_is_that_of_its_restitution_factor(page, root):
@@ -162,10 +160,9 @@ def test_a_point_of_a_map_in_space_is_simulated_and_shown_in_space(page, root):
     text = page.get(f"/cage/tilting.toml?point={place.name}").text
     (run,) = re.findall('id="run">(.*?)</script>', text)
     assert len(json.loads(run)["time"]) > 2
-    for source in re.findall('(?:src|href)="(/static/space/[^"]+)"', text):
+    for source in re.findall('(?:src|href)="(/static/cage/[^"]+)"', text):
         assert page.get(source).status_code == 200
     assert not re.search(r"<script(?! type=.application/json)(?![^>]* src=)", text)  # none runs inline
-    assert page.get(f"/motion/tilting.toml?point={place.name}").status_code == 422
 
 
 def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):

@@ -8,6 +8,7 @@ import distributed
 import pytest
 
 from separatrix import cluster as clusters
+from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.cluster import cluster
 from separatrix.errors import InputError
@@ -15,8 +16,9 @@ from separatrix.limits.curve import stability_curve
 from separatrix.runner import Runner
 from separatrix.study_file import read_study
 
-WHEEL = solve(read_study("momentum-wheel"))
-SETTINGS = replace(WHEEL.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
+STUDY = read_study("momentum-wheel")
+CAGE = moving_cage(solve(STUDY), 0.0)
+SETTINGS = replace(STUDY.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +35,8 @@ def test_a_cluster_gives_the_same_curve(two):
     with cluster(two.scheduler_address) as (executor, threads):
         assert threads == 4  # two for each worker
         runner = Runner(jobs=threads, executor=executor)
-        far = stability_curve(WHEEL.cage_with(0.0), SETTINGS, runner=runner)
-    assert far == stability_curve(WHEEL.cage_with(0.0), SETTINGS)
+        far = stability_curve(CAGE, SETTINGS, runner=runner)
+    assert far == stability_curve(CAGE, SETTINGS)
 
 
 def refused(address):

@@ -12,11 +12,11 @@ from commands import document, refused
 
 import separatrix
 from separatrix import figures
-from separatrix.cage import wilson_interval
 from separatrix.cli import main
 from separatrix.comparing.results import difference_interval, differing, units
 from separatrix.comparing.saved import read_answers
 from separatrix.comparing.shown import pictures
+from separatrix.verdict.judgement import wilson_interval
 
 FEW = """extends = "cryogenic-turbopump"
 [stability]

@@ -28,13 +28,13 @@ print(json.dumps([values, hits, misses]))
 """
 
 READS_A_CONSTANT = """
-from separatrix.cage.records import HARMONICS
+from separatrix.cage.rows import LANES
 from separatrix.compiled import kernel
 
 
 @kernel
 def read() -> int:
-    return HARMONICS
+    return LANES
 """
 
 CALLS_IT = """
@@ -101,7 +101,7 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
 def test_the_cage_and_the_study_are_sources_of_kernels_and_a_report_is_not():
     """What the files of today come to."""
     found = {str(path.relative_to(PACKAGE)) for path in kernel_sources(PACKAGE)}
-    assert {"cage/records.py", "cage/planar.py", "study.py", "chain/hertz.py", "compiled.py"} <= found
+    assert {"cage/rows.py", "cage/moving_cage.py", "study.py", "chain/hertz.py", "compiled.py"} <= found
     assert not any(name.startswith(("report", "figures", "cli", "results")) for name in found)
 
 
@@ -139,13 +139,13 @@ def test_code_that_was_compiled_from_other_sources_is_not_used(tmp_path):
         assert old in source
         (package / name).write_text(source.replace(old, new))
 
-    assert value_hits_misses() == [4, 0, 1]
+    assert value_hits_misses() == [16, 0, 1]
     edit("present/text/tables.py", '"""', '"""Edited. ')
-    assert value_hits_misses() == [4, 1, 0]
-    edit("cage/records.py", "HARMONICS = 4", "HARMONICS = 3")
-    assert value_hits_misses() == [3, 0, 1]
+    assert value_hits_misses() == [16, 1, 0]
+    edit("cage/rows.py", "LANES = 16", "LANES = 32")
+    assert value_hits_misses() == [32, 0, 1]
     (package / "study.py").write_text((package / "study.py").read_text() + "\nADDED = 1\n")
-    assert value_hits_misses() == [3, 0, 1]
+    assert value_hits_misses() == [32, 0, 1]
 
 
 @pytest.mark.slow
@@ -161,37 +161,3 @@ def test_processes_that_compile_at_once_share_a_folder(tmp_path):
     version = f".py{sys.version_info[0]}{sys.version_info[1]}"
     assert len(kept) >= 3
     assert all(version in name and name.endswith(".1.nbc") for name in kept)  # of one signature each
-
-
-def test_only_kernels_are_compiled_side_by_side(monkeypatch):
-    """The setting is on while a kernel is compiled, and as before afterwards: it is not ours to change."""
-    monkeypatch.setattr(compiled, "_FOLDER", None)
-    seen = []
-
-    def twice(value):
-        return value + value
-
-    usual = compiled.CONFIG["SLP_VECTORIZE"]
-    monkeypatch.setattr(compiled, "_compiled", _spied(compiled._compiled, seen))
-    kernel = compiled.kernel(twice)
-    assert compiled.CONFIG["SLP_VECTORIZE"] == usual
-    assert kernel(1.5) == 3.0
-    assert seen == [1]
-    assert compiled.CONFIG["SLP_VECTORIZE"] == usual
-
-
-def _spied(compile_, seen):
-    """As `compile_`, and note the setting whenever numba compiles."""
-
-    def spied(function, **options):
-        made = compile_(function, **options)
-        build = made.compile
-
-        def noted(signature):
-            seen.append(compiled.CONFIG["SLP_VECTORIZE"])
-            return build(signature)
-
-        made.compile = noted
-        return made
-
-    return spied

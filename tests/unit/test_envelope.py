@@ -13,6 +13,7 @@ from cages import threshold_points
 from commands import document, refused
 
 from separatrix.app.plotly import spec
+from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
@@ -203,10 +204,9 @@ def test_orders_of_a_bearing():
 
 def test_a_threshold_of_one_friction_is_that_of_the_curve():
     """Followed where it bends beside this friction, as the whole curve is."""
-    solution = solve(QUICK)
-    cage = solution.cage_with(0.0)
-    own = own_threshold(cage, solution.stability, 0.2, Runner())
-    points = threshold_points(cage, solution.stability)
+    cage = moving_cage(solve(QUICK), 0.0)
+    own = own_threshold(cage, QUICK.stability, 0.2, Runner())
+    points = threshold_points(cage, QUICK.stability)
     coarse = [one for one in points if one.restitution_factor in COARSE]
     assert own.value == restitution_threshold(points, 0.2).value
     assert own.value < restitution_threshold(coarse, 0.2).value - 0.1

@@ -6,9 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.special import expit, ndtr
-from separatrix.cage.verdict import CLEAR, FEW
 
-from separatrix.cage import KickCount, RunOutcome, SpaceEnsemble, Verdict, wilson_interval
+from separatrix.cage import Ensemble, RunOutcome
 from separatrix.distribution import LogNormal, Normal
 from separatrix.draws import UncertainInput
 from separatrix.explore import counting
@@ -16,6 +15,7 @@ from separatrix.explore.counting import is_plain, settles_more
 from separatrix.explore.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.ranking.drawn import Case
 from separatrix.study import Candidate, Friction
+from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval
 
 CASE = Case("A", "air")
 NAMES = ["x", "y", "z"]
@@ -142,12 +142,20 @@ def test_sobol_indices_of_a_product_are_the_closed_form():
 
 def judged(verdict, *settles, runs=64):
     """As a judgement: its verdict, counts by kick (the rest whirling) and worst kick."""
-    known = {"drifts": 0, "unresolved": 0, "kept_by_land": 0, "probability_low": 0.0, "probability_high": 1.0}
+    known = dict.fromkeys(("drifts", "unresolved", "kept_by_land"), 0)
+    known |= {"probability_low": 0.0, "probability_high": 1.0}
     found = tuple(
-        KickCount(kick=0.1 * (1 + i), settles=n, whirls=runs - n, probability_stable=n / runs, **known)
+        KickCount(
+            kick=0.1 * (1 + i),
+            settles=n - n // 2,  # the other half rolls
+            rolls=n // 2,
+            whirls=runs - n,
+            probability_stable=n / runs,
+            **known,
+        )
         for i, n in enumerate(settles)
     )
-    worst = min(found, key=lambda one: one.settles)
+    worst = min(found, key=lambda one: one.calm)
     return SimpleNamespace(verdict=verdict, by_kick=found, worst_kick=worst.kick)
 
 
@@ -182,19 +190,20 @@ class Judged:
     worst_kick: float
 
 
-def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatch):
+def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space():
     """The second block runs the worst kick alone; columns that only space has are as long as the others."""
 
-    def ensemble(_case, kicks, places, _runner):
-        columns = {f.name: np.zeros((len(kicks), len(places))) for f in fields(SpaceEnsemble)}
-        return SpaceEnsemble(**columns | {"kicks": np.array(kicks), "duration": 0.1})
+    def ensemble(_case, kicks, places, _runner, **_):
+        columns = {f.name: np.zeros((len(kicks), len(places))) for f in fields(Ensemble)}
+        return Ensemble(**columns | {"kicks": np.array(kicks), "duration": 0.1})
 
     total = 2 * counting.BLOCK
     looks = [judged(Verdict.UNDECIDED, 60, 20), judged(Verdict.UNDECIDED, 20), judged(Verdict.UNDECIDED, 40)]
     looks = iter([Judged(**vars(one)) for one in looks])
-    monkeypatch.setattr(counting, "judge", lambda *_: next(looks))
-    bearings = SimpleNamespace(runs=range(total), kicks=(0.1, 0.2), cage=lambda _: None, ensemble=ensemble)
-    _, found = counting.counted(bearings, None, None)
+    bearings = SimpleNamespace(
+        runs=range(total), kicks=(0.1, 0.2), ensemble=ensemble, judged=lambda *_: next(looks)
+    )
+    _, found = counting.counted_among(bearings, None, None, None)
     assert found.largest_tilt.shape == found.outcome.shape == (1, total)
 
 
@@ -221,10 +230,8 @@ def _verdict(settled, runs):
     return verdict, is_plain(judged(verdict, settled, runs=runs))
 
 
-def test_outcomes_are_counted_where_they_settle():
+def test_outcomes_are_counted_where_they_settle_or_roll():
     """From the worst kick alone."""
-    found = SimpleNamespace(
-        kicks=np.array([0.1, 0.5]),
-        outcome=np.array([[0, 0, 0], [RunOutcome.WHIRLS, RunOutcome.SETTLES, RunOutcome.WHIRLS]]),
-    )
-    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)).tolist() == [0.0, 1.0, 0.0]
+    ends = [RunOutcome.WHIRLS, RunOutcome.SETTLES, RunOutcome.ROLLS]
+    found = SimpleNamespace(kicks=np.array([0.1, 0.5]), outcome=np.array([[0, 0, 0], ends]))
+    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)).tolist() == [0.0, 1.0, 1.0]

@@ -17,18 +17,21 @@ import numpy as np
 import pytest
 from commands import COMMAND, pieces
 
-from separatrix.cage import Ensemble, run_ensemble
+from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
+from separatrix.cage.ensemble import follow_alike
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger, key_of
 from separatrix.limits.curve import stability_curve
-from separatrix.runner import PART, Interrupted, Runner
+from separatrix.runner import PART, Interrupted, Runner, joined
+from separatrix.side_by_side import Runs
+from separatrix.study import MotionModel, PocketShape
 from separatrix.study_file import read_study
 
-FOUND = solve(read_study("momentum-wheel"))
-CAGE = FOUND.cage_with(0.2)
-QUICK = replace(FOUND.stability, runs=PART + 5, duration=0.01)
+WHEEL = read_study("momentum-wheel")
+CAGE = moving_cage(solve(WHEEL), 0.2)
+QUICK = replace(settings_for(WHEEL.stability, CAGE), runs=PART + 5, duration=0.01)
 
 
 def test_work_comes_back_by_its_place():
@@ -74,7 +77,10 @@ def test_a_long_computation_is_stopped_by_an_interrupt():
             inside.wait(timeout=5.0)
             return "done"
         inside.set()
-        stopped.append(runner.stop.wait(timeout=5.0))
+        until = time.monotonic() + 5.0
+        while not runner.stop.is_set and time.monotonic() < until:
+            time.sleep(1e-3)
+        stopped.append(runner.stop.is_set)
         raise Interrupted
 
     def interrupt(done, total):
@@ -117,7 +123,7 @@ def test_an_interrupt_is_noticed_and_breaks_in_nowhere():
     found = caught.value.finished
     assert [found[i] for i in range(3)] == [0, 1, 2]
     assert len(found) < 100
-    assert runner.stop.is_set()
+    assert runner.stop.is_set
     assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)) == before
     with pytest.raises(Interrupted) as caught:
         runner.work_out(work, [7], into=dict)
@@ -147,10 +153,95 @@ def test_kept_runs_are_the_same_to_the_last_bit(tmp_path):
     runner = Runner(ledger=ledger)
     first, second = (runner.whole_ensemble(CAGE, QUICK) for _ in range(2))
     assert ledger.taken == QUICK.runs * len(QUICK.kicks)
-    for field in fields(Ensemble):
-        values = [np.asarray(getattr(one, field.name)) for one in (at_once, first, second)]
-        assert len({(value.dtype, value.shape, value.tobytes()) for value in values}) == 1, field.name
+    same_bits(at_once, first, second)
     ledger.close()
+
+
+def same_bits(*ensembles):
+    """Every field has the same kind of number, shape and bits; None, of the plane, is the same too."""
+    for field in fields(Ensemble):
+        values = [getattr(one, field.name) for one in ensembles]
+        if any(value is not None for value in values):
+            values = [np.asarray(value) for value in values]
+            assert len({(one.dtype, one.shape, one.tobytes()) for one in values}) == 1, field.name
+
+
+def test_runs_in_space_are_kept_with_all_their_columns(tmp_path):
+    """Tilt and axial motion too, which are None in the plane."""
+    cage = replace(CAGE, motion=MotionModel.SPACE, pocket_shape=PocketShape.CYLINDRICAL)
+    ledger = Ledger(tmp_path / NAME)
+    asked = {"kicks": (0.5,), "runs": 3}
+    first, second = (Runner(ledger=ledger).ensemble(cage, QUICK, **asked) for _ in range(2))
+    assert ledger.taken == 3
+    assert second.largest_tilt.shape == (1, 3)
+    same_bits(run_ensemble(cage, QUICK, **asked), first, second)
+    ledger.close()
+
+
+def test_runs_of_many_places_go_side_by_side_with_the_same_bits(monkeypatch):
+    """Twelve cages that turn this way or that, 3 runs each: few calls of the engine, the same runs."""
+    batches = []
+
+    def follow(kind, pieces, jobs, stop):
+        batches.append(len(pieces))
+        return follow_alike(kind, pieces, jobs, stop)
+
+    monkeypatch.setattr("separatrix.side_by_side.follow_alike", follow)
+    cages = [replace(CAGE, ball_cage_friction=0.05 * i) for i in range(6)]
+    cages += [replace(one, cage_speed=-one.cage_speed, inner_speed=-one.inner_speed) for one in cages]
+
+    def compute(place):
+        return runner.ensemble(cages[place], QUICK, kicks=(0.1, 0.5), runs=3, first_run=place)
+
+    runner = Runner(jobs=2)
+    found = runner.work_out(compute, range(12), into=dict)
+    assert len(batches) < sum(batches) == 24
+    for place, cage in enumerate(cages):
+        alone = run_ensemble(cage, QUICK, kicks=(0.1, 0.5), runs=3, first_run=place)
+        same_bits(found[place], alone)
+
+
+def test_bearings_of_their_own_are_run_as_each_by_itself():
+    """Three cages, one of which turns backward, each with its number of a run: their columns, in order."""
+    back = replace(CAGE, cage_speed=-CAGE.cage_speed, inner_speed=-CAGE.inner_speed)
+    asked = [Runs(cage, QUICK, 7 + i, 1) for i, cage in enumerate((CAGE, back, replace(CAGE, mass=0.004)))]
+    whole = Runner().ensemble_of(asked, (0.1, 0.5))
+    parts = [
+        run_ensemble(one.cage, QUICK, kicks=(0.1, 0.5), runs=1, first_run=one.first_run) for one in asked
+    ]
+    same_bits(whole, joined(parts))
+
+
+def test_a_fault_in_the_engine_is_raised_where_the_runs_were_asked_for(monkeypatch):
+    """And nobody waits for ever."""
+
+    def fails(*_):
+        raise MemoryError
+
+    monkeypatch.setattr("separatrix.side_by_side.follow_alike", fails)
+    runner = Runner(jobs=2)
+    with pytest.raises(MemoryError):
+        runner.work_out(lambda n: runner.ensemble(CAGE, QUICK, kicks=(0.5,), runs=n), [1, 2, 3], into=dict)
+
+
+def test_an_interrupt_ends_runs_under_way_within_two_seconds():
+    """Runs of four minutes of simulated time, in two threads: what was finished before is kept."""
+    long = replace(QUICK, duration=250.0)
+    whirls = replace(CAGE, ball_cage_friction=0.25, land_stiffness=1e5)
+
+    def compute(place):
+        if place == 0:
+            return "done"
+        os.kill(os.getpid(), signal.SIGTERM)
+        begun.append(time.monotonic())
+        return runner.ensemble(whirls, long, kicks=(0.5,), runs=64)
+
+    runner, begun = Runner(jobs=2), []
+    Runner().ensemble(whirls, QUICK, kicks=(0.5,), runs=1)  # compiled before
+    with pytest.raises(Interrupted) as caught:
+        runner.work_out(compute, [0, 1], into=dict)
+    assert time.monotonic() - begun[0] < 2.0
+    assert caught.value.finished == {0: "done"}
 
 
 @pytest.mark.parametrize(
@@ -251,29 +342,3 @@ def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, cap
     assert "runs were taken from" in said
     assert main(call) == 0
     assert json.loads(resumed) == json.loads(capsys.readouterr().out)
-
-
-def test_slow_runs_are_followed_one_by_one_and_an_interrupt_waits_for_one(monkeypatch):
-    """The stop that is set in the second run comes before the third; fast runs go together, the same bits."""
-    asked = []
-
-    def slow(*_, runs, first_run, **__):
-        asked.append((first_run, runs))
-        if len(asked) == 2:
-            found.stop.set()
-        time.sleep(0.02)
-        return run_ensemble(CAGE, QUICK, kicks=(0.5,), runs=runs, first_run=first_run)
-
-    monkeypatch.setattr("separatrix.runner.run_ensemble", slow)
-    monkeypatch.setattr("separatrix.runner.SOON", 0.01)
-    found = Runner()
-    with pytest.raises(Interrupted):
-        found.ensemble(CAGE, QUICK, kicks=(0.5,), runs=16)
-    assert asked == [(0, 1), (1, 1)]
-    asked[:] = [(0, 0)] * 2  # the stop is not set again
-    monkeypatch.setattr("separatrix.runner.SOON", 100.0)
-    whole = Runner().ensemble(CAGE, QUICK, kicks=(0.5,), runs=16)
-    assert asked[2:] == [(0, 1), (1, 15)]
-    at_once = run_ensemble(CAGE, QUICK, kicks=(0.5,), runs=16)
-    for field in fields(Ensemble):
-        assert np.array_equal(getattr(whole, field.name), getattr(at_once, field.name)), field.name

@@ -10,13 +10,15 @@ import openpyxl
 import pytest
 from commands import document, refused
 
-from separatrix.cage import judge
+from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.explore.sweep import MOST_CASES, sweep
 from separatrix.runner import Runner
 from separatrix.study_file import read_study
+from separatrix.verdict.judgement import judge
+from separatrix.verdict.which_ball import transmitted_force
 
 STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))
@@ -54,8 +56,10 @@ def test_a_verdict_is_that_of_the_whole_ensemble():
     """With its evidence, as `judge` gives it."""
     (one,) = sweep(QUICK, [{"ball_cage_friction": 0.3}], verdicts=True).cases
     found = solve(QUICK)
-    cage = found.cage_with(0.3)
-    judged = judge(cage, Runner().whole_ensemble(cage, found.stability))
+    cage = moving_cage(found, 0.3)
+    judged = judge(
+        cage, Runner().whole_ensemble(cage, QUICK.stability), capacity=transmitted_force(found)
+    )
     assert (one.verdict, one.reason) == (judged.verdict.name, judged.reason)
     for name in ("probability_stable", "largest_offset", "drift_rate", "largest_contact_force", "runs"):
         assert getattr(one, name) == getattr(judged, name)

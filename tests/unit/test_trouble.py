@@ -12,14 +12,14 @@ import pytest
 from cages import ON_A_LAND
 from commands import refused
 
-from separatrix.answers import SimulationAnswer
-from separatrix.cage import Cause, RunOutcome, Verdict, judge, run_ensemble, simulate
+from separatrix import verbs
+from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.restitution import damping_for
-from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.present import document, in_words
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
+from separatrix.verdict.judgement import Verdict, judge
 
 BASE = """
 extends = "cryogenic-turbopump"
@@ -137,11 +137,11 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
 def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))
-    history = simulate(CAGE, kick=0.5, duration=0.01, samples=20)
-    history = replace(history, outcome=RunOutcome.UNRESOLVED, cause=Cause.IMPACTS)
-    answer = SimulationAnswer(solution=solve(asked), cage=solve(asked).cage, history=history, kick=0.5, run=0)
+    answer = verbs.simulate(asked)
+    lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.LEFT_POCKET)
+    answer = replace(answer, history=lost)
     found = document("simulate", answer, asked, [])
     said = " ".join(in_words("simulate", answer, asked, []).split())
-    assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "IMPACTS")
+    assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "LEFT_POCKET")
     assert "UNRESOLVED" in said
     assert "The run does not show where the motion ends." in said

@@ -46,7 +46,10 @@ def cage_rates(s, d, a, p, space):
     for l in range(LANES):
         x, y, vx, vy, vs = s[X + l], s[Y + l], s[VX + l], s[VY + l], s[VS + l]
         share, full = s[RAMP + l], p[ORBIT + l]
-        om, rises, per_m = share * full, full * p[RAMP_RATE + l], p[PER_MASS + l]
+        rate = (
+            p[RAMP_RATE + l] if share < ONE else ZERO
+        )  # the last step of a ramp may overshoot by a part of it
+        om, rises, per_m = share * full, full * rate, p[PER_MASS + l]
         c, n = turning(a[TURN + l])
         pull = p[GRAVITY + l]
         ax = om * om * x + rises * y + pull * s[TURN_COSINE + l]
@@ -61,7 +64,7 @@ def cage_rates(s, d, a, p, space):
         d[VY + l] = fy * per_m - TWO * om * vx + ay
         d[TURN_COSINE + l] = -om * s[TURN_SINE + l]
         d[TURN_SINE + l] = om * s[TURN_COSINE + l]
-        d[RAMP + l] = p[RAMP_RATE + l]
+        d[RAMP + l] = rate
         d[POCKET_WORK + l], d[BALL_WORK + l] = a[RUB + l], a[DRIVE + l]
         d[LAND_WORK + l], d[LAND_PRESS_WORK + l] = a[LAND_RUB + l], a[LAND_PRESS + l]
         if space:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
+from types import FunctionType
 
 import numpy as np
 
@@ -239,7 +240,7 @@ def queue(
     `every` so many steps; `stop`: a flag.
     """
     states, one = LANES * cage_states(space=space), LANES * ball_states(ball, space=space)
-    speed, moves = states + (2 if space else 1) * LANES, rates if equations is None else equations
+    speed = states + (2 if space else 1) * LANES
 
     def run_queue(
         start, numbers, places_of, strips_of, waves_of, limits, steps, looks, evidence, hits_of, heat_of,
@@ -288,7 +289,7 @@ def queue(
                 for stage in range(4):
                     if waves.size > 0:
                         orbit_speeds(t, places, waves, turned, balls)
-                    moves(t, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
+                    rates(t, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
                     if stage == 0:
                         if i == 0:
                             for l in range(LANES):
@@ -331,4 +332,7 @@ def queue(
                 if at[OUTCOME] != UNKNOWN and (look[l] >= limits[n, LEAST] or not is_finite):
                     look[l], live = -1, live - 1
 
-    return kernel(run_queue) if equations is None else part(run_queue)
+    if equations is None:
+        return kernel(run_queue)
+    own = {**run_queue.__globals__, "rates": equations}
+    return part(FunctionType(run_queue.__code__, own, closure=run_queue.__closure__))

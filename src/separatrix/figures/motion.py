@@ -123,8 +123,7 @@ def orbit_reach(data: xr.Dataset) -> float:
 
 def axial_play(data: xr.Dataset) -> float:
     """Return half the clearance of the pockets along the axis [m]; 0 for none."""
-    along, axial = (float(data[f"cage_pocket_{name}clearance"]) for name in ("", "axial_"))
-    return 0.5 * (axial if np.isfinite(axial) else along)
+    return float(np.nan_to_num(data["cage_axial_half_play"]))
 
 
 def land_heights(data: xr.Dataset) -> Array:

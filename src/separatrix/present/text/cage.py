@@ -233,7 +233,7 @@ def _forces(answer: SimulationAnswer) -> list[tuple[str, str]]:
     history, impacts = answer.history, answer.analysis.impacts
     pocket = pocket_force(history.largest_contact_force, answer.force_limit)
     if answer.force_exceeds_races:
-        pocket += ": beyond it the ball slides, and its model has no meaning; `--ball free` has"
+        pocket += ": beyond it this model of a ball has no meaning (`--ball free` has)"
     is_landless = answer.cage.guidance is Guidance.BALL
     land = "the cage has no land" if is_landless else stated(history, "largest_land_force")
     count = f"{history.pocket_impacts.sum():.0f} in pockets, {history.land_impacts} at the land"

@@ -1,4 +1,4 @@
-"""A run in space: its page simulation.html, opened without a server, and the local page play it alike."""
+"""The moving cage: its page simulation.html, opened without a server, and the local page play it alike."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import pytest
 from conftest import STUDY, run
 from playwright.sync_api import expect
 
+MOTIONS = ("plane", "space")
 
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
+
+@pytest.fixture(scope="module", params=MOTIONS)
+def written(request, tmp_path_factory):
     """The page of a short run."""
-    place = tmp_path_factory.mktemp("space")
+    place = tmp_path_factory.mktemp(request.param)
     (place / "small.toml").write_text(STUDY, encoding="utf-8")
     command = [sys.executable, "-m", "separatrix", "simulate", str(place / "small.toml")]
-    subprocess.run([*command, "--motion", "space", "--out", str(place / "out"), "--quiet"], check=True)
+    subprocess.run([*command, "--motion", request.param, "--out", str(place / "out"), "--quiet"], check=True)
     return place / "out" / "simulation.html"
 
 
@@ -36,7 +38,7 @@ def plays(page) -> None:
     page.click("#play")
     expect(page.locator("#play")).to_have_text("Play")
     changed()
-    for key in ("ArrowLeft", "ArrowUp", "+", "-", ".", "0", ","):
+    for key in ("ArrowLeft", "ArrowDown", "+", "-", ".", "0", ","):
         page.focus("#scene")
         page.keyboard.press(key)
         changed()
@@ -57,7 +59,8 @@ def plays(page) -> None:
     page.focus("#scene")
     page.keyboard.press(" ")
     expect(page.locator("#play")).to_have_text("Pause")
-    assert page.locator("#readings tr").count() > 3
+    in_space = page.locator("#lean").is_visible()
+    assert page.locator("#readings tr").count() == 5 + 2 * in_space
 
 
 def test_its_own_page_plays_without_a_server(written, browser):
@@ -72,13 +75,14 @@ def test_its_own_page_plays_without_a_server(written, browser):
     page.close()
 
 
-def test_the_local_page_plays_it(view, server):
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_the_local_page_plays_it(view, server, motion):
     """From the answer of a run whose motion was chosen in the form; no inline script is needed."""
     page = view()
     page.goto(f"{server.address}/study/small.toml")
     card = page.locator(".verb", has=page.get_by_role("heading", name="simulate", exact=True))
     card.get_by_text("Options").click()
-    card.get_by_label("motion").select_option("space")
+    card.get_by_label("motion").select_option(motion)
     run(page, "simulate")
     page.get_by_role("link", name="Show the answer").click()
     page.get_by_role("link", name="Watch the cage move").click()
