@@ -13,7 +13,8 @@ import sys
 from collections import Counter
 from dataclasses import replace
 
-from separatrix.cage import PlanarCage, Verdict, judge, wilson_interval
+from separatrix.cage import MovingCage
+from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.chain.solution import solve
 from separatrix.limits.point import critical_friction
 from separatrix.limits.response import SEARCHED_FRICTION, cage_at
@@ -28,7 +29,7 @@ STEPS = 30
 Pairs = Counter[tuple[Verdict, ...]]
 
 
-def pairs_at(cage: PlanarCage, settings: StabilitySettings, eta: float) -> Pairs:
+def pairs_at(cage: MovingCage, settings: StabilitySettings, eta: float) -> Pairs:
     """Verdicts of both seeds at each friction."""
     point = critical_friction(cage, eta, settings)
     low = 0.7 * (point.critical_friction_low or 0.01)
@@ -37,7 +38,7 @@ def pairs_at(cage: PlanarCage, settings: StabilitySettings, eta: float) -> Pairs
     return Counter(verdicts(cage_at(cage, eta, f), settings) for f in frictions)
 
 
-def verdicts(cage: PlanarCage, settings: StabilitySettings) -> tuple[Verdict, ...]:
+def verdicts(cage: MovingCage, settings: StabilitySettings) -> tuple[Verdict, ...]:
     """Verdict of each seed."""
     return tuple(judge(cage, Runner().whole_ensemble(cage, replace(settings, seed=s))).verdict for s in SEEDS)
 

@@ -22,7 +22,8 @@ from pathlib import Path
 import numpy as np
 from scipy.special import expit
 
-from separatrix.cage import Ensemble, RunOutcome, Verdict, judge, wilson_interval
+from separatrix.cage import Ensemble, RunOutcome
+from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.explore.drivers import FEWEST, fitted
 from separatrix.limits.point import critical_friction
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings

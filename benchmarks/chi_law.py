@@ -28,7 +28,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from separatrix.cage import PlanarCage, RunOutcome, run_hard_ensemble
+from separatrix.cage import MovingCage, RunOutcome, run_hard_ensemble
 from separatrix.figures.style import (
     BLUE,
     GREEN,
@@ -47,7 +47,7 @@ from separatrix.study import StabilitySettings
 from separatrix.units import Array
 
 MASS, RADIUS, HALF_PLAY, STIFFNESS = 0.05, 0.03, 0.3e-3, 3e6
-CAGE = PlanarCage(
+CAGE = MovingCage(
     mass=MASS, moment_of_inertia=MASS * RADIUS**2, ball_count=11, pitch_radius=RADIUS, cage_speed=0.0,
     inner_speed=1000.0, outer_speed=0.0, pocket_clearance=2 * HALF_PLAY, ball_cage_stiffness=STIFFNESS,
     race_damping=2000.0, ball_cage_friction=0.1,

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import separatrix
-from separatrix.cage import PlanarCage
+from separatrix.cage import MovingCage
 from separatrix.limits.point import critical_friction
 from separatrix.limits.response import GrowthCounter
 from separatrix.study import BallModel, MotionModel, PocketShape, StabilitySettings
@@ -34,7 +34,7 @@ HEAD = "ball,pocket_shape,pitch_deg,kick_m_s,cage_speed_rad_s"
 ENDS = "plane,plane_low,plane_high,space,space_low,space_high"
 
 
-def in_space(name: str, ball: BallModel, **changes: object) -> PlanarCage:
+def in_space(name: str, ball: BallModel, **changes: object) -> MovingCage:
     """Cage of a study in space, with its design changed."""
     study = separatrix.read_study(name)
     if study.cage is None:
@@ -43,7 +43,7 @@ def in_space(name: str, ball: BallModel, **changes: object) -> PlanarCage:
     return separatrix.solve(replace(study, cage=design)).cage_with(0.1)
 
 
-def case(cage: PlanarCage, speed: float, shape: PocketShape, pitch: float) -> PlanarCage:
+def case(cage: MovingCage, speed: float, shape: PocketShape, pitch: float) -> MovingCage:
     """The cage at another speed, with other pockets and another pitch of the balls' spin."""
     if cage.space is None:
         raise LookupError
@@ -54,7 +54,7 @@ def case(cage: PlanarCage, speed: float, shape: PocketShape, pitch: float) -> Pl
     return replace(cage, pocket_shape=shape, cage_speed=speed, inner_speed=ring or 1.0, space=space)
 
 
-def row(cage: PlanarCage, kick: float) -> str:
+def row(cage: MovingCage, kick: float) -> str:
     """Critical friction of both, with 95 % intervals; empty where there is none."""
     if cage.space is None:
         raise LookupError

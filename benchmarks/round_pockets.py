@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import PlanarCage, SpaceBody, run_ensemble
+from separatrix.cage import MovingCage, SpaceBody, run_ensemble
 from separatrix.study import Guidance, PocketShape, StabilitySettings
 
 KICK, RUNS, ROUNDS = 0.5, 24, 7
@@ -23,7 +23,7 @@ LAND: dict[str, Any] = {
     "guidance": Guidance.OUTER, "land_clearance": 1e-3, "land_friction": 0.1, "land_stiffness": 5e6,
     "land_count": 2,
 }  # fmt: skip
-LAW = BallTraction(mass=6.567e-3, slopes=(188.0,), speeds=(73.0 / 188.0,))
+LAW = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)
 AT = {"land_heights": (-6e-3, 6e-3)}
 SPEEDS = (0.0, 100.0, 669.0)
 
@@ -41,7 +41,7 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 }
 
 
-def cage_of(friction: float, speed: float, plane: dict[str, Any], space: dict[str, Any]) -> PlanarCage:
+def cage_of(friction: float, speed: float, plane: dict[str, Any], space: dict[str, Any]) -> MovingCage:
     """One case at one friction and speed."""
     body = SpaceBody(
         **{
@@ -53,7 +53,7 @@ def cage_of(friction: float, speed: float, plane: dict[str, Any], space: dict[st
             **space,
         }
     )
-    return PlanarCage(
+    return MovingCage(
         mass=0.025,
         moment_of_inertia=2.64e-5,
         ball_count=13,
@@ -71,7 +71,7 @@ def cage_of(friction: float, speed: float, plane: dict[str, Any], space: dict[st
     )
 
 
-def share_growing(cage: PlanarCage) -> float:
+def share_growing(cage: MovingCage) -> float:
     """Share of the runs whose end energy exceeds that of the kick."""
     found = run_ensemble(cage, SETTINGS)
     return float(np.mean(found.end_energy > 0.5 * cage.mass * KICK**2))

@@ -14,12 +14,12 @@ import small_step
 from separatrix.cage.space_body import SpaceBody
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import PlanarCage, run_ensemble, run_hard_ensemble
+from separatrix.cage import MovingCage, run_ensemble, run_hard_ensemble
 from separatrix.pocket_shape import PocketShape
 from separatrix.study import Guidance, StabilitySettings
 
 RUNS = 16
-SHIPPED = PlanarCage(
+SHIPPED = MovingCage(
     mass=0.025,
     moment_of_inertia=26.4e-6,
     ball_count=13,
@@ -34,8 +34,8 @@ SHIPPED = PlanarCage(
     guidance=Guidance.OUTER,
     land_clearance=1e-3,
 )
-TURBOPUMP = BallTraction(mass=6.567e-3, slopes=(188.0,), speeds=(73.0 / 188.0,))
-WHEEL = BallTraction(mass=1.289e-3, slopes=(74.3,), speeds=(1.3 / 74.3,))
+TURBOPUMP = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)
+WHEEL = BallTraction(mass=1.289e-3, slope=74.3, speed=1.3 / 74.3)
 CASES = {
     "shipped class, settles": SHIPPED,
     "shipped class, whirls": replace(SHIPPED, race_damping=2000.0, ball_cage_friction=0.2),

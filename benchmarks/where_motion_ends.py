@@ -22,7 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.cage import PlanarCage, RunOutcome, run_ensemble, wilson_interval
+from separatrix.cage import MovingCage, RunOutcome, run_ensemble
+from separatrix.verdict.judgement import wilson_interval
 from separatrix.cage.ensemble import pocket_speed
 from separatrix.chain.solution import solve
 from separatrix.study import StabilitySettings
@@ -37,7 +38,7 @@ KICKS = 0.25, 20.0  # over the pocket speed
 Pair = tuple[RunOutcome, RunOutcome, float, float]
 
 
-def pair(cage: PlanarCage, settings: StabilitySettings, rng: np.random.Generator) -> Pair:
+def pair(cage: MovingCage, settings: StabilitySettings, rng: np.random.Generator) -> Pair:
     """Outcome of one random run, and of the same followed ten times as long; where each ended [s]."""
     friction = float(np.exp(rng.uniform(*np.log(FRICTIONS))))
     kick = pocket_speed(cage.cage_speed, cage.pocket_clearance) * float(np.exp(rng.uniform(*np.log(KICKS))))

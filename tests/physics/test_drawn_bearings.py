@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from cages import with_distributions
 
-from separatrix.cage import RunOutcome, Verdict, judge, run_ensemble
+from separatrix.cage import RunOutcome, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import sample
@@ -15,6 +15,7 @@ from separatrix.ranking.rank import rank
 from separatrix.runner import Runner
 from separatrix.study import Candidate, Friction
 from separatrix.study_file import read_study
+from separatrix.verdict.judgement import Verdict, judge
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
 

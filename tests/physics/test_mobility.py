@@ -197,7 +197,7 @@ def test_law_of_traction(name):
 
 def test_law_finds_its_own_speed():
     """A curve that is such a law is met to the tolerance of the search."""
-    made = BallTraction(mass=1e-3, slopes=(200.0,), speeds=(0.4,), sharpness=4)
+    made = BallTraction(mass=1e-3, slope=200.0, speed=0.4)
     u = np.geomspace(1e-3, 5.0, 40)
     law = fitted_law(u, made.force(u), slope=made.slope, mass=1e-3)
     assert law.slope == made.slope
@@ -274,7 +274,7 @@ def test_one_state_reproduces_an_impact(name):
 
 def test_one_state_of_a_linear_law_is_the_modes_of_one():
     """A law without an end of its elements, against the linear motion of one mode."""
-    law = BallTraction(mass=6.5e-3, slopes=(206.0,), speeds=(math.inf,))
+    law = BallTraction(mass=6.5e-3, slope=206.0, speed=math.inf)
     one = modes(np.array(((-206.0,),)), np.array(((6.5e-3,),)))
     (found,) = law_returns(law, 12.5e-3, 3e6, np.array((0.3,)))
     assert found == pytest.approx(linear_return(one, 12.5e-3, 3e6), abs=2e-4)
@@ -286,7 +286,7 @@ def test_a_heavy_cage_comes_to_rest_on_a_ball_that_yields_slowly():
     A hard impact slides the ball along and opens; a gentle one of a light cage returns.
     """
     ball, (mass, k) = held("cryo"), RING["cryo"]
-    law = BallTraction(mass=6.5e-3, slopes=(356.0,), speeds=(0.5,))
+    law = BallTraction(mass=6.5e-3, slope=356.0, speed=0.5)
     speeds, given = np.array((0.005, 2.0)), {"ball_cage_stiffness": k, "race_damping": 356.6}
     found = impacts(ball, law, felt_mass=1.0, cage_mass=2.0, **given, speeds=speeds)
     assert found.restitution_linear == 0.0
@@ -300,7 +300,7 @@ def test_a_heavy_cage_comes_to_rest_on_a_ball_that_yields_slowly():
 def test_impacts_are_a_record_of_the_same():
     """The table has the returns of single impacts, and the paper's formula with both masses."""
     ball, (mass, k) = held("cryo"), RING["cryo"]
-    law = BallTraction(mass=6.5e-3, slopes=(206.0,), speeds=(0.5,))
+    law = BallTraction(mass=6.5e-3, slope=206.0, speed=0.5)
     found = impacts(
         ball,
         law,

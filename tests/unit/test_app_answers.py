@@ -104,7 +104,9 @@ def test_a_click_in_a_map_runs_the_point_next_to_it(page, root, x, y):
     assert float(data["kick"]) == pytest.approx(float(load(root / "small" / "map.nc")["kick"]))
     (run,) = re.findall('id="run">(.*?)</script>', page.get(f"/cage/small.toml?point={place.name}").text)
     seen = json.loads(run)
-    assert seen["centre"][-2:] == pytest.approx(1e9 * data["position"].values[-1], abs=0.5)  # whole nanometres
+    assert seen["centre"][-2:] == pytest.approx(
+        1e9 * data["position"].values[-1], abs=0.5
+    )  # whole nanometres
     assert seen["lean"] is None
 
 

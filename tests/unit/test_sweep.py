@@ -57,9 +57,7 @@ def test_a_verdict_is_that_of_the_whole_ensemble():
     (one,) = sweep(QUICK, [{"ball_cage_friction": 0.3}], verdicts=True).cases
     found = solve(QUICK)
     cage = moving_cage(found, 0.3)
-    judged = judge(
-        cage, Runner().whole_ensemble(cage, QUICK.stability), capacity=transmitted_force(found)
-    )
+    judged = judge(cage, Runner().whole_ensemble(cage, QUICK.stability), capacity=transmitted_force(found))
     assert (one.verdict, one.reason) == (judged.verdict.name, judged.reason)
     for name in ("probability_stable", "largest_offset", "drift_rate", "largest_contact_force", "runs"):
         assert getattr(one, name) == getattr(judged, name)
