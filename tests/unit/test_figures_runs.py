@@ -5,6 +5,7 @@ from __future__ import annotations
 import drawn
 import numpy as np
 import pytest
+import xarray as xr
 
 from separatrix.figures import motion, simulation
 from separatrix.figures.motion import AROUND, land_boundary, pocket_boundary
@@ -59,21 +60,27 @@ def test_compared_runs_have_common_scales_and_short_names():
     assert lines[2] == "kick 0.5 m/s: the cage whirls (run of 10 ms)"
 
 
+def turning(time, angle, speed=600.0):
+    """A run whose velocity has this direction, among balls of this orbital speed."""
+    velocity = ("time", "across"), motion.ring(1.0, angle)
+    return xr.Dataset({"velocity": velocity, "cage_cage_speed": speed}, coords={"time": time})
+
+
+@pytest.mark.parametrize("speed", [600.0, -600.0])
 @pytest.mark.parametrize("turns", [40.0, -40.0])
-def test_whirl_spectrum_tells_forward_from_backward(turns):
+def test_whirl_spectrum_tells_forward_from_backward(turns, speed):
     """A velocity turning at 40 Hz with the ball set peaks at +40 Hz, against it at -40 Hz."""
     time = np.linspace(0, 1, 1001)
-    frequency, share = motion.whirl_spectrum(time, motion.ring(1.0, 2 * np.pi * turns * time))
+    frequency, share = motion.whirl_spectrum(turning(time, 2 * np.pi * turns * time, speed))
     # one bin of a run of 1 s
-    assert frequency[share.argmax()] == pytest.approx(turns, abs=1.0)
+    assert frequency[share.argmax()] == pytest.approx(turns * np.sign(speed), abs=1.0)
     assert share.max() == 1.0
 
 
 def test_the_spectrum_against_time_follows_a_whirl_that_turns_faster():
     """A velocity that turns at 1000 t Hz is strongest near 1000 t Hz in each piece of the run."""
     time = np.linspace(0, 1, 4001)
-    found = motion.spectrum_against_time(time, motion.ring(1.0, np.pi * 1000.0 * time**2))
-    middles, frequency, share = found
+    middles, frequency, share = motion.spectrum_against_time(turning(time, np.pi * 1000.0 * time**2))
     # one bin
     wanted = pytest.approx(1000.0 * middles, abs=frequency[1] - frequency[0])
     assert frequency[share.argmax(axis=1)] == wanted

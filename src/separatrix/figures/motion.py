@@ -204,68 +204,60 @@ def shade_judged(axes: Axes, data: xr.Dataset) -> None:
         axes.axvspan(first, last, color=GREY, alpha=0.2, lw=0, zorder=0)
 
 
-def even_velocity(time: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return evenly spaced times [s], at least `SHORTEST`, and the complex velocity at them [m/s]."""
-    even = np.linspace(0.0, time[-1] or 1.0, max(SHORTEST, time.size))
-    return even, np.interp(even, time, velocity[:, 0]) + 1j * np.interp(even, time, velocity[:, 1])
+def complex_velocity(data: xr.Dataset) -> tuple[float, Array]:
+    """Return the step of the samples [s], and the velocity x + iy seen so that the ball set turns anticlockwise.
 
-
-def whirl_spectrum(time: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return frequency [Hz] and amplitude of the complex velocity, the largest being 1.
-
-    Frequency rises from negative (backward) to positive (forward); times need not be even.
+    A run of few samples goes on at rest up to `SHORTEST` of them.
     """
-    even, v = even_velocity(time, velocity)
+    time, sense = data["time"].values, -1.0 if float(data["cage_cage_speed"]) < 0.0 else 1.0
+    v = data["velocity"].values @ np.array([1.0, 1j * sense])
+    return float(time[1] - time[0] if time.size > 1 else 1.0), np.pad(v, (0, max(0, SHORTEST - v.size)))
+
+
+def whirl_spectrum(data: xr.Dataset) -> tuple[Array, Array]:
+    """Return frequency [Hz] and amplitude of the velocity of a run, the largest being 1.
+
+    Frequency rises from negative (backward) to positive (forward).
+    """
+    step, v = complex_velocity(data)
     amplitude = np.abs(np.fft.fftshift(np.fft.fft(v)))
-    frequency = np.fft.fftshift(np.fft.fftfreq(even.size, even[1] - even[0]))
-    return frequency, amplitude / (amplitude.max() or 1.0)
+    return np.fft.fftshift(np.fft.fftfreq(v.size, step)), amplitude / (amplitude.max() or 1.0)
 
 
-def spectrum_against_time(time: Array, velocity: Array, reach: Hertz = 0.0) -> tuple[Array, Array, Array]:
+def spectrum_against_time(data: xr.Dataset, reach: Hertz = 0.0) -> tuple[Array, Array, Array]:
     """Spectra of pieces of the run, each with Hann's window and three quarters over the one before.
 
     Returns the middles of the pieces [s], frequency [Hz] and amplitude over the largest, shape
     (piece, frequency). Pieces are long enough for a picture that reaches to `reach`, unless that is 0.
     """
-    even, v = even_velocity(time, velocity)
-    fine = BANDS / (reach * (even[1] - even[0])) if reach > 0.0 else 1.0
+    step, v = complex_velocity(data)
+    fine = BANDS / (reach * step) if reach > 0.0 else 1.0
     wanted = max(2.0 ** round(np.log2(3.0 * np.sqrt(v.size))), 2.0 ** np.ceil(np.log2(fine)))
     length = int(min(max(v.size // 4, SHORTEST), max(SHORTEST, wanted)))
     starts = np.arange(0, v.size - length + 1, max(1, length // 4))
     pieces = v[starts[:, np.newaxis] + np.arange(length)] * np.hanning(length)
     amplitude = np.abs(np.fft.fftshift(np.fft.fft(pieces, axis=1), axes=1))
-    frequency = np.fft.fftshift(np.fft.fftfreq(length, even[1] - even[0]))
-    return even[starts] + 0.5 * (even[length - 1] - even[0]), frequency, amplitude / (amplitude.max() or 1.0)
-
-
-def forward_velocity(data: xr.Dataset) -> Array:
-    """Return the velocity of the centre, seen from where the ball set turns anticlockwise [m/s]."""
-    sense = -1.0 if float(data["cage_cage_speed"]) < 0.0 else 1.0
-    return np.asarray(data["velocity"].values * np.array([1.0, sense]))
-
-
-def of_run(data: xr.Dataset) -> tuple[Array, Array]:
-    """Return the spectrum of a simulation."""
-    return whirl_spectrum(data["time"].values, forward_velocity(data))
+    frequency = np.fft.fftshift(np.fft.fftfreq(length, step))
+    return step * (starts + 0.5 * (length - 1)), frequency, amplitude / (amplitude.max() or 1.0)
 
 
 def spectrum_reach(data: xr.Dataset) -> Hertz:
     """Return the frequency up to which a picture of the spectrum must go [Hz]."""
-    frequency, share = of_run(data)
+    frequency, share = whirl_spectrum(data)
     shown = np.abs(frequency[share > PRESENT])
     return float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
 
 
 def fastest_whirl(data: xr.Dataset) -> Hertz:
     """Return the highest frequency that is strong in a simulation [Hz]; 0 for a cage at rest."""
-    frequency, share = of_run(data)
+    frequency, share = whirl_spectrum(data)
     return float(np.abs(frequency[share > STRONG]).max(initial=0.0))
 
 
 def draw_spectrum(axes: Axes, *runs: xr.Dataset, looks: tuple[Look, ...] = ({"color": BLUE},)) -> None:
     """Draw the two-sided spectra of the velocity of some runs; forward whirl turns as the balls do."""
     for data, look in zip(runs, looks, strict=True):
-        frequency, share = of_run(data)
+        frequency, share = whirl_spectrum(data)
         axes.plot(1e-3 * frequency, share, **{"lw": 0.8, **look})
     axes.axvline(0.0, color=GREY, lw=0.5)
     most = 1e-3 * max(map(spectrum_reach, runs))
@@ -276,7 +268,7 @@ def draw_spectrum(axes: Axes, *runs: xr.Dataset, looks: tuple[Look, ...] = ({"co
 def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
     """Draw the spectrum against linear time while there is a whirl to see, darker for a stronger one."""
     most, whole = spectrum_reach(data), 1e3 * float(data["time"].values[-1]) or 1.0
-    middles, frequency, share = spectrum_against_time(data["time"].values, forward_velocity(data), most)
+    middles, frequency, share = spectrum_against_time(data, most)
     shown = np.abs(frequency) <= max(1.1 * most, 2.1 * (frequency[1] - frequency[0]))
     level = 20.0 * np.log10(np.maximum(share[:, shown], 10.0 ** (FAINTEST / 20.0)))
     step = frequency[1] - frequency[0]

@@ -62,6 +62,14 @@ COURSES = (
 )
 """Variables against time, each with label and title."""
 
+SPECTRA = (
+    ("offset", 1e6, f"{MICRO}m", "Offset, fixed frame"),
+    ("slip_rate", 1.0, "rad/s", "Speed of rotation against the balls"),
+    ("lean", 1e3, "mrad", "Lean of the axis, fixed frame"),
+    ("axial", 1e6, f"{MICRO}m", "Axial place"),
+)
+"""Spectra, each with the scale of its unit and a title."""
+
 CAGE_MARK: Look = {"color": GREY, "lw": 0.7, "ls": (0, (4, 1.5)), "zorder": 1.5}
 
 
@@ -122,24 +130,15 @@ def _limit(axes: Axes, limits: Sequence[tuple[float, Look, str]], *, both: bool 
 
 def whirl(data: xr.Dataset) -> Figure:
     """Amplitude spectra in the fixed frame, whirl ratios and slip, and the whirl's spectrum against time."""
-    both, tone = (
-        np.asarray(data[name if name in data else f"analysis_spectra_{name}"].values, dtype=float)
-        for name in ("frequency", "tone")
-    )
-    drawn = [
-        (both, 1e6, "offset", f"amplitude [{MICRO}m]", "Offset, fixed frame"),
-        (tone, 1.0, "slip_rate", "amplitude [rad/s]", "Speed of rotation against the balls"),
-        (both, 1e3, "lean", "amplitude [mrad]", "Lean of the axis, fixed frame"),
-        (tone, 1e6, "axial", f"amplitude [{MICRO}m]", "Axial place"),
-    ][: 4 if is_in_space(data) else 2]
+    drawn = [one for one in SPECTRA if data[f"analysis_spectra_{one[0]}"].ndim > 0]
     count = len(drawn) // 2
     figure = Figure(figsize=(PAGE, 2.1 * (count + 2)), layout="constrained")
     grid = figure.add_gridspec(count + 2, 2)
-    for place, (frequency, scale, name, label, title) in enumerate(drawn):
-        axes = figure.add_subplot(grid[place // 2, place % 2])
-        turn = abs(float(data["analysis_whirl_cage_speed"])) / (2.0 * np.pi)
-        _spectrum(axes, frequency, scale * data[f"analysis_spectra_{name}"].values, turn)
-        axes.set(ylabel=label)
+    turn = abs(float(data["analysis_whirl_cage_speed"])) / (2.0 * np.pi)
+    for place, (name, scale, unit, title) in enumerate(drawn):
+        axes, found = figure.add_subplot(grid[place // 2, place % 2]), data[f"analysis_spectra_{name}"]
+        _spectrum(axes, data[found.dims[0]].values, scale * found.values, turn)
+        axes.set_ylabel(f"amplitude [{unit}]")
         axes.set_title(f"{'abcd'[place]}  {title}")
     ratios, slip = (figure.add_subplot(grid[count, column]) for column in range(2))
     for axes in (ratios, slip):
