@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "physics"))
 
 from synthetic_friction import Recipe, made, recipes
 
-from separatrix.cage import wilson_interval
+from separatrix.verdict.judgement import wilson_interval
 from separatrix.friction.reduction import reduce_log
 
 SEED = 60606

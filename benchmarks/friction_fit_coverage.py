@@ -18,7 +18,7 @@ from math import exp, hypot, log, sqrt
 import numpy as np
 from scipy.special import ndtri
 
-from separatrix.cage import wilson_interval
+from separatrix.verdict.judgement import wilson_interval
 from separatrix.friction.file import FrictionTest
 from separatrix.friction.fit import FrictionFit, MaterialFit, fit_friction, linear_model
 from separatrix.friction.scatter import variance_components

@@ -28,7 +28,7 @@ sys.path[:0] = [str(ROOT / "tests" / "physics"), str(ROOT / "tests" / "unit")]
 import raw_logs
 from synthetic_friction import CORRELATIONS, RUN_INS, Made, Recipe, made, recipes
 
-from separatrix.cage import wilson_interval
+from separatrix.verdict.judgement import wilson_interval
 from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap
