@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.cage.outcome import turned_forward
+from separatrix.cage.moving_cage import turned_forward
 from separatrix.chain.lubrication import lubrication_curve
 from separatrix.chain.orbit import orbital_waves
 from separatrix.chain.solution import solve
