@@ -1,3 +1,4 @@
+# ruff: noqa: E501, F841 - a draft
 """The cage in the plane by another program: the frame of the housing, complex numbers, scipy's DOP853.
 
 It takes the inputs of a cage and shares no code with the engine but the damper of the land, which
