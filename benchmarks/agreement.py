@@ -14,13 +14,13 @@ from collections import Counter
 from dataclasses import replace
 
 from separatrix.cage import MovingCage
-from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.chain.solution import solve
 from separatrix.limits.point import critical_friction
 from separatrix.limits.response import SEARCHED_FRICTION, cage_at
 from separatrix.runner import Runner
 from separatrix.study import StabilitySettings
 from separatrix.study_file import read_study
+from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 
 SEEDS = (101, 102)
 FACTORS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9)

@@ -23,7 +23,6 @@ import numpy as np
 from scipy.special import expit
 
 from separatrix.cage import Ensemble, RunOutcome
-from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.explore.drivers import FEWEST, fitted
 from separatrix.limits.point import critical_friction
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
@@ -31,6 +30,7 @@ from separatrix.runner import Runner, joined
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.units import Array
+from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 
 STUDIES = {
     "momentum-wheel": ("3.5 g", "0.3 mm", "0.3 mm", "1 um", "40 N"),

@@ -22,8 +22,8 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "physics"))
 
 from synthetic_friction import Recipe, made, recipes
 
-from separatrix.verdict.judgement import wilson_interval
 from separatrix.friction.reduction import reduce_log
+from separatrix.verdict.judgement import wilson_interval
 
 SEED = 60606
 PLACES, SIZES = (0.05, 0.3), (2.0, 5.0)

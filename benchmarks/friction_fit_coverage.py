@@ -18,10 +18,10 @@ from math import exp, hypot, log, sqrt
 import numpy as np
 from scipy.special import ndtri
 
-from separatrix.verdict.judgement import wilson_interval
 from separatrix.friction.file import FrictionTest
 from separatrix.friction.fit import FrictionFit, MaterialFit, fit_friction, linear_model
 from separatrix.friction.scatter import variance_components
+from separatrix.verdict.judgement import wilson_interval
 
 ENVIRONMENT = {"counterface": "440C", "medium": "liquid nitrogen"}
 NAME = "liquid nitrogen, 440C"

@@ -23,10 +23,10 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.cage import MovingCage, RunOutcome, run_ensemble
-from separatrix.verdict.judgement import wilson_interval
 from separatrix.cage.ensemble import pocket_speed
 from separatrix.chain.solution import solve
 from separatrix.study import StabilitySettings
+from separatrix.verdict.judgement import wilson_interval
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "properties"))
 from sane_studies import sane_study

@@ -1,4 +1,4 @@
-# ruff: noqa: E501, F841 - a draft
+# ruff: noqa: E501 - a draft
 """The cage in the plane against motions that have closed forms: impacts, its land, pockets that grip.
 
 In double precision with 8 to 64 steps in one of the usual length, unless the usual step is what is judged. An impact

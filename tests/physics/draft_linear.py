@@ -1,4 +1,4 @@
-# ruff: noqa: E501, F841 - a draft
+# ruff: noqa: E501 - a draft
 """The linear limit, a cage without clearance: closed forms, exact roots and the engine agree, in plane and space."""
 
 import math

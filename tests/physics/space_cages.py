@@ -1,4 +1,4 @@
-# ruff: noqa: E501, F841 - a draft
+# ruff: noqa: E501 - a draft
 """Cages in space from which the tests start, balls on which they are pushed, and the equations at one moment."""
 
 import math

@@ -215,7 +215,7 @@ def differences(scale: float) -> float:
         TURNING, **SPACE, race_damping=356.58, ball_cage_friction=0.2, pocket_shape=PocketShape.CYLINDRICAL,
         pocket_clearance=6e-4 * scale, pivot_speed=0.05, axial_kick=0.2, tilt_kick=0.4,
     )  # fmt: skip
-    lead, kick, R = 8e-5 * scale * np.sin(2.0 * np.arange(13)), 0.5 * scale, cage.pitch_radius
+    lead, kick, R = 8e-5 * scale * np.sin(2.0 * np.arange(13) + 1.0), 0.5 * scale, cage.pitch_radius
     here = run(cage, 2.5e-3, kick=kick, ball_lead=lead, samples=7, refine=8)
     assert here.pocket_impacts.sum() > 3
     start = kick * np.array([math.cos(0.3), math.sin(0.3), 0.2]), np.array([0.4 * kick / R, 0.0, 0.0])
