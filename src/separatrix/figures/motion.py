@@ -205,7 +205,7 @@ def shade_judged(axes: Axes, data: xr.Dataset) -> None:
 
 
 def complex_velocity(data: xr.Dataset) -> tuple[float, Array]:
-    """Return the step of the samples [s], and the velocity x + iy seen so that the ball set turns anticlockwise.
+    """Step of the samples [s], and velocity x + iy, seen so that the ball set turns anticlockwise.
 
     A run of few samples goes on at rest up to `SHORTEST` of them.
     """
