@@ -70,6 +70,8 @@ def run(
         "tone": ("tone", np.arange(8.0)),
         "analysis_spectra_offset": ("frequency", np.full(16, 1e-4)),
         "analysis_spectra_slip_rate": ("tone", np.full(8, 0.1 * touching)),
+        "analysis_spectra_lean": np.nan,
+        "analysis_spectra_axial": np.nan,
         "analysis_whirl_cage_speed": 600.0,
         "analysis_whirl_window_time": ("window", [0.002, 0.008]),
         "analysis_whirl_window_offset_ratio": ("window", [1.5, np.nan]),

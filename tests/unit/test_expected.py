@@ -50,7 +50,7 @@ def test_no_more_is_timed_once_that_took_long(timed):
 def test_a_curve_with_its_band_takes_longer(timed):
     """And in proportion to its points."""
     cage = moving_cage(SOLUTION, 0.0)
-    three, six = (tuple(i / n for i in range(n)) for n in (3, 6))
+    three, six = (tuple(i / 8 for i in range(1, n + 1)) for n in (3, 6))
     few, many = (replace(SETTINGS, restitution_factors=etas) for etas in (three, six))
     without, band = (expected.expected_curve(cage, few, jobs=1, band=one) for one in (False, True))
     assert without < band

@@ -134,6 +134,7 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
     assert np.isfinite(found.growth_rate)
 
 
+@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")  # of friction beyond its tests
 def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))

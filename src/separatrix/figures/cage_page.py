@@ -58,7 +58,7 @@ def view(data: xr.Dataset) -> str:
         found = found.replace(sign, f"\\u{ord(sign):04x}")
     parts = {
         "ABOUT": html.escape("\n".join(heading(data)[len(title) :])),
-        "MOST": ", ".join(forces[: 1 + abs(at.side)]),
+        "MOST": ", ".join(forces[: 1 + (at.largest[1] > 0.0)]),
         "SHOWN": f"Frames show {spans}.",
         "DATA": found,
     }
