@@ -46,9 +46,7 @@ def cage_rates(s, d, a, p, space):
     for l in range(LANES):
         x, y, vx, vy, vs = s[X + l], s[Y + l], s[VX + l], s[VY + l], s[VS + l]
         share, full = s[RAMP + l], p[ORBIT + l]
-        rate = (
-            p[RAMP_RATE + l] if share < ONE else ZERO
-        )  # the last step of a ramp may overshoot by a part of it
+        rate = a[RAMP_NOW + l]
         om, rises, per_m = share * full, full * rate, p[PER_MASS + l]
         c, n = turning(a[TURN + l])
         pull = p[GRAVITY + l]

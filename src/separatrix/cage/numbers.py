@@ -158,6 +158,8 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
     _, beside, _ = pocket_rectangle(cage)
     lean_cosine, lean_sine = pocket_shape.tilt(cage)
     outward, inward = cage.wall_margins
+    # an inner land is touched opposite to the cage's offset, where an odd number of lobes has turned its sign
+    lobe = cage.land_out_of_round * (side if cage.land_lobes % 2 else 1.0)
     given = {
         rows.STEP: step,
         rows.PER_MASS: 1.0 / M,
@@ -189,8 +191,8 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         rows.MARGIN_IN: min(outward, NOWHERE),
         rows.MARGIN_OUT: min(inward, NOWHERE),
         rows.LAND_GAP: min(cage.land_gap, NOWHERE),
-        rows.LOBE: cage.land_out_of_round,
-        rows.LOBE_SLOPE: cage.land_out_of_round * cage.land_lobes,
+        rows.LOBE: lobe,
+        rows.LOBE_SLOPE: lobe * cage.land_lobes,
         rows.LAND_FRICTION: cage.land_friction,
         rows.LAND_LEVER: side * reach / R,
         rows.RING_SLIDE: side * (cage.guiding_ring_speed - cage.cage_speed) * reach,

@@ -66,8 +66,8 @@ LEAD, GROOVE = _places(2)
 # What the forces of a moment add up to.
 (
     FX, FY, FS, FZ, MX, MY, RUB, DRIVE, LX, LY, LS, LZ, LMX, LMY, LAND_RUB, LAND_PRESS, LAND_N, LAND_HEAT,
-    GX, GY, GVX, GVY, GA, GB, GWA, GWB, TURN, SUMS,
-) = _places(28)  # fmt: skip
+    GX, GY, GVX, GVY, GA, GB, GWA, GWB, TURN, RAMP_NOW, SUMS,
+) = _places(29)  # fmt: skip
 
 # What is watched of a run, as a sum over the steps of a look.
 (

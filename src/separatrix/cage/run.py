@@ -30,6 +30,9 @@ from separatrix.cage.step import held_stage_end, hold, stage_end
 from separatrix.compiled import inlined, kernel, part
 
 OUTCOME, CAUSE, ENDED, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(8)
+RAMP_UP = np.float32(1e-6)
+"""What a ramp may lack of full speed at its end: some roundings in single precision."""
+
 EVIDENCE_COLUMNS = FIRST_EXTREME + of(EXTREMES_END - WATCHED)
 """What is written of a run; after these the extremes of `rows`, in their order."""
 
@@ -56,6 +59,14 @@ def orbit_speeds(s, places, waves, turned, balls):
                 q[OWN_SPEED + l] += waves[h + ORBIT_COSINE + l] * c + waves[h + ORBIT_SINE + l] * n
                 power[l] = c * turned[l] - n * turned[LANES + l]
                 power[LANES + l] = n * turned[l] + c * turned[LANES + l]
+
+
+@inlined
+def speed_up(s, a, p):
+    """Rate of the ball set's share of its speed in this step: the last of a ramp brings it to 1."""
+    for l in range(LANES):
+        left = ONE - s[RAMP + l]
+        a[RAMP_NOW + l] = min(p[RAMP_RATE + l], left / p[STEP + l]) if left > RAMP_UP else ZERO
 
 
 @inlined
@@ -286,6 +297,7 @@ def queue(
             w[:WATCHED] = ZERO
             t[:] = s
             for i in range(steps):
+                speed_up(s, a, p)
                 for stage in range(4):
                     if waves.size > 0:
                         orbit_speeds(t, places, waves, turned, balls)

@@ -276,22 +276,30 @@ def free_ball(
     i = touch(p, -1.0, A[0] - state[0], A[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
     load_o, load_i, slope_i = turning_loads(p, i, o)
-    inner, inner_by, outer, outer_by = np.empty(6), np.empty((6, 6)), np.empty(6), np.empty((6, 6))
-    contact_actions(p, -1.0, i, load_i, slope_i, state, smoothing[0], cells, nodes, inner, inner_by)
-    contact_actions(p, 1.0, o, load_o, o.load_slope, state, smoothing[1], cells, nodes, outer, outer_by)
+    acts, acts_by = np.empty((2, 6)), np.empty((2, 6, 6))
+    for race in range(2):  # one call, for each copy of it takes seconds to compile
+        side, t, load, slope = (-1.0, i, load_i, slope_i) if race == 0 else (1.0, o, load_o, o.load_slope)
+        contact_actions(
+            p, side, t, load, slope, state, smoothing[race], cells, nodes, acts[race], acts_by[race]
+        )
+    inner, inner_by, outer, outer_by = acts[0], acts_by[0], acts[1], acts_by[1]
     by_state, push, push_by = out.by_state, out.push, out.push_by
-    residual[:] = inner + outer
-    by_state[:, 2:6] = inner_by[:, 2:] + outer_by[:, 2:]
-    by_state[:, 6:] = inner_by[:, :2]
-    by_state[:, :2] = outer_by[:, :2] - inner_by[:, :2]
+    for q in range(6):  # loops, for an expression of arrays takes seconds to compile
+        residual[q] = inner[q] + outer[q]
+        for k in range(2):
+            by_state[q, k], by_state[q, 6 + k] = outer_by[q, k] - inner_by[q, k], inner_by[q, k]
+        for k in range(2, 6):
+            by_state[q, k] = inner_by[q, k] + outer_by[q, k]
     _add_inertia(p, state, residual, by_state)
     _keep_real_friction(i, load_i, inner, inner_by, residual, by_state)
     real = min(i.load / load_i, 1.0)
     for q in range(5):
         source = q if q < 3 else q + 1
         push[q] = real * inner[source]
-        push_by[q, :2], push_by[q, 6:] = -real * inner_by[source, :2], real * inner_by[source, :2]
-        push_by[q, 2:6] = real * inner_by[source, 2:]
+        for k in range(2):
+            push_by[q, k], push_by[q, 6 + k] = -real * inner_by[source, k], real * inner_by[source, k]
+        for k in range(2, 6):
+            push_by[q, k] = real * inner_by[source, k]
     _add_normal_loads(i, o, residual, out)
 
 
@@ -302,12 +310,14 @@ def _add_normal_loads(i: Touch, o: Touch, residual: Array, out: Work) -> None:
     normal_slopes(o, H_o)
     residual[0] += i.load * i.sine - o.load * o.sine
     residual[1] += i.load * i.cosine - o.load * o.cosine
-    out.by_state[:2, :2] -= H_i + H_o
-    out.by_state[:2, 6:] += H_i
     out.push[0] += i.load * i.sine
     out.push[1] += i.load * i.cosine
-    out.push_by[:2, :2] -= H_i
-    out.push_by[:2, 6:] += H_i
+    for q in range(2):
+        for k in range(2):
+            out.by_state[q, k] -= H_i[q, k] + H_o[q, k]
+            out.by_state[q, 6 + k] += H_i[q, k]
+            out.push_by[q, k] -= H_i[q, k]
+            out.push_by[q, 6 + k] += H_i[q, k]
 
 
 @part
@@ -320,7 +330,8 @@ def _keep_real_friction(
     gone = 1.0 - i.load / turning
     for q in range(2):
         residual[q] -= gone * inner[q]
-        by_state[q, 2:6] -= gone * inner_by[q, 2:]
+        for k in range(2, 6):
+            by_state[q, k] -= gone * inner_by[q, k]
         for k in range(2):
             along = (i.sine if k == 0 else i.cosine) * i.load_slope / turning * inner[q] - gone * inner_by[
                 q, k

@@ -20,7 +20,7 @@ from separatrix.chain.equilibrium.balance import (
     turning_loads,
 )
 from separatrix.chain.equilibrium.groove import static_split, touch
-from separatrix.chain.equilibrium.problem import Method, Problem, Work, solve_linear, work
+from separatrix.chain.equilibrium.problem import Method, Problem, Work, copy, solve_linear, work
 from separatrix.compiled import part, unfolded
 from separatrix.units import Array
 
@@ -28,7 +28,7 @@ TOLERANCE = 1e-11
 """Largest unbalanced force of a ball over the force scale of the bearing; rounding allows about 1e-14."""
 
 
-@part
+@unfolded
 def evaluate(
     p: Problem,
     A: Array,
@@ -102,7 +102,7 @@ def newton_ball(
     while True:  # one call of `evaluate`, for each copy of it takes seconds to compile
         evaluate(p, A, trial, smoothing, method, residual, out)
         if scaled_norm(residual, scales) <= (1.0 - 0.1 * stride) * norm or steps == 0:
-            state[:] = trial
+            copy(state, trial)
             row_scales(p, A, state, method.force, scales)
             norm = scaled_norm(residual, scales)
             if norm <= tolerance or steps >= limit or not newton_step(out.by_state, residual, scales, step):
@@ -130,7 +130,9 @@ def _normal_pull(p: Problem, A: Array, state: Array, pull: Array, g: Array, H: A
     other = np.empty((2, 2))
     normal_slopes(o, H)
     normal_slopes(i, other)
-    H += other
+    for k in range(2):
+        H[k, 0] += other[k, 0]
+        H[k, 1] += other[k, 1]
     g[0] = o.load * o.sine - i.load * i.sine - pull[0]
     g[1] = o.load * o.cosine - i.load * i.cosine - pull[1]
     return float(i.load + o.load)
@@ -159,8 +161,10 @@ def rest(p: Problem, A: Array, pull: Array, state: Array) -> None:
             if loads > 0.0 and x * there[0] + r * there[1] <= -0.5 * fall:
                 break
             stride *= 0.5
-        state[:2] = trial
-        g[:], H[:, :] = there, slopes
+        copy(state[:2], trial)
+        copy(g, there)
+        for k in range(2):
+            copy(H[k], slopes[k])
 
 
 @part
@@ -204,7 +208,7 @@ SMOOTHING = 1e-4
 """Slip speed that rounds the corner of Coulomb's law, over the speed difference times d_m/4."""
 
 
-@part
+@unfolded
 def lower_smoothing(p: Problem, A: Array, state: Array, start: float, method: Method, out: Work) -> float:
     """Follow the ball from `start` down to `SMOOTHING` in adaptive ratios; returns the smoothing reached."""
     good, ratio, unit = state.copy(), 0.25, 0.25 * p.pitch_diameter
@@ -212,10 +216,10 @@ def lower_smoothing(p: Problem, A: Array, state: Array, start: float, method: Me
     while True:
         if newton_ball(p, A, state, smoothing * unit, method, out, 25.0, 1e-7) <= 1e-7:
             reached = smoothing
-            good[:] = state
+            copy(good, state)
             ratio = max(ratio * ratio, 0.1)
         else:
-            state[:] = good
+            copy(state, good)
             ratio = math.sqrt(ratio)
         if reached <= SMOOTHING or reached == math.inf or ratio > 0.98:
             return reached
@@ -241,7 +245,7 @@ def solve_free(p: Problem, A: Array, state: Array, method: Method, out: Work) ->
     for attempt in range(-1, 4):
         reached = SMOOTHING
         if attempt >= 0:
-            state[:2] = place
+            copy(state[:2], place)
             kinematic_start(p, A, state)
             start = 0.03 if attempt < 2 else 3.0
             reached = lower_smoothing(p, A, state, start, method if attempt % 2 == 1 else coarse(method), out)
@@ -265,14 +269,16 @@ def _turn_until_balanced(p: Problem, A: Array, state: Array, smoothing: float, m
         evaluate(p, A, trial, smoothing, method, residual, out)
         now = scaled_norm(residual[2:], scales[2:])
         if now <= (1.0 - 0.1 * stride) * norm:
-            state[:], norm, stride = trial, now, 1.0
+            copy(state, trial)
+            norm, stride = now, 1.0
             if norm <= TOLERANCE or not newton_step(out.by_state[2:, 2:6], residual[2:], scales[2:], step):
                 break
         else:
             stride *= 0.5
             if stride < 2e-3:
                 break
-        trial[2:] = state[2:] + stride * step[:, 0]
+        for k in range(4):
+            trial[2 + k] = state[2 + k] + stride * step[k, 0]
     return norm
 
 

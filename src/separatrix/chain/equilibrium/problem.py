@@ -91,6 +91,13 @@ def problem(bearing: BallBearing, operation: Operation, inner_share: float, fric
 
 
 @part
+def copy(into: Array, values: Array) -> None:
+    """Set `into`, shape (n,), to the first values: an assignment of slices takes seconds to compile."""
+    for k in range(into.size):
+        into[k] = values[k]
+
+
+@part
 def solve_linear(matrix: Array, right: Array) -> bool:
     """Solve in place by Gauss with row exchange; `right`, shape (n, columns), becomes the answer.
 

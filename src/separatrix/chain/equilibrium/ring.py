@@ -23,7 +23,7 @@ from separatrix.chain.equilibrium.ball import (
     solve_kinematics,
 )
 from separatrix.chain.equilibrium.groove import Touch, static_split, touch
-from separatrix.chain.equilibrium.problem import Method, Problem, Work, solve_linear, work
+from separatrix.chain.equilibrium.problem import Method, Problem, Work, copy, solve_linear, work
 from separatrix.chain.hertz import elliptic_integrals
 from separatrix.compiled import kernel, part, unfolded
 from separatrix.units import Array
@@ -93,7 +93,7 @@ def moving_ball(p: Problem, A: Array, state: Array, method: Method, out: Work, b
     return 0.0 if slopes_with_ring(out, by_ring) else math.inf
 
 
-@kernel
+@unfolded
 def ring_balance(
     p: Problem, q: Array, setup: Balls, states: Array, method: Method, balance: Array, slopes: Array
 ) -> tuple[float, int]:
@@ -101,7 +101,7 @@ def ring_balance(
 
     Returns 0, or the smoothing reached by the ball that failed, and its number.
     """
-    balance[:] = setup.loads
+    copy(balance, setup.loads)
     slopes[:, :] = 0.0
     A, by_ring, out = np.empty(2), np.zeros((5, 2)), work(states.shape[1])
     total, total_by, weight, arm = np.empty((5, 1)), np.empty((5, 2)), setup.weight, 0.5 * p.pitch_diameter
@@ -171,45 +171,57 @@ def solve_ring(
     tolerance: float,
     limit: int,
     boldness: float,
+    balance: Array,
 ) -> tuple[float, int, float, int]:
-    """Damped Newton (Levenberg) on the ring from `q` and `states`, both in place.
+    """Damped Newton (Levenberg) on the ring from `q` and `states`, in place as is `balance`, shape (5,).
 
-    A step may raise the unbalance by the factor `boldness`: along a curved valley that is faster.
+    A step may raise the unbalance by the factor `boldness`: along a curved valley that is faster. A `limit`
+    of 0 gives the balance where the ring is.
 
     Returns the unbalance [N], iterations, the smoothing at which a ball failed (0: none) and its number.
     """
     dofs, arm, n = setup.dofs, 0.5 * p.pitch_diameter, setup.dofs.size
-    balance, slopes, step = np.empty(5), np.empty((5, 5)), np.empty((n, 1))
+    slopes, good_slopes, step, good_balance = np.empty((5, 5)), np.empty((5, 5)), np.empty((n, 1)), np.empty(5)
     span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
-    failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
-    if failed > 0.0:
-        return math.inf, 0, failed, ball
-    rest, good_q, good_states = unbalance(balance, dofs, arm), q.copy(), states.copy()
-    good_balance, good_slopes, damping, lost = balance.copy(), slopes.copy(), 0.0, 0
-    for iteration in range(limit):
-        if rest <= tolerance:
-            return rest, iteration, 0.0, -1
-        floor = max(_stiffest(good_slopes, dofs, arm), method.force / span)
-        solved = _ring_step(good_balance, good_slopes, dofs, arm, (1e-14 + damping) * floor, step)
-        now = math.inf
-        if solved:
-            stride = min(1.0, 0.2 * span / max(np.max(np.abs(step)), 1e-300))
-            for i in range(n):
-                q[dofs[i]] = good_q[dofs[i]] + stride * step[i, 0] / (arm if dofs[i] > 2 else 1.0)
-            states[:] = good_states
-            failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
-            now = unbalance(balance, dofs, arm) if failed == 0.0 else math.inf
+    good_q, good_states = q.copy(), states.copy()
+    rest, damping, lost, iteration = math.inf, 0.0, 0, 0
+    while True:  # one call of `ring_balance`, for each copy of it takes seconds to compile
+        failed, ball = ring_balance(p, q, setup, states, method, balance, slopes)
+        now = unbalance(balance, dofs, arm) if failed == 0.0 else math.inf
         lost = 0 if now < math.inf else lost + 1
         if now < boldness * rest:
             rest = now
-            good_q[:], good_states[:] = q, states
-            good_balance[:], good_slopes[:] = balance, slopes
+            copy(good_q, q)
+            copy(good_balance, balance)
+            for j in range(states.shape[0]):
+                copy(good_states[j], states[j])
+            for row in range(5):
+                copy(good_slopes[row], slopes[row])
             damping = 0.1 * damping if damping > 1e-9 else 0.0
+        elif iteration == 0:
+            return math.inf, 0, failed, ball
         elif damping > 1e4 or lost > 6:
             break
         else:
             damping = max((6.0 if now < math.inf else 100.0) * damping, 1e-5)
-    q[:], states[:] = good_q, good_states
+        if rest <= tolerance:
+            return rest, iteration, 0.0, -1
+        solved, floor = False, max(_stiffest(good_slopes, dofs, arm), method.force / span)
+        while not solved and iteration < limit and lost <= 6:
+            iteration += 1
+            solved = _ring_step(good_balance, good_slopes, dofs, arm, (1e-14 + damping) * floor, step)
+            if not solved:
+                lost, damping = lost + 1, max(100.0 * damping, 1e-5)
+        if not solved:
+            break
+        stride = min(1.0, 0.2 * span / max(np.max(np.abs(step)), 1e-300))
+        for i in range(n):
+            q[dofs[i]] = good_q[dofs[i]] + stride * step[i, 0] / (arm if dofs[i] > 2 else 1.0)
+        for j in range(states.shape[0]):
+            copy(states[j], good_states[j])
+    copy(q, good_q)
+    for j in range(states.shape[0]):
+        copy(states[j], good_states[j])
     return rest, limit, failed if rest > 1e3 * tolerance else 0.0, ball
 
 
@@ -252,8 +264,9 @@ def _place(p: Problem, q: Array, azimuth: float, state: Array, A: Array) -> None
     touching = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
     length = math.hypot(A[0], A[1])
     if p.inertia_factor == 0.0 and length < touching:
-        A *= touching / length
-        state[:2] = A * ((p.outer_conformity - 0.5) * p.ball_diameter / touching)
+        for k in range(2):
+            A[k] *= touching / length
+            state[k] = A[k] * ((p.outer_conformity - 0.5) * p.ball_diameter / touching)
 
 
 @kernel

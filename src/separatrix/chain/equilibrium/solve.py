@@ -17,7 +17,6 @@ from separatrix.chain.equilibrium.ring import (
     Balls,
     ball_table,
     controlled_states,
-    ring_balance,
     settle_free_states,
     solve_ring,
 )
@@ -146,7 +145,7 @@ def _solve(
     p: Problem, setup: _Setup, q: Array, states: Array, limit: int = LIMIT, boldness: float = BOLD
 ) -> tuple[float, int, float, int]:
     answer: tuple[float, int, float, int] = solve_ring(
-        p, q, setup.balls, states, setup.method, setup.tolerance, limit, boldness
+        p, q, setup.balls, states, setup.method, setup.tolerance, limit, boldness, np.empty(5)
     )
     return answer
 
@@ -304,8 +303,8 @@ def _carried_moment(p: Problem, setup: _Setup, q: Array, solved: Array) -> Newto
     """The given moment, or what the balls return to a fixed tilt [N m]."""
     if 4 in setup.balls.dofs or len(setup.balls.dofs) == 1:
         return float(-setup.balls.loads[4])
-    balance, slopes = np.empty(5), np.empty((5, 5))
-    ring_balance(p, q, setup.balls, solved.copy(), setup.method, balance, slopes)
+    balance = np.empty(5)
+    solve_ring(p, q.copy(), setup.balls, solved.copy(), setup.method, setup.tolerance, 0, BOLD, balance)
     return float(balance[4] - setup.balls.loads[4])
 
 

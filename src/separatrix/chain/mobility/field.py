@@ -13,7 +13,7 @@ import numpy as np
 
 from separatrix.chain.equilibrium.balance import contact_friction, free_ball, turning_loads
 from separatrix.chain.equilibrium.groove import touch
-from separatrix.chain.equilibrium.problem import Problem, work
+from separatrix.chain.equilibrium.problem import Problem, copy, work
 from separatrix.compiled import kernel
 from separatrix.errors import ConvergenceError
 from separatrix.units import Array, Newton, NewtonPerMetre, NewtonSecondPerMetre
@@ -75,7 +75,8 @@ def ball_balance(
     """Forces and couples on the ball with its inertia, shape (6,), and slopes with its state, (6, 6)."""
     out = work(6)
     free_ball(p, rings, state, slips, cells, nodes, balance, out)
-    slopes[:, :] = out.by_state[:, :6]
+    for q in range(6):
+        copy(slopes[q], out.by_state[q])
 
 
 @kernel

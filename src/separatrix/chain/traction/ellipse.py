@@ -52,7 +52,8 @@ def _roots(d: float, sigma: float, eta: float) -> tuple[float, float]:
 def panel_edges(d: float, sigma: float, eta: float, levels: Array, splits: int) -> Array:
     """Edges in theta of the panels, in order, shape (edge,) [rad]."""
     edges = np.empty(4 * levels.size + SECTORS.size + 1)
-    edges[: SECTORS.size] = SECTORS
+    for k in range(SECTORS.size):
+        edges[k] = SECTORS[k]
     count = SECTORS.size
     if eta != 0.0 and abs(sigma) < 2.0 * abs(eta):
         edges[count] = math.asin(-0.5 * sigma / eta)
@@ -63,8 +64,11 @@ def panel_edges(d: float, sigma: float, eta: float, levels: Array, splits: int) 
                 if abs(y) < 1.0:
                     edges[count] = math.asin(y)
                     count += 1
-    ordered = np.sort(edges[:count])
-    return _split(_with_saturation(ordered, d, sigma, eta), splits)
+    for k in range(SECTORS.size, count):  # put each in its place; the library's sort takes seconds to compile
+        while k > 0 and edges[k] < edges[k - 1]:
+            edges[k - 1], edges[k] = edges[k], edges[k - 1]
+            k -= 1
+    return _split(_with_saturation(edges[:count], d, sigma, eta), splits)
 
 
 @part
@@ -132,9 +136,13 @@ def resultant(
         piece = pieces[j]
         low, width = piece[Y_LOW], piece[Y_HIGH] - piece[Y_LOW]
         middle = 0.5 * (piece[M_LOW] + piece[M_HIGH])
-        levels = LEVELS * piece[REACH] if piece[REACH] > 0.0 else LEVELS[:2] * 1.0
+        first, last = math.asin(low), math.asin(piece[Y_HIGH])
+        levels = np.empty(LEVELS.size if piece[REACH] > 0.0 else 2)
+        for k in range(levels.size):
+            levels[k] = LEVELS[k] * (piece[REACH] if piece[REACH] > 0.0 else 1.0)
         edges = panel_edges(d / middle, sigma / middle, eta / middle, levels, splits)
-        edges = np.minimum(np.maximum(edges, math.asin(low)), math.asin(piece[Y_HIGH]))
+        for k in range(edges.size):
+            edges[k] = min(max(edges[k], first), last)
         for k in range(edges.size - 1):
             half = 0.5 * (edges[k + 1] - edges[k])
             if half <= 0.0:
