@@ -10,13 +10,14 @@ Only kernels that Python calls are cached, with all that they call in one file. 
 another name and then renames it, and a cached kernel has one signature only: processes that compile it at the
 same time write the same file, so that they can share a folder.
 
-Of numba this uses `njit`, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and one option that
-numba does not document, `_nrt`.
+Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and one option
+that numba does not document, `_nrt`.
 """
 
 from __future__ import annotations
 
 import contextlib
+import gc
 import hashlib
 import os
 import re
@@ -30,6 +31,7 @@ from typing import ParamSpec, TypeVar
 import llvmlite.binding
 import numba
 import numpy as np
+from numba.core import event
 
 CONFIG = vars(numba.config)
 """Settings of numba: CACHE_DIR is that of the variable NUMBA_CACHE_DIR."""
@@ -118,6 +120,33 @@ def _remove_unused(folder: Path) -> None:
 
 
 _FOLDER = cache_folder(Path(__file__).parent)
+
+
+class Compiling(event.Listener):
+    """Tells `heard` when a compilation begins; meanwhile no garbage is collected, which saves a fifth."""
+
+    def __init__(self) -> None:
+        self.heard: list[Callable[[], None]] = []
+        self._depth, self._collects = 0, True
+
+    def on_start(self, _: object) -> None:
+        """Enter a kernel, or a part of it: numba compiles one at a time."""
+        if self._depth == 0:
+            self._collects = gc.isenabled()
+            gc.disable()
+            for tell in self.heard:
+                tell()
+        self._depth += 1
+
+    def on_end(self, _: object) -> None:
+        """Leave it."""
+        self._depth -= 1
+        if self._depth == 0 and self._collects:
+            gc.enable()
+
+
+COMPILING = Compiling()
+event.register("numba:compile", COMPILING)  # type: ignore[no-untyped-call]
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.cage.moving_cage import turned_forward
+from separatrix.cage.moving_cage import moving_cage, turned_forward
 from separatrix.chain.lubrication import lubrication_curve
 from separatrix.chain.orbit import orbital_waves
 from separatrix.chain.solution import solve
@@ -68,7 +68,8 @@ def test_an_axial_load_runs_its_balls_alike():
     """No radial load, moment or tilt: no harmonics, whatever the kinematics."""
     for study in (STUDY, SHIPPED):
         state = solve(study)
-        assert (state.cage.orbital_cosines, state.cage.orbital_sines) == ((), ())
+        cage = moving_cage(state, 0.0)
+        assert (cage.orbital_cosines, cage.orbital_sines) == ((), ())
         assert state.orbital_share is None
 
 
@@ -78,8 +79,9 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     """R times each ball's speed beyond the mean; the first harmonics leave less than 1e-4 of its variance."""
     state = solve(replace(study, operation=replace(study.operation, **change)))
     found = state.bearing.equilibrium
-    beyond = state.cage.pitch_radius * (found.orbital_speed - state.cage.cage_speed)
-    left = waves_at(state.cage, found.azimuth) - beyond
+    cage = moving_cage(state, 0.0)
+    beyond = cage.pitch_radius * (found.orbital_speed - cage.cage_speed)
+    left = waves_at(cage, found.azimuth) - beyond
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     assert 1.0 - state.orbital_share == pytest.approx(
@@ -89,7 +91,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
 
 def test_the_ball_that_a_radial_load_presses_runs_slower():
     """At azimuth 0 the groove is deeper, the contact angle smaller, gamma = D cos/d_m larger: A_1 < 0."""
-    assert solve(operation(radial_load=400.0)).cage.orbital_cosines[0] < 0.0
+    assert moving_cage(solve(operation(radial_load=400.0)), 0.0).orbital_cosines[0] < 0.0
 
 
 @pytest.mark.parametrize("count", [3, 4, 5, 9, 20])
@@ -121,8 +123,8 @@ def test_waves_beyond_those_that_hold_nearly_all_are_left_out():
 def test_a_bearing_that_turns_backward_is_the_mirror_image_of_one_that_turns_forward():
     """Orbital waves and gravity included; tolerance: the residual of the equilibrium."""
     loaded = replace(SHIPPED.operation, radial_load=400.0)
-    there = solve(replace(SHIPPED, operation=loaded)).cage
-    back = solve(replace(SHIPPED, operation=replace(loaded, inner_speed=-SHIPPED.operation.inner_speed))).cage
+    turned = replace(loaded, inner_speed=-SHIPPED.operation.inner_speed)
+    there, back = (moving_cage(solve(replace(SHIPPED, operation=one)), 0.0) for one in (loaded, turned))
     mirror = turned_forward(back)
     assert back.cage_speed == pytest.approx(-there.cage_speed, rel=1e-6)
     assert back.race_damping == pytest.approx(there.race_damping, rel=1e-6)

@@ -10,6 +10,7 @@ from cages import with_distributions
 from scipy.integrate import solve_bvp
 
 from separatrix.bearing_design import Expansion
+from separatrix.cage import moving_cage
 from separatrix.chain.clearances import mean_expansion, ring_growth, running_clearances
 from separatrix.chain.solution import solve
 from separatrix.distribution import Uniform
@@ -152,7 +153,7 @@ def test_draws_and_sweeps_go_through_it():
     fast = solve(with_values(study, {"operation.inner_speed": 2000.0}))
     assert cold.clearances.pocket < warm.clearances.pocket < cage.pocket_clearance
     assert fast.clearances.hoop_strain > cold.clearances.hoop_strain
-    assert cold.cage_with(0.1).pocket_clearance == cold.clearances.pocket
+    assert moving_cage(cold, 0.1).pocket_clearance == cold.clearances.pocket
     assert cold.study.cage.pocket_clearance == cage.pocket_clearance
     assert isinstance(cold.design, CageDesign)
     drawn = with_distributions(study, {"operation.temperature": Uniform(low=70.0, high=200.0)})

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from cages import with_distributions
 
-from separatrix.cage import RunOutcome, run_ensemble
+from separatrix.cage import RunOutcome, moving_cage, run_ensemble
+from separatrix.cage.disturbance import settings_for
 from separatrix.chain.solution import solve
 from separatrix.distribution import Normal, Samples, Uniform
 from separatrix.draws import sample
@@ -39,8 +40,10 @@ def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
     study = with_distributions(study, {FRICTION: Normal(mean=0.2, standard_deviation=2e-13)})
     drawn = drawn_bearings(study, 8)
     central = solve(study)
-    cage, kicks = central.cage_with(0.2), central.stability.kicks
-    certain = judge(cage, run_ensemble(cage, central.stability, kicks=kicks, runs=8))
+    cage = moving_cage(central, 0.2)
+    settings = settings_for(study.stability, cage)
+    kicks = settings.kicks
+    certain = judge(cage, run_ensemble(cage, settings, kicks=kicks, runs=8))
     found = drawn.judge(CASE, kicks, Runner())
     # settled and whirling runs alike: a change of 1e-12 is a different motion after some impacts
     assert [count.settles for count in found.by_kick] == [count.settles for count in certain.by_kick]
@@ -50,11 +53,12 @@ def test_the_probability_is_that_of_counting_over_the_distribution():
     """Friction between 0.1 and 0.3: the mean of P(settles) counted at frictions one by one, by other runs."""
     study = with_distributions(study_of(0.2), {FRICTION: Uniform(low=0.1, high=0.3)})
     central = solve(study)
-    kick, runs = central.stability.kicks[1], 256
+    settings, runs = settings_for(study.stability, moving_cage(central, 0.2)), 256
+    kick = settings.kicks[1]
     found = drawn_bearings(study, runs).judge(CASE, (kick,), Runner())
     middles = np.linspace(0.1, 0.3, 33)[1::2]  # of 16 equal parts
     how = {"kicks": (kick,), "runs": 16, "first_run": 5000}
-    others = [run_ensemble(central.cage_with(f), central.stability, **how) for f in middles]
+    others = [run_ensemble(moving_cage(central, f), settings, **how) for f in middles]
     shares = [one.count(RunOutcome.SETTLES)[0] / 16 for one in others]
     assert 0.2 < np.mean(shares) < 0.8
     # 256 runs each: standard deviations of at most 0.031, of their difference 0.044, 2.5 times that
@@ -65,7 +69,7 @@ def test_more_runs_are_those_before_and_more():
     """Draw n belongs to run n, however many there are."""
     study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=0.003))
     few, many = drawn_bearings(study, 4), drawn_bearings(study, 16)
-    cages = [[one["A"].cage_with(0.1) for one in drawn.solved] for drawn in (few, many)]
+    cages = [[moving_cage(one["A"], 0.1) for one in drawn.solved] for drawn in (few, many)]
     assert cages[0] == cages[1][:4]
     assert np.array_equal(few.friction[CASE], many.friction[CASE][:4])
     masses = [one["A"].design.mass for one in many.solved]

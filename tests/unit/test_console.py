@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import re
@@ -18,6 +19,7 @@ import pytest
 
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
+from separatrix.compiled import COMPILING, part
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.messages import noted_warnings
 from separatrix.staged import staged, writable_folder
@@ -169,6 +171,16 @@ def test_what_a_verb_will_take_is_printed_before_it_starts(capsys):
         "separatrix: rank case takes about 2.5 h.",
         "separatrix: rank case takes at most about 61 s.",
     ]
+
+
+def test_compilation_is_told_once(capsys):
+    """Before the first kernel; the garbage collector, which rests meanwhile, works again after it."""
+    kernels = [part(lambda x: x + 1.0), part(lambda x: x + 2.0)]
+    with console.progress_bar("rank case", quiet=False):
+        assert [kernel(1.0) for kernel in kernels] == [2.0, 3.0]
+    assert capsys.readouterr().err == "separatrix: rank case: compiling once on this machine, about a minute in all.\n"
+    assert gc.isenabled()
+    assert COMPILING.heard == []
 
 
 def test_quiet_is_quiet(monkeypatch, capsys):

@@ -168,8 +168,8 @@ def test_drawn_chains_are_in_the_estimate(tmp_path, monkeypatch):
     ticks = itertools.count()
     monkeypatch.setattr(expected.time, "perf_counter", lambda: next(ticks))
     study = read_study(written(tmp_path, BAND.replace('"0.2 mm"', '"0.2 mm +- 10 %"')))
-    assert expected._expected_chains(study, 7) == 7.0
-    assert expected._expected_chains(read_study(written(tmp_path, BAND)), 7) == 0.0
+    assert expected._of_chains(study, 7) == 7.0
+    assert expected._of_chains(read_study(written(tmp_path, BAND)), 7) == 0.0
 
 
 def test_the_answers_name_models_and_wear(tmp_path, capsys, monkeypatch):

@@ -35,6 +35,9 @@ WORTH_PRINTING: Second = 5.0
 FIRST_PART = 0.05
 """Share of the steps after which the time of all is estimated, where nothing was before."""
 
+COMPILATION = "about a minute"
+"""What compiling all that a ranking needs takes."""
+
 RETRY = 0.02
 """Time after which a swallowed interrupt is sent again [s]."""
 
@@ -130,7 +133,7 @@ class Life:
         self.title, self.begun, self.quiet = title, time.monotonic(), quiet
         self.started = self.begun
         self.done = self.total = 0
-        self.expected = quiet  # which prints nothing, as `--quiet` requires
+        self.expected = self.compiled = quiet  # which prints nothing, as `--quiet` requires
 
     def __call__(self, done: int, total: int) -> None:
         """Take in how far the work is; without an estimate beforehand its first part gives one."""
@@ -139,6 +142,12 @@ class Life:
         if not self.expected and passed > WORTH_PRINTING and FIRST_PART * total <= done < total:
             self.expected = True
             complain(f"{self.title} takes about {in_words(passed * total / done)}.")
+
+    def compiling(self) -> None:
+        """Say once that kernels are compiled, which the next command finds done."""
+        if not self.compiled:
+            self.compiled = True
+            complain(f"{self.title}: compiling once on this machine, {COMPILATION} in all.")
 
     def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
         """Print what the work will take, unless that is too short to matter."""
@@ -167,7 +176,7 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
         yield Life(title, quiet=True)
         return
     if not sys.stderr.isatty():
-        with _lines(title) as life:
+        with _lines(title) as life, _telling_of_compilation(life):
             yield life
         return
     from rich.console import Console
@@ -181,7 +190,19 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
 
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(escape(harmless(title)), total=None)
-        yield Drawn(title)
+        with _telling_of_compilation(drawn := Drawn(title)):
+            yield drawn
+
+
+@contextlib.contextmanager
+def _telling_of_compilation(life: Life) -> Iterator[None]:
+    from separatrix.compiled import COMPILING
+
+    COMPILING.heard.append(life.compiling)
+    try:
+        yield
+    finally:
+        COMPILING.heard.remove(life.compiling)
 
 
 @contextlib.contextmanager

@@ -238,7 +238,8 @@ def spectrum_against_time(data: xr.Dataset, reach: Hertz = 0.0) -> tuple[Array, 
     pieces = v[starts[:, np.newaxis] + np.arange(length)] * np.hanning(length)
     amplitude = np.abs(np.fft.fftshift(np.fft.fft(pieces, axis=1), axes=1))
     frequency = np.fft.fftshift(np.fft.fftfreq(length, step))
-    return step * (starts + 0.5 * (length - 1)), frequency, amplitude / (amplitude.max() or 1.0)
+    middles = step * (starts + 0.5 * (length - 1))
+    return middles.astype(np.float64), frequency, amplitude / (amplitude.max() or 1.0)
 
 
 def spectrum_reach(data: xr.Dataset) -> Hertz:
