@@ -88,6 +88,7 @@ OF_CAGE = (
     *CHAIN,
     Line("chain", meaning="the chain before the cage: restitution, contacts and slopes"),
     Line("half_play", "m", meaning="half the clearance of a ball in its pocket"),
+    Line("axial_half_play", "m", meaning="half that along the axis; null in the plane"),
     Line("lead_amplitude", "m", meaning="largest lead of a ball by uneven orbital speed"),
     Line("orbital_share", "-", meaning="share of the balls' uneven speed that the cage model uses"),
 )
@@ -95,6 +96,7 @@ RUN = (
     *OF_CAGE,
     Line("outcome_sentence", meaning="where the motion ends, in words"),
     Line("rubbing_power", "W", meaning="power that rubbing on the land turns to heat, in the judged part"),
+    Line("force_exceeds_races", meaning="whether the largest force is beyond what the races hold"),
     Line(
         "race_damping", "N s/m", meaning="in `cage`: null where it is infinite, at a restitution factor of 1"
     ),

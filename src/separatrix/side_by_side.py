@@ -148,12 +148,13 @@ class Gathered:
                 count += len(batch[-1][0].states)
             taken = set(map(id, batch))
             self._waiting = [one for one in self._waiting if id(one) not in taken]
+        found: Evidence | None = None
         try:
             found = follow_alike(kind, [piece for piece, _ in batch], 1, self._stop)
-        except Exception as error:  # noqa: BLE001 - raised again where the runs were asked for
-            for _, future in batch:
-                future.set_exception(error)
-            return True
+        finally:
+            if found is None:  # the error is raised here; those that wait for these runs must not wait on
+                for _, future in batch:
+                    future.set_exception(RuntimeError("runs that were followed together with these failed"))
         at = 0
         for piece, future in batch:
             last = at + len(piece.states)

@@ -37,9 +37,13 @@ def linear(eta):
 
 @pytest.mark.parametrize("chi", [0.0121, 0.215])
 def test_kick_and_clearance_count_by_their_ratio_only(chi):
-    """Twice the kick in twice the play is the same motion, twice as large: every bit of it."""
+    """Twice the kick in twice the play is the same motion, twice as large: every bit of it.
+
+    So must be the speeds of the ball's surface, against which friction acts.
+    """
     cage, ensemble = cage_at(CAGE, 0.8, 0.12), settings(chi, 16)
-    wide = replace(cage, pocket_clearance=2 * CAGE.pocket_clearance)
+    spin, pivot = tuple(2 * speed for speed in cage.spin), 2 * cage.pivot_speed
+    wide = replace(cage, pocket_clearance=2 * CAGE.pocket_clearance, spin=spin, pivot_speed=pivot)
     small = run_ensemble(cage, ensemble)
     large = run_ensemble(wide, ensemble, kicks=[2 * kick for kick in ensemble.kicks])
     assert (small.outcome == large.outcome).all()

@@ -9,11 +9,13 @@ from cages import linear_roots
 
 from separatrix.cage import Cause, Ensemble, MovingCage, RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drive_energy
+from separatrix.cage.outcome import LIMITS, end_of_motion
+from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.chain.solution import solve
 from separatrix.limits.response import cage_at
 from separatrix.study import Guidance, StabilitySettings
 from separatrix.study_file import read_study
-from separatrix.verdict.judgement import Judgement, Verdict, judge, kick_counts
+from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
@@ -97,8 +99,8 @@ def test_a_settled_cage_that_rubs_its_land_says_how_hard():
     cage = shipped("lox-turbopump")
     found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION)))
     assert found.cage_motion is CageMotion.ON_THE_LAND
-    # judged as soon as it is at its land, from where it still rebounds a little: 1.5 % seen
-    assert found.mean_offset == pytest.approx(cage.land_gap, rel=0.03)
+    # judged as soon as its offset moves by less than 5 %, from where it still rebounds a little
+    assert found.mean_offset == pytest.approx(cage.land_gap, rel=0.05)
     # M Omega^2 r presses a cage that turns with its balls; the pockets carry part of it
     pressed = cage.mass * cage.cage_speed**2 * cage.land_gap
     assert 0.3 * pressed < found.rubbing_force < 1.02 * pressed
@@ -152,17 +154,25 @@ def test_a_cage_driven_21_mm_into_its_land_is_not_stable():
 
 
 def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
-    """A land of 1 nm and a kick of 1000 m/s: NaN once counted as a motion that dies."""
+    """NaN once counted as a motion that dies."""
+    looks = np.full((1, of(LOOK_COLUMNS)), np.nan, np.float32)
+    end = end_of_motion.py_func(looks, 0, True, np.zeros(LIMITS))
+    assert end == (RunOutcome.UNRESOLVED, Cause.NOT_FINITE)
+    cage = shipped("cryogenic-turbopump")
+    found = ends(cage, (0.1,))
+    assert judge(cage, found).verdict is Verdict.STABLE
+    outcome, cause = found.outcome.copy(), found.cause.copy()
+    outcome[0, 0], cause[0, 0] = end
+    assert judge(cage, replace(found, outcome=outcome, cause=cause)).verdict is Verdict.UNDECIDED
+
+
+def test_a_cage_that_leaves_its_room_is_not_stable():
+    """A land of 1 nm and a kick of 1000 m/s: the numbers hold, and say that it was 24 mm off centre."""
     cage = replace(shipped("cryogenic-turbopump"), land_clearance=1e-9)
     found = run_ensemble(cage, StabilitySettings(kicks=(1000.0,), runs=8, duration=5e-3))
-    finite = np.isfinite(found.end_energy) & np.isfinite(found.largest_offset)
-    lost = found.cause == Cause.NOT_FINITE
-    assert lost.any()
-    assert np.all(found.outcome[lost] == RunOutcome.UNRESOLVED)
-    settled = found.outcome == RunOutcome.SETTLES
-    assert np.all(finite[settled] & (found.end_energy[settled] < 0.5 * cage.mass * 1000.0**2))
+    assert np.isfinite(found.end_energy).all()
+    assert found.largest_offset.min() > 1e-3
     assert judge(cage, found).verdict is not Verdict.STABLE
-    assert sum(count.runs for count in kick_counts(found)) == 8
 
 
 def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():

@@ -95,10 +95,10 @@ def _phi(n: int, z: float) -> float:
 
 
 LONGEST: Second = 20e-6
-CONTACT, SWING, DECAYS = 0.45, 0.65, 1.2
-"""Radians of a contact of cage and ball or land, and of a ball between pocket and races, and time constants
-of a relaxation, that a step may have at most: shares and margins do not move at an eighth of it
-(docs/theory/cage.md)."""
+CONTACT, LAND, SWING, DECAYS = 0.45, 0.3, 0.65, 1.2
+"""Radians of a contact of cage and ball, of one with a land, and of a ball between pocket and races, and time
+constants of a relaxation, that a step may have at most: shares and margins do not move at an eighth of it
+(docs/theory/cage.md). A cage that whirls on its land passes a contact faster than it would vibrate there."""
 
 FREE_RATE = 2.5
 """Time constants of the fastest motion of a free ball's spin in a step; 2.78 is where the method is no longer
@@ -133,7 +133,7 @@ def step_length(cage: MovingCage, kick: MetrePerSecond) -> Second:
         K = cage.land_count * cage.land_stiffness
         squared = K / M + (K * land_reach(cage) ** 2 / cage.transverse if cage.is_in_space else 0.0)
         damping = rebound_damping(cage.land_restitution)
-        steps.append(CONTACT / math.sqrt(squared) * (1.0 if damping < 1.0 else 1.0 / (2.0 * damping)))
+        steps.append(LAND / math.sqrt(squared) * (1.0 if damping < 1.0 else 1.0 / (2.0 * damping)))
     return min(steps)
 
 
