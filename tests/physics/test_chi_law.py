@@ -42,8 +42,8 @@ def test_kick_and_clearance_count_by_their_ratio_only(chi):
     So must be the speeds of the ball's surface, against which friction acts.
     """
     cage, ensemble = cage_at(CAGE, 0.8, 0.12), settings(chi, 16)
-    spin, pivot = tuple(2 * speed for speed in cage.spin), 2 * cage.pivot_speed
-    wide = replace(cage, pocket_clearance=2 * CAGE.pocket_clearance, spin=spin, pivot_speed=pivot)
+    cage = replace(cage, ball_diameter=0.01, ball_spin=(-1e6, 0.0, 0.0))
+    wide = replace(cage, pocket_clearance=2 * CAGE.pocket_clearance, ball_spin=(-2e6, 0.0, 0.0))
     small = run_ensemble(cage, ensemble)
     large = run_ensemble(wide, ensemble, kicks=[2 * kick for kick in ensemble.kicks])
     assert (small.outcome == large.outcome).all()

@@ -356,7 +356,7 @@ def test_two_designs_are_reported_side_by_side(folder, tmp_path, capsys):
     changed["overall"][0]["verdict"] = "CHANGED"
     (other / "rank.json").write_text(json.dumps(changed))
     found = document(capsys, "report", str(folder), str(other))
-    assert found["summary"][:2] == ["1 input differs.", "1 verdict changed, of 12 that both have."]
+    assert found["summary"][:2] == ["1 input differs.", "1 verdict changed, of 8 that both have."]
     tables = {
         block["table"]: block["rows"]
         for one in found["report"]["sections"]

@@ -138,7 +138,7 @@ def test_the_document_has_the_keys_that_scripts_rely_on(answered, capsys):
 
 
 def test_peaks_of_the_samples_are_near_those_of_the_engine(data):
-    """Of a short run every step is a sample."""
+    """Of a short run every other step is a sample, or each."""
     for sampled, counted in (
         ("contact_force", "largest_contact_force"),
         ("land_force", "largest_land_force"),
@@ -146,7 +146,7 @@ def test_peaks_of_the_samples_are_near_those_of_the_engine(data):
         most = float(data[counted])
         assert 0.98 * most <= float(data[sampled].max()) <= most * (1.0 + 1e-6)
     offset = float(np.hypot(*data["position"].values.T).max())
-    assert offset == pytest.approx(float(data["largest_offset"]), rel=1e-6)
+    assert offset == pytest.approx(float(data["largest_offset"]), rel=1e-3)
 
 
 def test_whirl_of_the_samples_is_that_of_the_engine(answered):
@@ -370,10 +370,12 @@ def test_balls_that_their_races_grip_have_an_infinite_damping(folder, capsys, mo
 
 
 def test_every_picture_is_drawn_again_from_the_saved_dataset(answered, data, tmp_path):
-    """To the byte."""
-    for name, figure in figures.draw("simulate", data):
-        figures.save(figure, tmp_path / f"{name}.svg")
-        assert (tmp_path / f"{name}.svg").read_bytes() == (answered / f"{name}.svg").read_bytes()
+    """To the byte, written by the same steps: each writing moves the layout by roundings."""
+    figures.save_all(figures.draw("simulate", data), tmp_path)
+    drawn = sorted(tmp_path.glob("*.svg"))
+    assert [path.stem for path in drawn] == sorted(PICTURES)
+    for path in drawn:
+        assert path.read_bytes() == (answered / path.name).read_bytes()
     assert page(data) == (answered / "simulation.html").read_text(encoding="utf-8")
 
 

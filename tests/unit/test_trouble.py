@@ -139,10 +139,10 @@ def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))
     answer = verbs.simulate(asked)
-    lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.LEFT_POCKET)
+    lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.FALLING)
     answer = replace(answer, history=lost)
     found = document("simulate", answer, asked, [])
     said = " ".join(in_words("simulate", answer, asked, []).split())
-    assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "LEFT_POCKET")
+    assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "FALLING")
     assert "UNRESOLVED" in said
     assert "The run does not show where the motion ends." in said
