@@ -13,7 +13,7 @@ import sys
 from collections import Counter
 from dataclasses import replace
 
-from separatrix.cage import MovingCage
+from separatrix.cage import MovingCage, moving_cage
 from separatrix.chain.solution import solve
 from separatrix.limits.point import critical_friction
 from separatrix.limits.response import SEARCHED_FRICTION, cage_at
@@ -60,7 +60,7 @@ def report(pairs: Pairs) -> str:
 def main() -> None:
     """Count over all restitution factors."""
     study = read_study("cryogenic-turbopump")
-    cage, total = solve(study).cage, Counter[tuple[Verdict, ...]]()
+    cage, total = moving_cage(solve(study), 0.1), Counter[tuple[Verdict, ...]]()
     for eta in [float(text) for text in sys.argv[1:]] or FACTORS:
         found = pairs_at(cage, study.stability, eta)
         total += found

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 from scipy.special import expit
 
-from separatrix.cage import Ensemble, RunOutcome
+from separatrix.cage import Ensemble, RunOutcome, moving_cage
 from separatrix.explore.drivers import FEWEST, fitted
 from separatrix.limits.point import critical_friction
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
@@ -77,8 +77,8 @@ def often(drawn: DrawnBearings, case: Case, friction: float) -> list[Ensemble]:
     found = []
     for states in drawn.solved:
         state = states[case.candidate]
-        cage = replace(state.cage, ball_cage_friction=friction)
-        settings = replace(state.stability, seed=SEED)
+        cage = moving_cage(state, friction)
+        settings = replace(state.study.stability, seed=SEED)
         found.append(Runner().ensemble(cage, settings, kicks=drawn.kicks, runs=RUNS))
     return found
 
@@ -97,8 +97,8 @@ def main() -> None:
         drawn = drawn_bearings(study, BEARINGS)
         others = drawn_bearings(replace(study, stability=replace(study.stability, seed=SEED)), CAGES)
         case = next(iter(drawn.friction))
-        state = drawn.central[case.candidate]
-        critical = critical_friction(state.cage, None, state.stability, band=False).critical_friction or 0.5
+        cage = moving_cage(drawn.central[case.candidate], 0.1)
+        critical = critical_friction(cage, None, study.stability, band=False).critical_friction or 0.5
         frictions = [factor * critical for factor in FACTORS]
         with ThreadPoolExecutor(2) as pool:
             asked = list(pool.map(partial(once_each, drawn, case), frictions))
@@ -107,7 +107,7 @@ def main() -> None:
             share, each = settled(one), np.array([settled(ensemble).mean() for ensemble in many])
             low, high = wilson_interval(int(share.sum()), share.size)
             error = each.std(ddof=1) / np.sqrt(each.size)
-            verdicts = judge(state.cage, one).verdict, judge(state.cage, joined(many)).verdict
+            verdicts = judge(cage, one).verdict, judge(cage, joined(many)).verdict
             pairs[verdicts] += 1
             print(
                 f"{name} f {friction:.3f}: {share.mean():.3f} ({low:.3f} to {high:.3f}), brute force "

@@ -1,4 +1,4 @@
-"""Critical friction against chi, kick over clearance: from hard impacts to the linear limit, in one figure.
+"""Critical friction against chi, kick over clearance: from weak impacts to the linear limit, in one figure.
 
     python benchmarks/chi_law.py --out FILE.png --csv FILE.csv [--runs 128]
 
@@ -8,8 +8,8 @@ the clearance would give the same, since nothing else has a length. A run lasts 
 clearance if that is longer.
 
 Points already in the CSV are not computed again, so a complete one is only drawn; Ctrl-C keeps what is
-finished and draws it. In the CSV chi = 0 stands for hard impacts (walls instead of springs, with the same
-starts) and chi = inf for the linear limit in closed form.
+finished and draws it. In the CSV chi = inf stands for the linear limit in closed form, and chi = 0 for hard
+impacts: walls instead of springs, with the same starts, by the engine of version 0.1.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,7 +28,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from separatrix.cage import MovingCage, RunOutcome, run_hard_ensemble
+from separatrix.cage import MovingCage
 from separatrix.figures.style import (
     BLUE,
     GREEN,
@@ -42,7 +42,7 @@ from separatrix.figures.style import (
     settled,
 )
 from separatrix.limits.point import critical_friction, linear_limit
-from separatrix.limits.response import LADDER, Count, Crossing, GrowthCounter, Response, cage_at
+from separatrix.limits.response import LADDER, Crossing, GrowthCounter
 from separatrix.study import StabilitySettings
 from separatrix.units import Array
 
@@ -79,8 +79,8 @@ class Point:
 
 
 def settings_at(chi: float, runs: int) -> StabilitySettings:
-    """Ensemble of one kick; hard impacts know no spring, and take the reference kick."""
-    kick = KICK * chi / CHI_MIDDLE if chi > 0.0 else KICK
+    """Ensemble of one kick."""
+    kick = KICK * chi / CHI_MIDDLE
     return StabilitySettings(
         kicks=(kick,),
         reference_kick=kick,
@@ -90,18 +90,18 @@ def settings_at(chi: float, runs: int) -> StabilitySettings:
 
 
 def computed(eta: float, chi: float, runs: int) -> Point:
-    """Point of a curve, or of one of its limits."""
+    """Point of a curve, or its linear limit."""
     if math.isinf(chi):
         f = linear_limit(CAGE, eta).critical_friction
         return Point(eta, chi, chi, 0.0, 0, f, f, f)
     settings = settings_at(chi, runs)
-    found = hard_impacts(eta, settings) if chi == 0.0 else pressed_pockets(eta, settings)
-    return Point(eta, chi, settings.kicks[0] if chi else 0.0, settings.duration, runs,
-                 found.value, found.low, found.high)  # fmt: skip
+    found = pressed_pockets(eta, settings)
+    whole = found.value, found.low, found.high
+    return Point(eta, chi, settings.kicks[0], settings.duration, runs, *whole)
 
 
 def pressed_pockets(eta: float, settings: StabilitySettings) -> Crossing:
-    """Critical friction of the planar engine."""
+    """Critical friction by counting runs."""
     counter = GrowthCounter(CAGE, settings)
     at = critical_friction(CAGE, eta, settings, counter=counter, band=False)
     if at.critical_friction is None or at.scatter_low is None or at.scatter_high is None:
@@ -138,20 +138,6 @@ def sharpened(
     return Crossing(math.sqrt(low * high), low, high)
 
 
-def hard_impacts(eta: float, settings: StabilitySettings) -> Crossing:
-    """The same ball leads and free ring, with walls: each impact returns what spring and damper would."""
-
-    def look(friction: float, first_run: int, runs: int) -> Count:
-        numbered = replace(settings, seed=settings.seed + first_run)
-        ensemble = run_hard_ensemble(cage_at(CAGE, eta, friction), numbered, runs=runs)
-        return Count(int(ensemble.count(RunOutcome.WHIRLS)[0]), runs)
-
-    found = Response(look, settings.runs).crossing(0.5, round(1.5 * settings.runs), 0.15)
-    if not isinstance(found, Crossing):
-        raise SystemExit(f"eta {eta:g}: hard impacts have no critical friction, P(whirl) lies {found.value}")
-    return found
-
-
 def read(path: Path) -> list[Point]:
     """Points of an earlier call; none if there is no file."""
     if not path.exists():
@@ -174,7 +160,7 @@ def write(path: Path, points: list[Point]) -> None:
 
 def wanted() -> Iterator[tuple[float, float]]:
     """Restitution factor and chi of every point, limits first."""
-    for chi in (math.inf, 0.0, *CHIS):
+    for chi in (math.inf, *CHIS):
         for eta in FACTORS:
             yield eta, chi
 
@@ -269,7 +255,7 @@ def legend(figure: Figure) -> None:
     look = {"color": GREY, "lw": 1.0}
     bar = Line2D([], [], marker="o", ms=3.5, color=GREY, lw=0.0)
     handles = {
-        "planar engine, with 95 % interval (colours: restitution factor)": bar,
+        "runs, with 95 % interval (colours: restitution factor)": bar,
         "other programs with fixed steps, 100 runs": Line2D([], [], marker="x", ms=6, color=GREY, lw=0.0),
         "hard impacts: walls, same starts, with 95 % interval": Line2D([], [], ls="-.", **look),
         "linear limit: no clearance": Line2D([], [], ls="--", **look),

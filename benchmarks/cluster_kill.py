@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import distributed
 
+from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.cluster import cluster
 from separatrix.errors import ValidityWarning
@@ -24,8 +25,8 @@ def main() -> None:
     """Run both and compare."""
     warnings.simplefilter("ignore", ValidityWarning)
     wheel = solve(read_study("momentum-wheel"))
-    cage = wheel.cage_with(0.0)
-    settings = replace(wheel.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
+    cage = moving_cage(wheel, 0.0)
+    settings = replace(wheel.study.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
     killed: list[int] = []
     with distributed.LocalCluster(
         n_workers=3, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50

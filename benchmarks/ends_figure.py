@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import sys
 import warnings
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 
-from separatrix.cage import simulate
+from separatrix.cage import moving_cage, simulate
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.solution import solve
 from separatrix.study_file import read_study
@@ -39,7 +38,7 @@ def main() -> None:
     warnings.simplefilter("ignore")
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
     for label, study, friction, kick, colour, line in RUNS:
-        cage = replace(solve(read_study(study)).cage_with(0.1), ball_cage_friction=friction)
+        cage = moving_cage(solve(read_study(study)), friction)
         run = simulate(cage, kick=kick, samples=60_000)
         edges = np.geomspace(0.5e-3, run.time[-1], BINS)
         places = np.searchsorted(run.time, edges)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from separatrix.cage import moving_cage
 from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.chain.solution import solve
 from separatrix.limits.point import critical_friction
@@ -25,14 +26,15 @@ def test_chain_up_to_the_cage(benchmark, study):
     def chain():
         bearing_state.cache_clear()
         race_traction.cache_clear()
-        return solve(study).cage
+        found = solve(study)
+        return found.restitution, found.impacts
 
     benchmark(chain)
 
 
 def test_one_point_of_the_stability_curve(benchmark, study):
     """Critical friction with its band at a restitution factor of 0.6, on one core."""
-    cage, settings = solve(study).cage, study.stability
+    cage, settings = moving_cage(solve(study), 0.1), study.stability
 
     def point():
         return critical_friction(cage, 0.6, settings, counter=GrowthCounter(cage, settings))

@@ -22,8 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.cage import MovingCage, RunOutcome, run_ensemble
-from separatrix.cage.ensemble import pocket_speed
+from separatrix.cage import MovingCage, RunOutcome, moving_cage, run_ensemble
+from separatrix.chain.pocket import pocket_speed
 from separatrix.chain.solution import solve
 from separatrix.study import StabilitySettings
 from separatrix.verdict.judgement import wilson_interval
@@ -66,7 +66,9 @@ def main() -> None:
             state = solve(sane_study(seed, Path(folder)))
             streams = [np.random.default_rng((29, seed, k)) for k in range(asked.runs)]
             begun = time.perf_counter()
-            pairs = list(pool.map(lambda rng, s=state: pair(s.cage_with(0.1), s.stability, rng), streams))
+            pairs = list(
+                pool.map(lambda rng, s=state: pair(moving_cage(s, 0.1), s.study.stability, rng), streams)
+            )
             counts = Counter((short.name, long.name) for short, long, _, _ in pairs)
             changes += counts
             total += len(pairs)

@@ -17,7 +17,6 @@ that numba does not document, `_nrt`.
 from __future__ import annotations
 
 import contextlib
-import gc
 import hashlib
 import os
 import re
@@ -31,7 +30,8 @@ from typing import ParamSpec, TypeVar
 import llvmlite.binding
 import numba
 import numpy as np
-from numba.core import event
+
+from separatrix import compiling  # noqa: F401 - it listens from now on
 
 CONFIG = vars(numba.config)
 """Settings of numba: CACHE_DIR is that of the variable NUMBA_CACHE_DIR."""
@@ -120,33 +120,6 @@ def _remove_unused(folder: Path) -> None:
 
 
 _FOLDER = cache_folder(Path(__file__).parent)
-
-
-class Compiling(event.Listener):
-    """Tells `heard` when a compilation begins; meanwhile no garbage is collected, which saves a fifth."""
-
-    def __init__(self) -> None:
-        self.heard: list[Callable[[], None]] = []
-        self._depth, self._collects = 0, True
-
-    def on_start(self, _: object) -> None:
-        """Enter a kernel, or a part of it: numba compiles one at a time."""
-        if self._depth == 0:
-            self._collects = gc.isenabled()
-            gc.disable()
-            for tell in self.heard:
-                tell()
-        self._depth += 1
-
-    def on_end(self, _: object) -> None:
-        """Leave it."""
-        self._depth -= 1
-        if self._depth == 0 and self._collects:
-            gc.enable()
-
-
-COMPILING = Compiling()
-event.register("numba:compile", COMPILING)  # type: ignore[no-untyped-call]
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import threading
+import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -153,24 +154,17 @@ def test_text_and_files(capsys):
 
 def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):
     """Status 130, complete: false; what was left out is null with its reason."""
-
-    counted, done = uncertain.counted, threading.Event()
+    counted = uncertain.counted
 
     def count(drawn, case, runner):
         found = counted(drawn, case, runner)
         if case == ("A", "air"):
-            done.set()
+            os.kill(os.getpid(), signal.SIGINT)
         return found
 
-    def interrupt(*_, **__):
-        done.wait(60.0)
-        raise KeyboardInterrupt
-
     monkeypatch.setattr(uncertain, "counted", count)
-    monkeypatch.setattr(uncertain, "allowed_friction", interrupt)
-    found = document(capsys, "sensitivity", "small.toml", "--samples", "64", "--jobs", "8", status=130)
+    found = document(capsys, "sensitivity", "small.toml", "--samples", "64", "--jobs", "1", status=130)
     assert found["complete"] is False
-    assert found["allowed_friction"] == []
     assert row(found, "air", "A")["probability_stable"] is not None
     assert main(["sensitivity", "small.toml", "--samples", "64", "--jobs", "1", "--quiet"]) == 130
     assert "\n\nINCOMPLETE: interrupted." in capsys.readouterr().out

@@ -19,7 +19,8 @@ import pytest
 
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
-from separatrix.compiled import COMPILING, part
+from separatrix.compiled import part
+from separatrix.compiling import COMPILING
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.messages import noted_warnings
 from separatrix.staged import staged, writable_folder
@@ -178,7 +179,10 @@ def test_compilation_is_told_once(capsys):
     kernels = [part(lambda x: x + 1.0), part(lambda x: x + 2.0)]
     with console.progress_bar("rank case", quiet=False):
         assert [kernel(1.0) for kernel in kernels] == [2.0, 3.0]
-    assert capsys.readouterr().err == "separatrix: rank case: compiling once on this machine, about a minute in all.\n"
+    assert (
+        capsys.readouterr().err
+        == "separatrix: rank case: compiling once on this machine, about a minute in all.\n"
+    )
     assert gc.isenabled()
     assert COMPILING.heard == []
 

@@ -111,7 +111,7 @@ def test_the_tutorial_of_python_prints_what_the_page_says(capsys):
 
 @pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 def test_what_the_tutorials_say_of_a_run_without_output(capsys):
-    """The clearances of the cage to design, and its run from the usual kick."""
+    """The clearances of the cage to design, and its runs that settle."""
     words = (FOLDER / "design.md").read_text(encoding="utf-8")
     (study,) = [text for language, text in blocks("design") if language == "toml"]
     Path("my-cage.toml").write_text(study)
@@ -121,5 +121,7 @@ def test_what_the_tutorials_say_of_a_run_without_output(capsys):
     checked = run("separatrix check my-cage.toml", capsys)
     assert re.search(rf"Pocket clearance .*: {pocket} each way", checked)
     assert re.search(rf"Land clearance .*: {land} radial", checked)
-    found = separatrix.simulate("my-cage.toml")
-    assert f"the\ndisturbance is {found.kick:g} m/s, and run 0 {found.history.outcome.name.lower()}" in words
+    for run_number in (0, 1, 3):
+        found = separatrix.simulate("my-cage.toml", kick=0.2, run=run_number)
+        assert found.history.outcome.name == "SETTLES"
+    assert "runs 0, 1 and 3 from this disturbance settle" in words

@@ -196,7 +196,7 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
 
 @contextlib.contextmanager
 def _telling_of_compilation(life: Life) -> Iterator[None]:
-    from separatrix.compiled import COMPILING
+    from separatrix.compiling import COMPILING
 
     COMPILING.heard.append(life.compiling)
     try:

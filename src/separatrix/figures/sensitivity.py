@@ -40,10 +40,11 @@ BESIDE: Look = {"xycoords": "axes fraction", "textcoords": "offset points", "fon
 
 
 def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the pictures of `sensitivity`: of each environment, and of what decides and of films if known."""
+    """Yield the pictures of `sensitivity`: of each environment, of what decides and of films, if known."""
     yield "sensitivity-probabilities", probabilities(data)
     yield "sensitivity-convergence", convergence(data)
-    for i, name in enumerate(data["environment"].values.astype(str)):
+    counted = data.sizes["sample"] > 0  # none were where the work was interrupted early
+    for i, name in enumerate(data["environment"].values.astype(str) if counted else ()):
         yield f"sensitivity-{i + 1}-{file_name(name)}", bearings(data.isel(environment=i))
     if "driver_share" in data and np.isfinite(_floats(data, "driver_share")).any():
         yield "sensitivity-drivers", drivers(data)

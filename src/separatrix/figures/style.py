@@ -115,6 +115,8 @@ def settled(figure: Figure) -> Figure:
         for _ in range(2):  # the labels beside the axes are known after the first
             layout.execute(figure)
     figure.set_layout_engine(None)  # "none" would leave a placeholder, for which savefig draws twice
+    for axes in figure.axes:  # the solver's last digits differ from process to process; names hold them
+        axes.set_position([round(number, 9) for number in axes.get_position(original=True).bounds])
     return figure
 
 

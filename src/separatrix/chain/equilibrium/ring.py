@@ -181,7 +181,12 @@ def solve_ring(
     Returns the unbalance [N], iterations, the smoothing at which a ball failed (0: none) and its number.
     """
     dofs, arm, n = setup.dofs, 0.5 * p.pitch_diameter, setup.dofs.size
-    slopes, good_slopes, step, good_balance = np.empty((5, 5)), np.empty((5, 5)), np.empty((n, 1)), np.empty(5)
+    slopes, good_slopes, step, good_balance = (
+        np.empty((5, 5)),
+        np.empty((5, 5)),
+        np.empty((n, 1)),
+        np.empty(5),
+    )
     span = (p.inner_conformity + p.outer_conformity - 1.0) * p.ball_diameter
     good_q, good_states = q.copy(), states.copy()
     rest, damping, lost, iteration = math.inf, 0.0, 0, 0
