@@ -20,7 +20,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
-from matplotlib.transforms import offset_copy
+from matplotlib.transforms import Bbox, offset_copy
 from matplotlib.typing import RcKeyType
 
 from separatrix.errors import InputError
@@ -115,8 +115,10 @@ def settled(figure: Figure) -> Figure:
         for _ in range(2):  # the labels beside the axes are known after the first
             layout.execute(figure)
     figure.set_layout_engine(None)  # "none" would leave a placeholder, for which savefig draws twice
-    for axes in figure.axes:  # the solver's last digits differ from process to process; names hold them
-        axes.set_position([round(number, 9) for number in axes.get_position(original=True).bounds])
+    for part in figure.subfigs:  # the solver's last digits differ from call to call, and names hold them
+        part.bbox_relative.set_points(part.bbox_relative.get_points().round(9))
+    for axes in figure.axes:
+        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(9)))
     return figure
 
 
