@@ -142,7 +142,9 @@ def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder, r
     place = folder / "killed"
     place.mkdir()
     text = (folder / "small.toml").read_text(encoding="utf-8")
-    text = text.replace("runs = 4", "runs = 600").replace('"4 ms"', '"40 ms"')
+    text = text.replace("runs = 4", "runs = 16").replace(
+        "[0.3, 0.6, 0.9]", "{ from = 0.2, to = 0.9, count = 40 }"
+    )
     (place / "long.toml").write_text(text, encoding="utf-8")
     first = Server(place)
     request.addfinalizer(first.kill)

@@ -47,7 +47,7 @@ PART = 64  # runs from each kick that the ledger keeps together
 GRACE = 1.0
 """Time that an interrupt waits for the work under way [s]: runs end within it, compilation is left behind."""
 
-WAITING = 64
+WAITING = 4
 """Threads for each that may work, most of which wait for their runs."""
 
 NAMES = tuple(field.name for field in fields(Ensemble))
