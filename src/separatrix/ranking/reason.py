@@ -18,7 +18,7 @@ from separatrix.verdict.judgement import Judgement, KickCount, Verdict
 from separatrix.verdict.which_ball import transmitted_force
 
 STRONG: Ratio = 1.0
-"""Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage-in-space.md)."""
+"""Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage.md)."""
 
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
