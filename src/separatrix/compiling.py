@@ -1,4 +1,4 @@
-"""What happens while numba compiles: who wants to know is told, and no garbage is collected."""
+"""Compilation by numba: a callback when it begins, and no garbage collection until it ends."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numba.core import event
 
 
 class Compiling(event.Listener):
-    """Tells `heard` when a compilation begins; meanwhile no garbage is collected, which saves a fifth."""
+    """Calls `heard` when a compilation begins; no garbage is collected until it ends, which saves a fifth."""
 
     def __init__(self) -> None:
         self.heard: list[Callable[[], None]] = []
