@@ -159,10 +159,16 @@ class Runner:
         )
 
     def alone(self, work: Callable[[], Answer]) -> Answer:
-        """Result of a single piece of work, in a thread so that an interrupt ends its runs."""
-        return self.work_out(
-            lambda _: work(), [None], into=lambda found: found[None], progress=lambda *_: None
-        )
+        """Result of a single piece of work, in a thread so that an interrupt ends its runs.
+
+        `Interrupted` has nothing finished: the piece is no answer.
+        """
+        try:
+            return self.work_out(
+                lambda _: work(), [None], into=lambda found: found[None], progress=lambda *_: None
+            )
+        except Interrupted:
+            raise Interrupted from None
 
     def work_out(
         self,

@@ -244,6 +244,19 @@ def test_an_interrupt_ends_runs_under_way_within_two_seconds():
     assert caught.value.finished == {0: "done"}
 
 
+def test_an_interrupt_of_a_timed_sample_leaves_no_answer():
+    """What a sample took is no answer of the job for which its time was estimated."""
+    runner = Runner()
+
+    def sample():
+        runner.stop.set()
+        return 0.5
+
+    with pytest.raises(Interrupted) as caught:
+        runner.alone(sample)
+    assert caught.value.finished is None
+
+
 @pytest.mark.parametrize(
     ("settings", "cage", "how"),
     [

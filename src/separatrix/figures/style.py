@@ -115,10 +115,11 @@ def settled(figure: Figure) -> Figure:
         for _ in range(2):  # the labels beside the axes are known after the first
             layout.execute(figure)
     figure.set_layout_engine(None)  # "none" would leave a placeholder, for which savefig draws twice
-    for part in figure.subfigs:  # the solver's last digits differ from call to call, and names hold them
-        part.bbox_relative.set_points(part.bbox_relative.get_points().round(9))
+    # the solver's last digits and its sign of 0 differ from call to call, and names hold them
+    for part in figure.subfigs:
+        part.bbox_relative.set_points(part.bbox_relative.get_points().round(9) + 0.0)
     for axes in figure.axes:
-        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(9)))
+        axes.set_position(Bbox(axes.get_position(original=True).get_points().round(9) + 0.0))
     return figure
 
 
