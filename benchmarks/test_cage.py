@@ -42,7 +42,6 @@ SPACE = replace(
     groove_damping=766.0,
     groove_stiffness=5.05e6,
     pivot_speed=0.05,
-    pocket_axial_clearance=6e-4,
     race_damping=356.0,
     ball_cage_friction=0.08,
 )

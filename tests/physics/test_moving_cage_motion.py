@@ -273,9 +273,9 @@ def test_random_cages_end_and_close_their_ledger(space):
 
 
 @inlined
-def braked(s, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number):
+def braked(s, d, a, p, places, strips, balls, ball, space, level, lobe_number):
     """The equations of motion, and a brake of 50 1/s on the centre of the cage."""
-    rates(s, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
+    rates(s, d, a, p, places, strips, balls, ball, space, level, lobe_number)
     for lane in range(LANES):
         d[VX + lane] -= np.float32(50.0) * s[VX + lane]
         d[VY + lane] -= np.float32(50.0) * s[VY + lane]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from separatrix import pocket_shape
 from separatrix.cage import rows
 from separatrix.cage.disturbance import (
     Starts,
@@ -268,8 +267,7 @@ def _history(
     lead = state[:, first::one]
     along, across = _places_of_pockets(cage, state, pose, lead, starts, one)
     depth, angle = _touch(cage, along, across, places)
-    stiffness = numbers.numbers[of(rows.STIFFNESS)]
-    power = 2.5 if kind.hertz else 2.0
+    stiffness, hertz = (numbers.numbers[of(row)] for row in (rows.STIFFNESS, rows.HERTZ))
     found = evidence_of([Piece(cage, kick, numbers, states, places)], raw)
     in_space = kind.space
     return History(
@@ -291,7 +289,7 @@ def _history(
         contact_angle=angle * (force > 0.0),
         land_force=record[:, -1].copy(),
         kinetic_energy=_kinetic(cage, state, in_space),
-        stored_energy=(stiffness / power * depth**power).sum(axis=1),
+        stored_energy=((0.5 * stiffness + 0.4 * hertz * np.sqrt(depth)) * depth**2).sum(axis=1),
         work=_works(record, state, numbers, raw),
         pocket_angle=starts.angle[0],
         half_play=cage.half_play + starts.more[0],
@@ -345,13 +343,10 @@ def _places_of_pockets(
 def _touch(cage: MovingCage, along: Array, across: Array, places: Array) -> tuple[Array, Array]:
     """Depth of each pocket in its ball [m], and where on the ball it touches [rad]: see `pocket_force`."""
     by_ball = places.reshape(cage.ball_count, -1)
-    if not cage.is_in_space:
-        depth = pocket_shape.tilt(cage)[0] * np.maximum(np.abs(along) - by_ball[:, of(rows.APART)], 0.0)
-        return depth, np.where(along > 0.0, math.pi, 0.0)
     beside = pocket_rectangle(cage)[1]
     t = along - np.clip(along, -by_ball[:, of(rows.APART)], by_ball[:, of(rows.APART)])
     z = across - np.clip(across, -beside, beside)
-    return np.maximum(np.hypot(t, z) - by_ball[:, of(rows.AROUND)], 0.0), np.arctan2(-z, -t)
+    return np.maximum(np.hypot(t, z) - by_ball[:, of(rows.AROUND)], 0.0), np.arctan2(0.0 - z, -t)
 
 
 def _kinetic(cage: MovingCage, state: Array, in_space: bool) -> Array:

@@ -182,8 +182,6 @@ def ball_places(cage: MovingCage, starts: Starts) -> Array:
     apart, _, around = pocket_rectangle(cage)
     places = np.empty((*starts.lead.shape, of(rows.BALL_NUMBERS)))
     places[..., of(rows.COSINE)], places[..., of(rows.SINE)] = np.cos(starts.angle), np.sin(starts.angle)
-    if not cage.is_in_space:
-        around, apart = 0.0, cage.half_play
     is_round = around > 0.0
     places[..., of(rows.AROUND)] = around + (starts.more if is_round else 0.0)
     places[..., of(rows.APART)] = apart + (0.0 if is_round else starts.more)

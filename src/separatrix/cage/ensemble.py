@@ -342,7 +342,7 @@ def run_rows(
         np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits")
     )
     values, strips, waves, limits = given
-    follow_queue = run.queue(kind.ball, kind.space, kind.leans, kind.hertz, kind.lobes, real, equations)
+    follow_queue = run.queue(kind.ball, kind.space, kind.level, kind.lobes, real, equations)
     follow_queue(
         states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits,
         raw.heat, raw.record, every, stop.flag,

@@ -11,28 +11,22 @@ import math
 from separatrix.cage.ball import REST_PLACE, REST_SPEED, race_force, traction
 from separatrix.cage.frame import cage_rates, place
 from separatrix.cage.land_force import land_forces
-from separatrix.cage.pocket_force import (
-    friction_in_plane,
-    level_depth,
-    pocket_depth,
-    pocket_depth_in_plane,
-    pocket_friction,
-)
+from separatrix.cage.pocket_force import level_depth, level_friction, pocket_depth, pocket_friction
 from separatrix.cage.rows import *
 from separatrix.compiled import inlined
 
 
 @inlined
-def rates(s, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number):
+def rates(s, d, a, p, places, strips, balls, ball, space, level, lobe_number):
     """Rates `d` of the state `s`; what the forces add up to in `a`."""
     place(s, a, p, space)
-    ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz)
+    ball_rates(s, d, a, p, places, balls, ball, space, level)
     land_forces(s, a, p, strips, lobe_number, space)
     cage_rates(s, d, a, p, space)
 
 
 @inlined
-def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
+def ball_rates(s, d, a, p, places, balls, ball, space, level):
     """Rates of every ball, and the sums of what all of them do to the cage."""
     first, speed = SPACE_STATES if space else PLANE_STATES, (2 if space else 1) * LANES
     size = speed + (0 if ball == DAMPER else 1 if ball == ONE_STATE else 4) * LANES
@@ -57,24 +51,22 @@ def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
                 )
             # place and velocity of the pocket less its ball's
             along = a[GY + l] * c - a[GX + l] * n + s[S + l] - b[LEAD + l]
-            wr, wt = ZERO, ZERO
+            across, vz, wr, wt = p[OFFSET + l], ZERO, ZERO, ZERO
             vr, vt = a[GVX + l] * c + a[GVY + l] * n, a[GVY + l] * c - a[GVX + l] * n + s[VS + l]
-            vz = ZERO
             if space:
                 across = s[Z + l] - radius * (a[GB + l] * c - a[GA + l] * n) - b[GROOVE + l]
                 wr, wt = a[GWA + l] * c + a[GWB + l] * n, a[GWB + l] * c - a[GWA + l] * n
                 vz = s[VZ + l] - radius * wt
-                depth, nz, nt = pocket_depth(along, across, q[AROUND + l], q[APART + l], p[BESIDE + l])
-            elif leans:
-                depth, nz, nt = pocket_depth_in_plane(
-                    along, q[APART + l], p[LEAN_SINE + l], p[LEAN_COSINE + l]
-                )
+            if level:
+                depth, nt = level_depth(along, q[APART + l] + q[AROUND + l])
+                push = p[STIFFNESS + l] * depth
+                pr = vr - lever * turning * nt
+                ez, er, slide = level_friction(p[FRICTION + l] * push, nt, lever, oz, o_r, pr, p[PIVOT + l])
+                nz, et, ft = ZERO, ZERO, push * nt
+                a[RUB + l] += er * pr
             else:
-                depth, nt = level_depth(along, q[APART + l])
-            push = p[STIFFNESS + l] * depth
-            if hertz:
-                push *= math.sqrt(depth)
-            if space or leans:
+                depth, nz, nt = pocket_depth(along, across, q[AROUND + l], q[APART + l], p[BESIDE + l])
+                push = (p[STIFFNESS + l] + p[HERTZ + l] * math.sqrt(depth)) * depth
                 # velocity of the wall where it is touched: (w_r, w_t, turning) x lever n
                 pr, pt, pz = vr + lever * (wt * nz - turning * nt), vt - lever * wr * nz, vz + lever * wr * nt
                 ez, er, et, slide = pocket_friction(
@@ -82,13 +74,6 @@ def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
                 )
                 ft, fz = push * nt + et, push * nz + ez
                 a[RUB + l] += ez * pz + er * pr + et * pt
-            else:
-                pr = vr - lever * turning * nt
-                ez, er, slide = friction_in_plane(
-                    p[FRICTION + l] * push, nt, lever, oz, o_r, pr, p[PIVOT + l]
-                )
-                ft = push * nt
-                a[RUB + l] += er * pr
             q[FORCE + l], q[HEAT + l] = push, push * slide
             a[FX + l] += er * c - ft * n
             a[FY + l] += er * n + ft * c
@@ -123,10 +108,7 @@ def ball_rates(s, d, a, p, places, balls, ball, space, leans, hertz):
                 base_r, base_t = ramp * p[SPIN_R + l], ramp * p[SPIN_T + l]
                 db[speed + l] = gain
                 db[speed + LANES + l] = (lever * nt * er + zi + zo) * per_j - gain * per_r
-                couple_r, couple_t = (
-                    (lever * (nz * et - nt * ez), -lever * nz * er)
-                    if space or leans
-                    else (-lever * nt * ez, ZERO)
+                db[speed + 2 * LANES + l] = (
+                    (lever * (nz * et - nt * ez) + ri + ro) * per_j + (om + w) * ot - om * base_t
                 )
-                db[speed + 2 * LANES + l] = (couple_r + ri + ro) * per_j + (om + w) * ot - om * base_t
-                db[speed + 3 * LANES + l] = (ti + to + couple_t) * per_j - (om + w) * o_r + om * base_r
+                db[speed + 3 * LANES + l] = (ti + to - lever * nz * er) * per_j - (om + w) * o_r + om * base_r

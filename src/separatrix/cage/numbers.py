@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from separatrix import pocket_shape
 from separatrix.cage import outcome, rows
 from separatrix.cage.ball import slip_field
 from separatrix.cage.closed_forms import (
@@ -57,8 +56,7 @@ class Kind(NamedTuple):
 
     ball: int
     space: bool
-    leans: bool
-    hertz: bool
+    level: bool  # its contacts are linear, along the orbit: the quick equations of pockets
     lobes: int
     balls: int
     strips: int
@@ -94,7 +92,7 @@ def pocket_rectangle(cage: MovingCage) -> tuple[Metre, Metre, Metre]:
     """Half-lengths of the pocket's rectangle along orbit and axis, and how far its wall is outside it [m]."""
     half, end = cage.pocket_clearance / 2.0, axial_half_play(cage)
     if cage.pocket_shape is PocketShape.SQUARE:
-        return half, min(end, NOWHERE), 0.0
+        return half, end if cage.is_in_space else NOWHERE, 0.0
     return half - end, 0.0, end
 
 
@@ -140,8 +138,7 @@ def numbers_of(
     kind = Kind(
         ball=ball_level(cage),
         space=cage.is_in_space,
-        leans=not cage.is_in_space and cage.pocket_axial_offset != 0.0,
-        hertz=cage.hertz_coefficient is not None,
+        level=not (cage.is_in_space or cage.pocket_axial_offset or cage.hertz_coefficient),
         lobes=cage.land_lobes if cage.land_out_of_round > 0.0 else 0,
         balls=cage.ball_count,
         strips=len(strips),
@@ -156,7 +153,6 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     reach = R if cage.land_radius is None else cage.land_radius
     _, beside, _ = pocket_rectangle(cage)
-    lean_cosine, lean_sine = pocket_shape.tilt(cage)
     outward, inward = cage.wall_margins
     # an inner land is touched opposite to the cage's offset, where an odd number of lobes has turned its sign
     lobe = cage.land_out_of_round * (side if cage.land_lobes % 2 else 1.0)
@@ -178,10 +174,10 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         rows.AXIAL_GRAVITY: 0.0 if cage.is_axially_held else cage.axial_gravity,
         rows.ECCENTRICITY: cage.unbalance / M,
         rows.LEAN: cage.dynamic_unbalance,
-        rows.STIFFNESS: cage.hertz_coefficient or cage.ball_cage_stiffness,
+        rows.STIFFNESS: cage.ball_cage_stiffness if cage.hertz_coefficient is None else 0.0,
+        rows.HERTZ: cage.hertz_coefficient or 0.0,
         rows.BESIDE: beside,
-        rows.LEAN_COSINE: lean_cosine,
-        rows.LEAN_SINE: -lean_sine,
+        rows.OFFSET: cage.pocket_axial_offset,
         rows.FRICTION: cage.ball_cage_friction,
         rows.LEVER: cage.lever,
         rows.SPIN_Z: cage.spin[0],

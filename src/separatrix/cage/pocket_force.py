@@ -28,18 +28,6 @@ def pocket_depth(along, across, around, apart, beside):
 
 
 @inlined
-def pocket_depth_in_plane(along, play, lean_sine, lean_cosine):
-    """The same where the axial motion is held: with the lean of the contact and its clearance."""
-    return lean_cosine * max(abs(along) - play, ZERO), lean_sine, math.copysign(lean_cosine, -along)
-
-
-@inlined
-def level_depth(along, play):
-    """The same of a contact that does not lean."""
-    return max(abs(along) - play, ZERO), math.copysign(ONE, -along)
-
-
-@inlined
 def pocket_friction(limit, nz, nt, lever, oz, o_r, ot, ball_speed, vz, vr, vt, pivot):
     """Friction on the wall (axial, radial, along the orbit), and the speed of the sliding.
 
@@ -58,8 +46,14 @@ def pocket_friction(limit, nz, nt, lever, oz, o_r, ot, ball_speed, vz, vr, vt, p
 
 
 @inlined
-def friction_in_plane(limit, nt, lever, oz, o_r, vr, pivot):
-    """Friction (axial, radial) of a contact that does not lean, axial motion held; speed of sliding."""
+def level_depth(along, play):
+    """Depth of a wall that is met across the orbit, and in which sense along it the ball pushes it."""
+    return max(abs(along) - play, ZERO), math.copysign(ONE, -along)
+
+
+@inlined
+def level_friction(limit, nt, lever, oz, o_r, vr, pivot):
+    """Friction (axial, radial) of such a contact of a cage in the plane, and the speed of the sliding."""
     sz, sr = lever * o_r * nt, -lever * oz * nt - vr
     slide = math.sqrt(sz * sz + sr * sr + pivot)
     share = limit / slide

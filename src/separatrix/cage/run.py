@@ -24,7 +24,7 @@ from separatrix.cage.outcome import (
     UNRESOLVED,
     end_of_motion,
 )
-from separatrix.cage.pocket_force import pocket_depth, pocket_depth_in_plane
+from separatrix.cage.pocket_force import pocket_depth
 from separatrix.cage.rows import *
 from separatrix.cage.step import held_stage_end, hold, stage_end
 from separatrix.compiled import inlined, kernel, part
@@ -79,20 +79,18 @@ def kinetic_energy(s, p, l, space):
 
 
 @part
-def stored_energy(s, a, p, places, l, balls, one, space, hertz):
+def stored_energy(s, a, p, places, l, balls, one, space):
     """Kinetic energy of the cage, and that in the pockets' springs; `a` has its geometric centre."""
     total, first = float(kinetic_energy(s, p, l, space)), SPACE_STATES if space else PLANE_STATES
     for j in range(balls):
         b, q = first + j * one + l, j * BALL_ROWS + l
         c, n = places[q + COSINE], places[q + SINE]
         along = a[GY + l] * c - a[GX + l] * n + s[S + l] - s[b + LEAD]
+        across = p[OFFSET + l]
         if space:
             across = s[Z + l] - p[RADIUS + l] * (a[GB + l] * c - a[GA + l] * n) - s[b + GROOVE]
-            depth = pocket_depth(along, across, places[q + AROUND], places[q + APART], p[BESIDE + l])[0]
-        else:
-            depth = pocket_depth_in_plane(along, places[q + APART], p[LEAN_SINE + l], p[LEAN_COSINE + l])[0]
-        k = p[STIFFNESS + l]
-        total += 0.4 * k * depth * depth * math.sqrt(depth) if hertz else 0.5 * k * depth * depth
+        depth = pocket_depth(along, across, places[q + AROUND], places[q + APART], p[BESIDE + l])[0]
+        total += (0.5 * p[STIFFNESS + l] + 0.4 * p[HERTZ + l] * math.sqrt(depth)) * depth * depth
     return total
 
 
@@ -237,8 +235,7 @@ def write_row(row, time, s, a, places, balls):
 def queue(
     ball: int,
     space: bool,
-    leans: bool = False,
-    hertz: bool = False,
+    level: bool = False,
     lobe_number: int = 0,
     real: type = np.float32,
     equations: Callable[..., None] | None = None,
@@ -301,11 +298,11 @@ def queue(
                 for stage in range(4):
                     if waves.size > 0:
                         orbit_speeds(t, places, waves, turned, balls)
-                    rates(t, d, a, p, places, strips, balls, ball, space, leans, hertz, lobe_number)
+                    rates(t, d, a, p, places, strips, balls, ball, space, level, lobe_number)
                     if stage == 0:
                         if i == 0:
                             for l in range(LANES):
-                                had[l] = stored_energy(s, a, p, places, l, balls, one, space, hertz)
+                                had[l] = stored_energy(s, a, p, places, l, balls, one, space)
                         watch(s, d, a, p, places, w, balls, np.float32(i), space)
                         if row < record.shape[0] and (look[0] * steps + i) % every == 0:
                             write_row(
@@ -328,7 +325,7 @@ def queue(
                 if n < 0:
                     continue
                 found, at, step = looks[n, look[l]], evidence[n], numbers[n, STEP // LANES]
-                kept = stored_energy(s, a, p, places, l, balls, one, space, hertz) - had[l]
+                kept = stored_energy(s, a, p, places, l, balls, one, space) - had[l]
                 end_look(found, at, w, s, kept, steps, step, l)
                 count_impacts(hits_of[n], heat_of[n], places, step, l)
                 touched = w[PEAK_FORCE + l] + w[PEAK_LAND + l] > ZERO
