@@ -21,7 +21,7 @@ SMALL = """
 extends = "momentum-wheel"
 [stability]
 runs = 4
-duration = "10 ms"
+duration = "2 ms"
 restitution_factors = [0.4, 0.6]
 """
 

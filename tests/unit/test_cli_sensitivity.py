@@ -24,7 +24,7 @@ thickness = { between = ["0.4 um", "0.6 um"] }
 [stability]
 kicks = ["0.5 m/s"]
 runs = 8
-duration = "10 ms"
+duration = "2 ms"
 restitution_factors = [0.2, 0.5, 0.8]
 
 [ranking]

@@ -218,6 +218,7 @@ def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):
     assert said in words(found.summary())
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(("ball", "said"), [("free", "free"), ("auto", "one state"), ("damper", "damper")])
 def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
     """`--ball` forces one; auto is one state."""
@@ -249,6 +250,7 @@ def test_an_mp4_without_its_extra_is_refused_before_the_run(capsys, monkeypatch)
     assert "pip install 'separatrix[animation]'" in line
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
     """Files of an answer come all or none, its film among them."""
 
@@ -299,6 +301,7 @@ def test_two_runs_are_compared(folder, capsys):
     assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys):
     """Two kicks and seeds of one study, another friction; no key that a study file does not know."""
     other = SMALL.replace("= 0.1", "= 0.2").replace("[stability]", "[stability]\nseed = 2")
@@ -316,6 +319,7 @@ def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys
     }
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
     """One run takes it from the first candidate, the other from the study; the table's range is no input."""
     own = SMALL.replace("ball_cage_friction = 0.1", "")
@@ -343,6 +347,7 @@ def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
     assert list(Path().iterdir()) == []
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_no_simulation_is_not_compared(folder, capsys):
     """Nothing there, another verb's answer, a file that is no dataset."""
     small, toml = str(folder / "small"), str(folder / "small.toml")
@@ -356,6 +361,7 @@ def test_what_is_no_simulation_is_not_compared(folder, capsys):
         assert said in refused(capsys, "compare", other, small)
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("motion", ["plane", "space"])
 def test_balls_that_their_races_grip_have_an_infinite_damping(folder, capsys, motion):
     """A restitution factor of 1, the end of a map's axis: null in the document, in words in the text."""

@@ -47,6 +47,9 @@ LADDER = 1.1
 FOLLOWED = 160
 """Looks for which a motion is followed whose end is not plain, at least: 1.5 s of the shipped cage."""
 
+BRIEF: Second = 0.02
+"""A duration below this, a fifteenth of the default, asks for a preview, with fewer looks: 20 or more."""
+
 ADRIFT = 10.0
 """Mean offset, in half clearances of the pockets, at which a cage without a land has left them."""
 
@@ -245,7 +248,8 @@ def _limits(cage: MovingCage, kick: MetrePerSecond, duration: Second, least: Sec
     found[outcome.GROWS] = outcome.GROWN * (
         kicked + drive + 0.5 * moving_mass(cage) * (cage.cage_speed * wide) ** 2
     )
-    found[outcome.MOST] = ramp + max(FOLLOWED, math.ceil(duration / look))
+    fewest = max(2 * outcome.TEN, math.ceil(FOLLOWED * min(1.0, duration / BRIEF)))
+    found[outcome.MOST] = ramp + max(fewest, math.ceil(duration / look))
     found[outcome.LEAST] = math.ceil(least / look)
     found[outcome.FROM] = ramp
     found[outcome.IS_ADRIFT] = float(drifts(cage))

@@ -112,7 +112,8 @@ def settled(figure: Figure) -> Figure:
     """Lay the figure out once for all, so that every format and every drawing of it is the same."""
     layout = figure.get_layout_engine()
     if layout is not None:
-        for _ in range(2):  # the labels beside the axes are known after the first
+        # axes of equal scales end elsewhere than where they were laid out
+        for _ in range(2 if any(axes.get_aspect() != "auto" for axes in figure.axes) else 1):
             layout.execute(figure)
     figure.set_layout_engine(None)  # "none" would leave a placeholder, for which savefig draws twice
     # the solver's last digits and its sign of 0 differ from call to call, and names hold them

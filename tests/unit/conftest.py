@@ -1,0 +1,9 @@
+"""What tests of several verbs share."""
+
+import pytest
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Leave the pictures of answers out, where a test is about something else."""
+    monkeypatch.setattr("separatrix.figures.save_all", lambda *_: None)
