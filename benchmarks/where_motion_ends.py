@@ -3,9 +3,8 @@
     python benchmarks/where_motion_ends.py [--studies 20] [--runs 50] [--first 0]
 
 Random bearings of three classes (tests/properties/sane_studies.py); of each, random frictions from 0.02 to
-0.5, kicks from 0.25 to 20 times the pocket speed and run numbers. Each run is made with the default duration,
-which it exceeds up to four times (twenty without a land), and with ten times that duration. Some minutes on
-two cores.
+0.5, kicks from 0.25 to 20 times the pocket speed and run numbers. Each run is made as a study would, and with
+ten times the default duration. A minute on two cores.
 """
 
 from __future__ import annotations
@@ -16,16 +15,18 @@ import tempfile
 import time
 import warnings
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from separatrix.cage import MovingCage, RunOutcome, moving_cage, run_ensemble
+from separatrix.cage import RunOutcome, moving_cage, outcome, rows
+from separatrix.cage.ensemble import Piece, follow, piece_of
+from separatrix.cage.moving_cage import turned_forward
+from separatrix.cage.numbers import numbers_of
+from separatrix.cage.rows import of
 from separatrix.chain.pocket import pocket_speed
-from separatrix.chain.solution import solve
-from separatrix.study import StabilitySettings
+from separatrix.chain.solution import Solution, solve
 from separatrix.verdict.judgement import wilson_interval
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "properties"))
@@ -35,21 +36,23 @@ LONGER = 10.0
 FRICTIONS = 0.02, 0.5
 KICKS = 0.25, 20.0  # over the pocket speed
 
-Pair = tuple[RunOutcome, RunOutcome, float, float]
+
+def random_pieces(state: Solution, runs: int, seed: int) -> list[Piece]:
+    """One run each, of random friction, disturbance and number."""
+    pieces, cage, settings = [], turned_forward(moving_cage(state, 0.1)), state.study.stability
+    for k in range(runs):
+        rng = np.random.default_rng((29, seed, k))
+        friction = float(np.exp(rng.uniform(*np.log(FRICTIONS))))
+        speed = pocket_speed(cage.cage_speed, cage.pocket_clearance)
+        kick = speed * float(np.exp(rng.uniform(*np.log(KICKS))))
+        number = int(rng.integers(1_000_000))
+        pieces.append(piece_of(replace(cage, ball_cage_friction=friction), kick, settings, number, 1))
+    return pieces
 
 
-def pair(cage: MovingCage, settings: StabilitySettings, rng: np.random.Generator) -> Pair:
-    """Outcome of one random run, and of the same followed ten times as long; where each ended [s]."""
-    friction = float(np.exp(rng.uniform(*np.log(FRICTIONS))))
-    kick = pocket_speed(cage.cage_speed, cage.pocket_clearance) * float(np.exp(rng.uniform(*np.log(KICKS))))
-    number = int(rng.integers(1_000_000))
-    cage = replace(cage, ball_cage_friction=friction)
-    found = [
-        run_ensemble(cage, one, kicks=(kick,), runs=1, first_run=number)
-        for one in (settings, replace(settings, duration=LONGER * settings.duration))
-    ]
-    outcomes = [RunOutcome(int(each.outcome[0, 0])) for each in found]
-    return outcomes[0], outcomes[1], float(found[0].followed[0, 0]), float(found[1].followed[0, 0])
+def longer(piece: Piece, duration: float) -> Piece:
+    """The same run, followed as long as that is."""
+    return piece._replace(numbers=numbers_of(piece.cage, piece.kick, duration))
 
 
 def main() -> None:
@@ -60,20 +63,25 @@ def main() -> None:
     asked = parser.parse_args()
     warnings.simplefilter("ignore")
     changes: Counter[tuple[str, str]] = Counter()
-    total, spent = 0, [0.0, 0.0]
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
+    total, spent, early = 0, [0.0, 0.0], [0, 0]
+    with tempfile.TemporaryDirectory() as folder:
         for seed in range(asked.first, asked.first + asked.studies):
             state = solve(sane_study(seed, Path(folder)))
-            streams = [np.random.default_rng((29, seed, k)) for k in range(asked.runs)]
-            begun = time.perf_counter()
-            pairs = list(
-                pool.map(lambda rng, s=state: pair(moving_cage(s, 0.1), s.study.stability, rng), streams)
+            pieces, begun = random_pieces(state, asked.runs, seed), time.perf_counter()
+            usual, ten = (
+                follow(some, jobs=2)
+                for some in (pieces, [longer(one, LONGER * state.study.stability.duration) for one in pieces])
             )
-            counts = Counter((short.name, long.name) for short, long, _, _ in pairs)
+            ends = [[RunOutcome(int(one)).name for one in found["outcome"]] for found in (usual, ten)]
+            counts = Counter(zip(*ends, strict=True))
             changes += counts
-            total += len(pairs)
-            spent[0] += sum(at for _, _, at, _ in pairs)
-            spent[1] += sum(at for _, _, _, at in pairs)
+            total += len(pieces)
+            for i, found in enumerate((usual, ten)):
+                spent[i] += found["followed"].sum()
+            for piece, at, before, after in zip(pieces, usual["followed"], *ends, strict=True):
+                step = piece.numbers.numbers[of(rows.STEP)] * piece.numbers.kind.steps
+                is_early = at < (piece.numbers.limits[outcome.MOST] - 0.5) * step
+                early[int(is_early)] += before != after
             words = ", ".join(f"{a} -> {b} {n}" for (a, b), n in sorted(counts.items()) if a != b)
             same = ", ".join(f"{a} {n}" for (a, b), n in sorted(counts.items()) if a == b)
             took = time.perf_counter() - begun
@@ -84,6 +92,7 @@ def main() -> None:
         f"{wrong} of {total} outcomes change: {100 * wrong / total:.2f} % "
         f"(95 %: {100 * low:.2f} to {100 * high:.2f})"
     )
+    print(f"of runs that ended early {early[1]} change, of those followed to their end {early[0]}")
     print(f"simulated {spent[0]:.1f} s, ten times as long {spent[1]:.1f} s")
 
 

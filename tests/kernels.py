@@ -1,23 +1,41 @@
-"""Compile, once before the tests, the kernels that most of them use: of `plane` or of `space`."""
+"""Compile, once before the tests, the kernels that most of them use: of the `chain`, or of the `cage`."""
 
 import sys
 import warnings
 from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
 
 import separatrix
-from separatrix.cage import moving_cage, run_ensemble
+from separatrix.ball_traction import BallTraction
+from separatrix.cage import MovingCage, follow, moving_cage, run_ensemble
 from separatrix.study import BallModel, MotionModel, StabilitySettings
 
+MOMENT = StabilitySettings(kicks=(0.1,), runs=1, duration=1e-3)
 
-def main(where: str) -> None:
-    """Run one cage among each ball that the tests use there, for a moment."""
-    warnings.simplefilter("ignore")
-    study = separatrix.read_study("cryogenic-turbopump")
-    balls = {"plane": [BallModel.DAMPER, BallModel.TRACTION], "space": [BallModel.TRACTION, BallModel.DAMPER]}
-    solution = separatrix.solve(replace(study, cage=replace(study.cage, motion=MotionModel(where))))
-    for ball in balls[where]:
-        run_ensemble(moving_cage(solution, 0.05, ball), StabilitySettings(kicks=(0.1,), runs=1))
+
+def chain() -> None:
+    """A bearing from its loads to the mobility of its balls, and a cage among such balls."""
+    solution = separatrix.solve(separatrix.read_study("cryogenic-turbopump"))
+    _ = solution.restitution, solution.mobility, solution.impacts
+    run_ensemble(moving_cage(solution, 0.05, BallModel.FREE), MOMENT)
+
+
+def cage() -> None:
+    """A cage among balls of two levels, in plane and space, and in the double precision of `follow`."""
+    sys.path.append(str(Path(__file__).parent / "physics"))
+    from cages import TURNING
+
+    space = {"motion": MotionModel.SPACE, "groove_damping": 766.0, "groove_stiffness": 5e6}
+    law = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)
+    plane: tuple[MovingCage, ...] = (TURNING, replace(TURNING, traction=law))
+    lead = np.zeros(TURNING.ball_count)
+    for one in (*plane, *(replace(each, **space) for each in plane)):
+        run_ensemble(one, MOMENT)
+        follow(one, kick=0.1, direction=0.0, ball_lead=lead, duration=1e-3, until=1e-3)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    warnings.simplefilter("ignore")
+    {"chain": chain, "cage": cage}[sys.argv[1]]()
