@@ -193,6 +193,7 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         rows.LOBE: lobe,
         rows.LOBE_SLOPE: lobe * cage.land_lobes,
         rows.LAND_FRICTION: cage.land_friction,
+        rows.LAND_STOPS: cage.land_friction * (1.0 / M + reach * reach / cage.moment_of_inertia) * step,
         rows.LAND_LEVER: side * reach / R,
         rows.RING_SLIDE: side * (cage.guiding_ring_speed - cage.cage_speed) * reach,
     }
