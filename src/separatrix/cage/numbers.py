@@ -18,7 +18,7 @@ from separatrix.cage.closed_forms import (
     time_unit,
 )
 from separatrix.cage.rows import of
-from separatrix.cage.step import exact_decay, step_length
+from separatrix.cage.step import exact_decay, land_reach, step_length
 from separatrix.cage_design import Guidance
 from separatrix.pocket_shape import PocketShape
 
@@ -157,6 +157,9 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
     reach = R if cage.land_radius is None else cage.land_radius
     _, beside, _ = pocket_rectangle(cage)
     outward, inward = cage.wall_margins
+    stopped = 1.0 / M + reach * reach / cage.moment_of_inertia
+    if cage.is_in_space:
+        stopped += (reach * reach + land_reach(cage) ** 2) / cage.transverse
     # an inner land is touched opposite to the cage's offset, where an odd number of lobes has turned its sign
     lobe = cage.land_out_of_round * (side if cage.land_lobes % 2 else 1.0)
     given = {
@@ -193,7 +196,7 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         rows.LOBE: lobe,
         rows.LOBE_SLOPE: lobe * cage.land_lobes,
         rows.LAND_FRICTION: cage.land_friction,
-        rows.LAND_STOPS: cage.land_friction * (1.0 / M + reach * reach / cage.moment_of_inertia) * step,
+        rows.LAND_STOPS: cage.land_friction * stopped * step,
         rows.LAND_LEVER: side * reach / R,
         rows.RING_SLIDE: side * (cage.guiding_ring_speed - cage.cage_speed) * reach,
     }
