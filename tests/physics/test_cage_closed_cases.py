@@ -81,14 +81,14 @@ def test_friction_of_an_impact_is_a_share_of_its_impulse(outer):
 
 
 def test_an_impact_on_a_free_ball_keeps_momentum_and_energy():
-    """Next to no traction: cage and ball part as two masses that strike elastically; 4e-5 measured."""
+    """Next to no traction: cage and ball part as two masses that strike elastically; 1e-5 measured."""
     m = CRYO.mass
     free = one_ball(traction=replace(CRYO, slope=1e-9, speed=math.inf))
-    after = run(free, 1.5e-3, refine=4)
+    after = run(free, 1.5e-3, refine=16)
     momentum = M * after.velocity[:, 1] + m * after.ball_speed[:, 0]
     np.testing.assert_allclose(momentum, M * 0.5, rtol=2e-8)  # 7e-9 goes into traction
     speeds = after.velocity[-1, 1], after.ball_speed[-1, 0]
-    assert speeds == pytest.approx((0.5 * (M - m) / (M + m), 0.5 * 2 * M / (M + m)), rel=1e-4)
+    assert speeds == pytest.approx((0.5 * (M - m) / (M + m), 0.5 * 2 * M / (M + m)), rel=3e-5)
 
 
 def test_a_hertz_impact_has_the_force_and_the_time_of_the_closed_form():
@@ -295,13 +295,17 @@ def test_a_dry_land_slows_down_a_whirl_against_it():
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_dry_land_speeds_up_a_whirl(sense):
-    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held."""
+    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held.
+
+    The ring drags it along; 2e-5 measured: the land gives way by 1e-5 of the clearance.
+    """
     f = 0.1
     held = {"moment_of_inertia": 1e3, "guidance": Guidance.OUTER, "outer_speed": 1e4 * sense}
     found = run(on_a_land(**held, land_friction=f), 0.04, kick=0.3, direction=0.0, samples=4001)
     late = found.time > 0.02
     (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
     nu = (x * vy - y * vx) / (x * x + y * y)
+    assert np.all(nu * sense > 0.0)
     assert np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0] == pytest.approx(-f, rel=5e-5)
 
 
