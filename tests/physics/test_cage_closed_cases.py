@@ -10,12 +10,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from cages import AT_REST, ON_A_LAND, damping_of, linear_roots
+from cages import AT_REST, ON_A_LAND, damping_of, followed, linear_roots
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import MovingCage, follow, impact_restitution
+from separatrix.cage import MovingCage, impact_restitution
 from separatrix.cage.closed_forms import rebound, rebound_damping
 from separatrix.study import Guidance
 
@@ -25,13 +25,6 @@ CRYO = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)
 
 WHEEL = BallTraction(mass=1.289e-3, slope=74.3, speed=1.3 / 74.3)
 """A momentum wheel's: 1.3 N at most."""
-
-
-def run(cage, duration, *, kick=0.5, direction=math.pi / 2, lead=None, samples=400, refine=1):
-    """Follow a run to its whole duration, balls in the middle of their pockets unless they lead."""
-    lead = np.zeros(cage.ball_count) if lead is None else lead
-    how = {"duration": duration, "until": duration, "samples": samples, "refine": refine}
-    return follow(cage, kick=kick, direction=direction, ball_lead=lead, **how)
 
 
 def one_ball(**change: object) -> MovingCage:
@@ -54,7 +47,7 @@ def test_one_impact_returns_the_restitution_of_its_closed_form(eta, may_turn):
     cage = one_ball(race_damping=damping_of(eta), moment_of_inertia=inertia)
     back = impact_restitution(cage, may_turn=may_turn)
     for refine, tolerance in ((1, 1e-3), (4, 1e-4)):
-        after = run(cage, 0.0015, refine=refine)
+        after = followed(cage, 0.0015, refine=refine)
         pocket = after.velocity[-1, 1] + R * after.rotation_rate[-1]
         assert -pocket / 0.5 == pytest.approx(back, abs=tolerance)
 
@@ -75,7 +68,7 @@ def test_friction_of_an_impact_is_a_share_of_its_impulse(outer):
     To rounding: the surface of the ball is as good as infinitely fast.
     """
     speeds = {"inner_speed": 0.0, "outer_speed": 1500.0} if outer else {}
-    after = run(one_ball(ball_cage_friction=0.2, race_damping=damping_of(0.6), **speeds), 0.0015)
+    after = followed(one_ball(ball_cage_friction=0.2, race_damping=damping_of(0.6), **speeds), 0.0015)
     normal, sense = M * (after.velocity[-1, 1] - 0.5), -1.0 if outer else 1.0
     assert M * after.velocity[-1, 0] == pytest.approx(0.2 * sense * normal, rel=1e-12)
 
@@ -84,7 +77,7 @@ def test_an_impact_on_a_free_ball_keeps_momentum_and_energy():
     """Next to no traction: cage and ball part as two masses that strike elastically; 1e-5 measured."""
     m = CRYO.mass
     free = one_ball(traction=replace(CRYO, slope=1e-9, speed=math.inf))
-    after = run(free, 1.5e-3, refine=16)
+    after = followed(free, 1.5e-3, refine=16)
     momentum = M * after.velocity[:, 1] + m * after.ball_speed[:, 0]
     np.testing.assert_allclose(momentum, M * 0.5, rtol=2e-8)  # 7e-9 goes into traction
     speeds = after.velocity[-1, 1], after.ball_speed[-1, 0]
@@ -99,7 +92,7 @@ def test_a_hertz_impact_has_the_force_and_the_time_of_the_closed_form():
     twice = 2 * 5.496616e-3
     free = BallTraction(mass=twice, slope=1e-9, speed=math.inf)
     cage = one_ball(traction=free, mass=twice, hertz_coefficient=5e8)
-    after = run(cage, 1e-3, samples=1_000_000, refine=16)
+    after = followed(cage, 1e-3, samples=1_000_000, refine=16)
     force = after.contact_force[:, 0]
     touching = np.count_nonzero(force > 1e-3) * after.time[1]
     assert force.max() == pytest.approx(66.15387, rel=7e-5)  # half a row beside the peak
@@ -129,7 +122,7 @@ def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
     """One ball: the pocket's speed is that of half the ring's mass; scipy; 3e-5 measured."""
     ring = {"mass": mass, "moment_of_inertia": mass * R * R, "ball_cage_stiffness": stiffness}
     left, contact = struck(law, mass / 2, stiffness, kick)
-    after = run(one_ball(traction=law, **ring), 5e-4 / kick + contact, kick=kick, refine=8)
+    after = followed(one_ball(traction=law, **ring), 5e-4 / kick + contact, kick=kick, refine=8)
     back = after.velocity[-1, 1] + R * after.rotation_rate[-1]
     assert back / kick == pytest.approx(left / kick, abs=8e-5)
 
@@ -137,7 +130,9 @@ def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
 def test_a_knocked_ball_comes_to_rest_where_its_traction_leaves_it():
     """The whole way of a coasting ball: m_e times the integral of u/F(u); 4e-6 measured."""
     cage = one_ball(traction=WHEEL, mass=0.5 * WHEEL.mass, pocket_clearance=0.04)  # light: it rebounds
-    after = run(cage, 0.02, kick=0.5, direction=-math.pi / 2, lead=np.array([0.02]), samples=20_001, refine=2)
+    after = followed(
+        cage, 0.02, kick=0.5, direction=-math.pi / 2, lead=np.array([0.02]), samples=20_001, refine=2
+    )
     free = int(np.argmax((after.contact_force[:, 0] == 0.0) & (np.abs(after.ball_speed[:, 0]) > 1e-3)))
     u = after.ball_speed[free, 0]
     way = math.copysign(quad(lambda v: WHEEL.mass * v / WHEEL.force(v), 0.0, abs(u), epsabs=0.0)[0], u)
@@ -168,12 +163,15 @@ def test_rebound_damping_inverts_rebound(restitution):
 
 
 @pytest.mark.parametrize(("guidance", "count"), [(Guidance.OUTER, 1), (Guidance.INNER, 2)])
-@pytest.mark.parametrize("restitution", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize("restitution", [0.1, 0.5, 0.9])
 def test_the_land_returns_its_restitution(guidance, count, restitution):
-    """Head on without friction, as one land or as two that share the damping; the force begins at a jump."""
+    """Head on without friction, as one land or as two that share the damping; the force begins at a jump.
+
+    That leaves an error of the first order in the step: 8e-4 of 0.5 m/s measured.
+    """
     land = {"guidance": guidance, "land_clearance": 2e-4, "land_friction": 0.0, "land_count": count}
     cage = one_ball(pocket_clearance=0.02, land_restitution=restitution, **land)
-    after = run(cage, 0.0006, direction=0.7, refine=16)
+    after = followed(cage, 0.0006, direction=0.7, refine=16)
     speed = -after.velocity[-1] @ [math.cos(0.7), math.sin(0.7)]
     assert speed == pytest.approx(0.5 * restitution, abs=1e-3)
 
@@ -194,7 +192,7 @@ def test_friction_of_the_land_follows_its_sliding(guidance, ring):
     speed does. 2e-3 measured: the cage slides along its land of 10 mm during the impact.
     """
     cage = far_land(guidance=guidance, land_friction=0.2, inner_speed=ring, outer_speed=-ring)
-    after = run(cage, 0.021, direction=0.0)
+    after = followed(cage, 0.021, direction=0.0)
     normal, tangential = M * (after.velocity[-1, 0] - 0.5), M * after.velocity[-1, 1]
     assert normal < -0.7 * M
     assert tangential == pytest.approx(0.2 * normal * (ring > 0), rel=5e-3, abs=1e-12)
@@ -205,7 +203,7 @@ def test_friction_of_the_land_follows_its_sliding(guidance, ring):
 def test_a_land_with_a_slow_ring_only_stops_the_sliding():
     """A ring so slow that friction can stop the sliding: cage and ring have one speed where they touch."""
     cage = far_land(guidance=Guidance.OUTER, land_friction=0.5, outer_speed=1.0)
-    after = run(cage, 0.021, direction=0.0, refine=4)
+    after = followed(cage, 0.021, direction=0.0, refine=4)
     surface = after.velocity[-1, 1] + R * after.rotation_rate[-1]
     assert surface == pytest.approx(R * 1.0, rel=6e-3)  # the cage slides along its land during the impact
 
@@ -214,7 +212,7 @@ def test_a_land_with_a_slow_ring_only_stops_the_sliding():
 def test_a_lobe_takes_room_where_the_land_is_touched(guidance, side):
     """A lobe stands at angle 0 of the cage: it meets the outer land there; of three none is opposite."""
     cage = far_land(guidance=guidance, land_clearance=2e-4, land_out_of_round=1e-5, land_lobes=3)
-    after = run(cage, 4e-4, direction=0.0, samples=10_000, refine=4)
+    after = followed(cage, 4e-4, direction=0.0, samples=10_000, refine=4)
     touched = after.time[np.argmax(after.land_force > 0.0)]
     assert touched == pytest.approx((1e-4 - side * 1e-5) / 0.5, abs=2 * after.time[1])
 
@@ -246,7 +244,7 @@ def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
     It falls on its land first. A swing of 12 mrad lengthens the period by 1e-5 of it; a rolling one creeps.
     """
     cage = on_a_land(gravity=G, land_friction=friction)
-    found = run(cage, 0.4, kick=5e-3, direction=0.0121, samples=8001)
+    found = followed(cage, 0.4, kick=5e-3, direction=0.0121, samples=8001)
     late = found.time > 0.2
     period = crossings(found.time[late], found.position[late, 1])
     assert period == pytest.approx(1.0 / frequency, rel=2.5e-5)
@@ -255,7 +253,7 @@ def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
 def test_a_rolling_cage_swings_far_as_the_elliptic_pendulum_does():
     """4 K(sin(A/2))/w_0, w_0^2 = g/(c (1 + J/(M R^2))): .06809150 s at 60 deg (dynamics3d E5)."""
     cage = on_a_land(gravity=G, land_friction=1.5)
-    found = run(cage, 0.3, kick=0.3, direction=math.radians(62.0), samples=8001)
+    found = followed(cage, 0.3, kick=0.3, direction=math.radians(62.0), samples=8001)
     late = found.time > 0.02
     angle = np.arctan2(*found.position[late].T[::-1])
     i = np.flatnonzero((angle[:-1] < 0.0) & (angle[1:] >= 0.0))
@@ -279,7 +277,7 @@ def test_a_dry_land_slows_down_a_whirl_against_it():
         race_damping=3000.0, pocket_clearance=0.1, land_stiffness=1e8,
     )  # fmt: skip
     lead = np.array([0.0, 0.05 - 3e-4])
-    found = run(cage, 0.03, lead=lead, kick=1.5, direction=math.pi / 4, samples=1501)
+    found = followed(cage, 0.03, lead=lead, kick=1.5, direction=math.pi / 4, samples=1501)
     late = found.time > 0.01
     (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
     nu = -(x * vy - y * vx) / (x * x + y * y)
@@ -301,7 +299,7 @@ def test_a_dry_land_speeds_up_a_whirl(sense):
     """
     f = 0.1
     held = {"moment_of_inertia": 1e3, "guidance": Guidance.OUTER, "outer_speed": 1e4 * sense}
-    found = run(on_a_land(**held, land_friction=f), 0.04, kick=0.3, direction=0.0, samples=4001)
+    found = followed(on_a_land(**held, land_friction=f), 0.04, kick=0.3, direction=0.0, samples=4001)
     late = found.time > 0.02
     (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
     nu = (x * vy - y * vx) / (x * x + y * y)
@@ -322,7 +320,7 @@ def test_gripped_pockets_hold_a_cage_against_gravity(friction, offset, angle):
         moment_of_inertia=M_L * 0.0325**2, cage_speed=668.9886, inner_speed=1570.8, race_damping=356.5792,
         ball_cage_friction=friction, gravity=G, ball_count=13,
     )  # fmt: skip
-    found = run(cage, 0.2, kick=1e-3, direction=0.0, samples=2001)
+    found = followed(cage, 0.2, kick=1e-3, direction=0.0, samples=2001)
     # beside the sag, which turns backward in this frame, the slow root of small motions is left
     late = found.time > 0.1
     t, drift = found.time[late], linear_roots(cage)[0]

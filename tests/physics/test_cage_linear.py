@@ -5,14 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import AT_REST, TURNING, damping_of, linear_roots
+from cages import AT_REST, TURNING, damping_of, followed, linear_roots
 
 from separatrix.ball_traction import BallTraction
 from separatrix.cage import (
-    History,
     MovingCage,
     drift_law,
-    follow,
     linear_critical_friction,
     linear_whirl_frequency,
     numbers,
@@ -33,15 +31,9 @@ def gripped(damping: float, friction: float = 0.0, **change: object) -> MovingCa
     return replace(AT_REST, **(grip | change))
 
 
-def run(cage: MovingCage, duration: float, samples: int, *, kick: float = 0.5, refine: int = 1) -> History:
-    """Follow a run to its whole duration, its balls in the middle of their pockets."""
-    whole = {"duration": duration, "until": duration, "samples": samples, "refine": refine}
-    return follow(cage, kick=kick, direction=0.3, ball_lead=np.zeros(cage.ball_count), **whole)
-
-
 def growth_rate(cage: MovingCage, duration: float) -> float:
     """Growth rate of the amplitude from the middle to the end of a run, by the kinetic energy [1/s]."""
-    found = run(cage, duration, 20_000)
+    found = followed(cage, duration, samples=20_000)
     half, end = found.time[-1] / 2, found.time[-1]
     width = 5 / linear_whirl_frequency(cage)  # whole turns, so that the mean has no beat
     means = []
@@ -95,7 +87,7 @@ def test_small_motions_are_the_exponentials_of_the_roots(law):
     """
     grip = {"cage_speed": 669.0, "pocket_clearance": 0.0, "race_damping": 900.0, "ball_cage_friction": 0.1}
     cage = replace(TURNING, **grip, traction=law)
-    found = run(cage, 2e-3, 200, refine=2)
+    found = followed(cage, 2e-3, direction=0.3, refine=2)
     # z and three derivatives at the start: the balls press with q only, and q' = v; times in 1/w0
     roots, v, w0 = linear_roots(cage), 0.5 * np.exp(0.3j), whirl_rate(cage)
     turn = cage.cage_speed / w0
@@ -153,7 +145,7 @@ def no_walls_along_the_axis(monkeypatch):
 
 def growth_in_space(cage: MovingCage) -> float:
     """Mean kinetic energy late in a run over that before."""
-    energy = run(cage, 0.08, 400, kick=0.05).kinetic_energy
+    energy = followed(cage, 0.08, kick=0.05).kinetic_energy
     return energy[-100:].mean() / energy[100:200].mean()
 
 
@@ -178,7 +170,7 @@ def test_in_space_a_whirl_tilts_as_the_linear_law_says():
 
     3e-4 and 2e-5 measured: the sliding of the cage itself, and the step.
     """
-    there = run(ring(4000.0, CRITICAL), 0.1, 20_001, kick=0.05)
+    there = followed(ring(4000.0, CRITICAL), 0.1, samples=20_001, kick=0.05)
     late = there.time > 0.05
     time, w = there.time[late], 2.0 * math.pi * 2891.193
     waves = np.stack([0.0 * time + 1.0, time, np.exp(1j * w * time), np.exp(-1j * w * time)], 1)
