@@ -93,18 +93,12 @@ def whirl_probability(found: Ensemble) -> np.ndarray:
 
 
 def followed(
-    cage: MovingCage,
-    duration: float,
-    *,
-    kick: float = 0.5,
-    direction: float = 0.0,
-    lead=None,
-    samples: int = 9,
+    cage: MovingCage, duration: float, *, direction: float = math.pi / 2.0, lead=None, **how: object
 ) -> History:
-    """Follow a run to its whole duration, its balls in the middle of their pockets unless they lead."""
+    """Follow a run to its whole duration: from 0.5 m/s straight onto ball 0, unless told, without leads."""
     lead = np.zeros(cage.ball_count) if lead is None else lead
-    whole = {"duration": duration, "until": duration, "samples": samples}
-    return follow(cage, kick=kick, direction=direction, ball_lead=lead, **whole)
+    whole = {"kick": 0.5, "duration": duration, "until": duration, "samples": 400}
+    return follow(cage, direction=direction, ball_lead=lead, **whole | how)
 
 
 NOTHING = (

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import AT_REST, ON_A_LAND, TURNING, damping_of, linear_roots
+from cages import AT_REST, ON_A_LAND, TURNING, damping_of
 from random_cages import random_cage
 from space_program import SmallSteps
 
@@ -14,9 +14,6 @@ from separatrix.cage import (
     MovingCage,
     RunOutcome,
     follow,
-    impact_restitution,
-    linear_critical_friction,
-    linear_whirl_frequency,
     run_ensemble,
 )
 from separatrix.cage.disturbance import ball_places, random_starts, start_states
@@ -44,47 +41,6 @@ def run(cage: MovingCage, duration: float, *, kick: float = 0.5, direction: floa
     return follow(cage, kick=kick, direction=direction, **whole | given)
 
 
-def growth(cage: MovingCage, duration: float) -> float:
-    """Growth rate of the amplitude over the second half of a run [1/s], from means over five whole whirls."""
-    found = run(cage, duration, samples=20000)
-    width, end = 5.0 / linear_whirl_frequency(cage), found.time[-1]
-    means = []
-    for until in (0.5 * end, end):
-        window = (found.time > until - width) & (found.time <= until)
-        means.append(np.trapezoid(found.kinetic_energy[window], found.time[window]))
-    return 0.5 * math.log(means[1] / means[0]) / (0.5 * end)
-
-
-@pytest.mark.parametrize("law", [None, LAW], ids=["damper", "one state"])
-def test_the_linear_limit_is_met_within_one_per_cent(law):
-    """Below the critical friction of the closed form by 1 % a whirl decays, 1 % above it grows."""
-    damping = damping_of(0.6)
-    limit = linear_critical_friction(gripped(0.0, damping, traction=law))
-    assert growth(gripped(0.99 * limit, damping, traction=law), 0.08) < 0.0
-    assert growth(gripped(1.01 * limit, damping, traction=law), 0.08) > 0.0
-
-
-@pytest.mark.parametrize("speed", [0.0, 700.0])
-@pytest.mark.parametrize("law", [None, replace(LAW, slope=2000.0, speed=50.0)], ids=["damper", "one state"])
-def test_a_whirl_grows_at_the_rate_of_the_exact_root(speed, law):
-    """Roots of the polynomial of small motions; 1 % of what the friction adds (the step has 1/3 radian)."""
-    cage = gripped(0.095, 2000.0, cage_speed=speed, traction=law)
-    whirl = max(linear_roots(cage)[np.abs(linear_roots(cage).imag) > 5000.0], key=lambda root: root.real)
-    added = 0.5 * 0.095 * 2.0 * math.pi * linear_whirl_frequency(cage)
-    assert growth(cage, 0.012) == pytest.approx(whirl.real, abs=0.01 * added)
-
-
-@pytest.mark.parametrize("eta", [0.1, 0.5, 0.9])
-def test_an_impact_returns_what_its_closed_form_says(eta):
-    """A series spring and damper on the felt mass: to 1e-3 of the speed, what a kink costs at this step."""
-    cage = replace(AT_REST, ball_count=1, race_damping=damping_of(eta), ball_cage_friction=0.0)
-    found = run(cage, 1.2e-3, kick=0.5, direction=math.pi / 2.0, samples=400)
-    closing = found.velocity[:, 1] + found.rotation_rate * cage.pitch_radius
-    apart = np.flatnonzero((found.contact_force[:-1, 0] > 0.0) & (found.contact_force[1:, 0] == 0.0))[0] + 1
-    assert closing[0] == pytest.approx(0.5, rel=1e-12)
-    assert -closing[apart] / 0.5 == pytest.approx(impact_restitution(cage), abs=1e-3)
-
-
 def test_without_kinks_the_error_falls_with_the_fourth_power_of_the_step():
     """A whirl in gripped pockets: half the step, a sixteenth of the error within a fifth."""
     cage = gripped(0.05, 2000.0, cage_speed=300.0)
@@ -101,52 +57,6 @@ def test_each_touch_is_a_kink_and_the_ledger_falls_with_the_square_of_the_step()
     assert opens[0] < 3e-3
     ratio = (opens[0] / opens[-1]) ** (1.0 / 3.0)
     assert 2.5 < ratio < 8.0
-
-
-M, R, C_G, G = 0.025, 0.036, 0.5e-3, 9.80665
-
-
-def on_a_land(**changes: object) -> MovingCage:
-    """A cage whose pockets are so wide that it never meets a ball, on a stiff land."""
-    given = {
-        "mass": M, "moment_of_inertia": M * R * R, "ball_count": 13, "pitch_radius": R, "cage_speed": 0.0,
-        "inner_speed": 0.0, "outer_speed": 0.0, "pocket_clearance": 10e-3, "ball_cage_stiffness": 3e6,
-        "race_damping": 300.0, "ball_cage_friction": 0.0, "guidance": Guidance.INNER,
-        "land_clearance": 2.0 * C_G, "land_stiffness": 1e9, "land_restitution": 0.0, "land_friction": 0.0,
-    }  # fmt: skip
-    return MovingCage(**given | changes)
-
-
-@pytest.mark.parametrize(("friction", "frequency"), [(0.0, 22.28925), (0.8, 15.76088)])
-def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
-    """Sliding sqrt(g/c)/2 pi, rolling with a thin ring's inertia 1/sqrt 2 of it (dynamics3d E5).
-
-    A swing of 12 mrad lengthens the period by 1e-5; friction in proportion below the pivoting
-    speed lets a rolling cage creep: 2e-3.
-    """
-    cage = on_a_land(gravity=G, land_friction=friction, land_stiffness=3e7)
-    found = run(cage, 0.4, kick=5e-4, direction=math.pi / 2, samples=8001)
-    late = found.time > 0.2
-    t, y = found.time[late], found.position[late, 1]
-    i = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
-    crossings = t[i] - y[i] * (t[i + 1] - t[i]) / (y[i + 1] - y[i])
-    assert np.diff(crossings).mean() == pytest.approx(1.0 / frequency, rel=1e-4 if friction == 0.0 else 2e-3)
-
-
-@pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_a_dry_land_speeds_up_a_whirl(sense):
-    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held.
-
-    The land gives way a little, 1e-4 of the clearance; the step adds as much.
-    """
-    f = 0.1
-    given = {"guidance": Guidance.OUTER, "land_friction": f, "land_stiffness": 5e7}
-    cage = on_a_land(moment_of_inertia=1e3, outer_speed=1e4 * sense, **given)
-    found = run(cage, 0.04, kick=0.3, direction=0.0, samples=4001)
-    late = found.time > 0.02
-    (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
-    nu = (x * vy - y * vx) / (x * x + y * y)
-    assert np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0] == pytest.approx(-f, rel=1e-3)
 
 
 SETTINGS = StabilitySettings(kicks=(0.5,), runs=64, duration=0.3, ball_scatter=0.3)

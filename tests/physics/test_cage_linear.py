@@ -1,0 +1,183 @@
+"""The linear limit, a cage without clearance: closed forms, exact roots and engine, in plane and space."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cages import AT_REST, TURNING, damping_of, followed, linear_roots
+
+from separatrix.ball_traction import BallTraction
+from separatrix.cage import (
+    MovingCage,
+    drift_law,
+    linear_critical_friction,
+    linear_whirl_frequency,
+    numbers,
+    run_ensemble,
+)
+from separatrix.cage.closed_forms import whirl_rate
+from separatrix.study import MotionModel, StabilitySettings
+
+M, K, Z, R = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count, AT_REST.pitch_radius
+LAW = BallTraction(mass=6.567e-3, slope=900.0, speed=math.inf)
+BACKWARD = {"inner_speed": 0.0, "outer_speed": 1500.0}
+"""Rotation of the outer ring, for whose friction whirl is backward."""
+
+
+def gripped(damping: float, friction: float = 0.0, **change: object) -> MovingCage:
+    """Cage whose pockets have no clearance."""
+    grip = {"pocket_clearance": 0.0, "race_damping": damping, "ball_cage_friction": friction}
+    return replace(AT_REST, **(grip | change))
+
+
+def growth_rate(cage: MovingCage, duration: float) -> float:
+    """Growth rate of the amplitude from the middle to the end of a run, by the kinetic energy [1/s]."""
+    found = followed(cage, duration, samples=20_000)
+    half, end = found.time[-1] / 2, found.time[-1]
+    width = 5 / linear_whirl_frequency(cage)  # whole turns, so that the mean has no beat
+    means = []
+    for until in (half, end):
+        window = (found.time > until - width) & (found.time <= until)
+        means.append(np.trapezoid(found.kinetic_energy[window], found.time[window]))
+    return 0.5 * math.log(means[1] / means[0]) / (end - half)
+
+
+@pytest.mark.parametrize(("damping", "friction"), [(2000.0, 0.08257), (4000.0, 0.04129), (8000.0, 0.02064)])
+def test_critical_friction_of_the_linear_limit(damping, friction):
+    """sqrt(2 k M/Z)/C_mu = 2 zeta sqrt(2/Z), to the four digits given; whirl at sqrt(Z k/2M)/(2 pi)."""
+    found, zeta = linear_critical_friction(gripped(damping)), math.sqrt(K * M) / (2 * damping)
+    assert found == pytest.approx(friction, abs=5e-6)
+    assert found == pytest.approx(2 * zeta * math.sqrt(2 / Z), rel=1e-14)  # rounding
+    assert linear_whirl_frequency(gripped(damping)) == pytest.approx(2891.2, abs=0.05)  # digits given
+
+
+@pytest.mark.parametrize(
+    ("cage", "duration"),
+    [
+        (gripped(damping_of(0.1)), 0.05),
+        (gripped(damping_of(0.9)), 0.15),
+        (gripped(damping_of(0.6), cage_speed=0.0, traction=LAW), 0.05),
+    ],
+    ids=["eta .1", "eta .9", "one state"],
+)
+def test_a_whirl_decays_below_the_linear_limit_and_grows_above_it(cage, duration):
+    """One per cent below and above, where friction adds f w0/2 of 1 % of itself."""
+    limit = linear_critical_friction(cage)
+    rates = [growth_rate(replace(cage, ball_cage_friction=f * limit), duration) for f in (0.99, 1.01)]
+    assert rates[0] < 0.0 < rates[1]
+
+
+@pytest.mark.parametrize("speed", [0.0, 700.0, 3000.0])
+@pytest.mark.parametrize("law", [None, replace(LAW, slope=2000.0)], ids=["damper", "one state"])
+def test_a_whirl_grows_at_the_rate_of_its_exact_root(speed, law):
+    """Within 0.5 % of what the friction adds: the step leaves 0.05 % with dampers, 0.24 % with masses."""
+    cage = gripped(2000.0, 0.095, cage_speed=speed, traction=law)
+    whirl = max(linear_roots(cage)[np.abs(linear_roots(cage).imag) > 5000], key=lambda root: root.real)
+    added = 0.5 * 0.095 * whirl_rate(cage)
+    found = growth_rate(cage, 0.012)
+    assert found == pytest.approx(whirl.real, abs=0.005 * added)
+
+
+@pytest.mark.parametrize("law", [None, LAW], ids=["damper", "one state"])
+def test_small_motions_are_the_exponentials_of_the_roots(law):
+    """All three or four of them, from the disturbance on: 2e-4 of the motion at half the usual step.
+
+    8e-5 is measured, and 1/16 of it at half of that.
+    """
+    grip = {"cage_speed": 669.0, "pocket_clearance": 0.0, "race_damping": 900.0, "ball_cage_friction": 0.1}
+    cage = replace(TURNING, **grip, traction=law)
+    found = followed(cage, 2e-3, direction=0.3, refine=2)
+    # z and three derivatives at the start: the balls press with q only, and q' = v; times in 1/w0
+    roots, v, w0 = linear_roots(cage), 0.5 * np.exp(0.3j), whirl_rate(cage)
+    turn = cage.cage_speed / w0
+    begun = np.array([0.0, 1.0, -2j * turn, (-2j * turn) ** 2 + turn**2 - (1 - 0.1j)])[: len(roots)] * v / w0
+    share = np.linalg.solve(np.vander(roots / w0, increasing=True).T, begun)
+    exact = np.exp(np.outer(found.time, roots)) @ share
+    np.testing.assert_allclose(found.position @ [1, 1j], exact, rtol=0, atol=2e-4 * np.abs(exact).max())
+
+
+def test_critical_friction_of_balls_of_one_state_is_a_root_that_neither_grows_nor_decays():
+    """And that of dampers as the balls become light."""
+    grip = replace(TURNING, pocket_clearance=0.0, cage_speed=0.0, traction=LAW)
+    found = linear_critical_friction(grip)
+    whirl = [r for r in linear_roots(replace(grip, ball_cage_friction=found)) if abs(r.imag) > 3000.0]
+    assert min(abs(r.real) for r in whirl) < 1e-8 * max(abs(r) for r in whirl)  # the roots' rounding
+    light = linear_critical_friction(replace(grip, traction=replace(LAW, mass=1e-9)))
+    massless = linear_critical_friction(replace(grip, traction=None, race_damping=900.0))
+    assert light == pytest.approx(massless, rel=1e-8)  # mass changes k m_e/C^2, 3.7e-9
+
+
+@pytest.mark.parametrize("changes", [{}, BACKWARD], ids=["inner", "outer"])
+def test_whirl_is_forward_for_inner_rotation_and_backward_for_outer(changes):
+    """2891.2 Hz just above the limit, in the sense of the rotation or against it; 1e-4: digits, step."""
+    cage = gripped(2000.0, 1.05 * 0.08257, **changes)
+    found = run_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=2, duration=0.1))
+    assert set(found.whirl_direction.ravel()) == {-1 if changes else 1}
+    assert found.whirl_frequency == pytest.approx(2891.2, rel=1e-4)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 6e-4])
+def test_a_landless_cage_drifts_at_the_rate_of_the_law(clearance):
+    """2 M Omega^2/(Z C_mu), the slow root, whose next order is 7e-4; 2e-3 with clearance."""
+    cage = gripped(500.0, 0.05, cage_speed=700.0, pocket_clearance=clearance)
+    slow = min(linear_roots(replace(cage, ball_cage_friction=0.0)), key=abs)
+    assert slow.real == pytest.approx(drift_law(cage), rel=1.5e-3)
+    found = run_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=4, duration=0.4))
+    assert found.drift_rate == pytest.approx(drift_law(cage), rel=5e-3 if clearance else 2e-3)
+
+
+PITCH, CRITICAL, TILT = math.radians(25.44303), 0.045720, 0.039251
+"""Of a turbopump's balls; critical friction and tilt of dynamics3d's E9."""
+
+
+def ring(damping: float, friction: float, **change: object) -> MovingCage:
+    """The thin ring of E9 in space: friction has no lever, and follows the spin alone, pitched by beta."""
+    spin = (-1e12 * math.cos(PITCH), 1e12 * math.sin(PITCH), 0.0)
+    return gripped(damping, friction, ball_spin=spin, motion=MotionModel.SPACE, **change)
+
+
+@pytest.fixture
+def no_walls_along_the_axis(monkeypatch):
+    """Pockets that grip along the orbit and are open along the axis, which no input of a cage makes them."""
+    monkeypatch.setattr(numbers, "pocket_rectangle", lambda _: (0.0, numbers.NOWHERE, 0.0))
+
+
+def growth_in_space(cage: MovingCage) -> float:
+    """Mean kinetic energy late in a run over that before."""
+    energy = followed(cage, 0.08, kick=0.05).kinetic_energy
+    return energy[-100:].mean() / energy[100:200].mean()
+
+
+@pytest.mark.usefixtures("no_walls_along_the_axis")
+def test_in_space_a_whirl_grows_above_the_linear_threshold():
+    """E9: sqrt(2 k M/Z)/(C cos b) = .045720; 1 % below and above."""
+    assert linear_critical_friction(ring(4000.0, 0.0)) / math.cos(PITCH) == pytest.approx(CRITICAL, abs=5e-7)
+    ratios = [growth_in_space(ring(4000.0, share * CRITICAL)) for share in (0.99, 1.01)]
+    assert ratios[0] < 1.0 < ratios[1]
+
+
+def test_walls_along_the_axis_raise_the_threshold_in_space():
+    """E9: .0903 at C 2000 with flats as stiff along the axis and balls that creep in their grooves; 2 %."""
+    creeps = {"groove_damping": 370.0, "groove_stiffness": 5.05e6}
+    ratios = [growth_in_space(ring(2000.0, share * 0.0903, **creeps)) for share in (0.98, 1.02)]
+    assert ratios[0] < 1.0 < ratios[1]
+
+
+@pytest.mark.usefixtures("no_walls_along_the_axis")
+def test_in_space_a_whirl_tilts_as_the_linear_law_says():
+    """E9: 2891.193 Hz, and a forced tilt of .039251 of the offset, R^2 M/J_t times the axial friction.
+
+    3e-4 and 2e-5 measured: the sliding of the cage itself, and the step.
+    """
+    there = followed(ring(4000.0, CRITICAL), 0.1, samples=20_001, kick=0.05)
+    late = there.time > 0.05
+    time, w = there.time[late], 2.0 * math.pi * 2891.193
+    waves = np.stack([0.0 * time + 1.0, time, np.exp(1j * w * time), np.exp(-1j * w * time)], 1)
+    offset, tilt = (
+        np.linalg.lstsq(waves, v[late] @ [1.0, 1j], rcond=None)[0] for v in (there.position, there.lean)
+    )
+    turns = np.unwrap(np.angle(there.velocity[late] @ [1.0, 1j])) / (2.0 * math.pi)
+    found = R * np.abs(tilt[2:]).max() / np.abs(offset[2:]).max()
+    assert found == pytest.approx(TILT, rel=1e-3)
+    assert abs(np.polyfit(time, turns, 1)[0]) == pytest.approx(2891.193, rel=5e-5)
