@@ -22,7 +22,7 @@ from separatrix.cage.motion import rates
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import LANES, VX, VY
 from separatrix.compiled import inlined
-from separatrix.study import Guidance, MotionModel, PocketShape, StabilitySettings
+from separatrix.study import MotionModel, PocketShape, StabilitySettings
 
 LAW = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)
 SPIN = {"ball_spin": (-4083.2, 1942.6, -3.5), "ball_diameter": 11.1125e-3}

@@ -165,7 +165,8 @@ def simulate(
     samples : int
         Largest number of rows, evenly spaced; the memory is bounded by it.
     until : float, optional
-        Time that the last row reaches [s]; by default that up to which the run is judged, or 50 turns of its whirl.
+        Time that the last row reaches [s]; by default that up to which the run is judged, or 50 turns of its
+        whirl.
 
     Raises
     ------
