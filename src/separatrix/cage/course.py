@@ -165,8 +165,8 @@ def simulate(
     samples : int
         Largest number of rows, evenly spaced; the memory is bounded by it.
     until : float, optional
-        Time that the last row reaches [s]; by default that up to which the run is judged, or 50 turns of its
-        whirl.
+        Time up to which there are rows, to within one [s]; by default that up to which the run is judged, or
+        50 turns of its whirl.
 
     Raises
     ------
@@ -235,12 +235,11 @@ def follow_start(
         length = float(found["followed"][0])
         if found["outcome"][0] == RunOutcome.WHIRLS and found["whirl_frequency"][0] > 0.0:
             length = max(length, WHIRL_TURNS / float(found["whirl_frequency"][0]))
+    numbers = numbers_of(cage, kick, duration, least=length, refine=refine)
     step = numbers.numbers[of(rows.STEP)]
     every = max(1, math.ceil(length / step / (samples - 1)))
-    count = math.ceil(length / step / every)  # of steps between rows; one row more is there
-    numbers = numbers_of(cage, kick, duration, least=(count * every + 1) * step, refine=refine)
     columns = 2 + states.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count
-    record = np.zeros((count + 1, columns))
+    record = np.zeros((math.ceil(length / step / every) + 1, columns))  # the last row where a look reaches it
     raw = run_rows(numbers.kind, [numbers], states, places, Stop(), real, record=record, every=every)
     return _history(cage, kick, numbers, starts, places, states, raw)
 
