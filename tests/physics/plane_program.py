@@ -18,7 +18,7 @@ from separatrix.units import Array
 
 
 class Course(NamedTuple):
-    """A run at its times, seen from the ball set: centre, rotation [rad], leads, balls' own speeds; SI units."""
+    """A run at its times, seen from the ball set: centre, rotation, leads, balls' own speeds; SI units."""
 
     position: Array
     rotation: Array

@@ -20,7 +20,8 @@ LAW = BallTraction(mass=6.567e-3, slope=188.0, speed=0.39)
 BODY = {
     "ball_spin": (-4083.2, 1942.6, -300.0), "ball_diameter": 11.1125e-3, "pivot_speed": 0.05,
     "unbalance": 2e-6, "gravity": 300.0, "land_stiffness": 1e7, "land_friction": 0.05,
-    "land_restitution": 1.0, "ramp_time": 2e-3, "ramp_start": 0.5, "orbital_cosines": (0.15, 0.05), "orbital_sines": (-0.05, 0.1),
+    "land_restitution": 1.0, "ramp_time": 2e-3, "ramp_start": 0.5,
+    "orbital_cosines": (0.15, 0.05), "orbital_sines": (-0.05, 0.1),
 }  # fmt: skip
 INNER = {"guidance": Guidance.INNER, "land_radius": 0.029, "added_mass": 0.008}
 TIME = 3e-3
