@@ -11,16 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from cages import TURNING
+from cages import AT_REST, TURNING, damping_of
 
 from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage, follow, outcome, rows
-from separatrix.cage.disturbance import Starts, ball_places, start_states
+from separatrix.cage.disturbance import Starts, ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
-from separatrix.cage.numbers import numbers_of
+from separatrix.cage.numbers import look_time, numbers_of
 from separatrix.cage.rows import of
 from separatrix.pocket_shape import PocketShape
-from separatrix.study import Guidance, MotionModel
+from separatrix.study import Guidance, MotionModel, StabilitySettings
 from separatrix.units import Array
 
 R, Z, OMEGA = 32.5e-3, 13, 668.9886
@@ -197,3 +197,33 @@ def test_an_impact_in_space_keeps_momentum_along_the_orbit_and_about_the_axis():
     turning = cage.moment_of_inertia * found.rotation_rate + R * pushed
     np.testing.assert_allclose(linear, linear[0], rtol=3e-8)
     np.testing.assert_allclose(turning, 0.0, atol=1e-7 * R * pushed[-1])
+
+
+def growing(friction: float, **change: object) -> float:
+    """Share of 96 runs of the ring of E10, in bores, with more energy at 0.3 s than at their start."""
+    pitch, kick = math.radians(25.44303), 0.5
+    spin = (
+        -1e12 * math.cos(pitch),
+        1e12 * math.sin(pitch),
+        0.0,
+    )  # friction follows the spin, without a lever
+    ring = {"ball_spin": spin, "ball_diameter": 0.0, "groove_damping": 370.0, "race_damping": damping_of(0.8)}
+    cage = replace(AT_REST, **SPACE | ring, ball_cage_friction=friction, **change)
+    starts = random_starts(cage, StabilitySettings(ball_scatter=0.3), 0, 96)
+    numbers = numbers_of(cage, kick, 0.3, least=0.3)
+    begun, places = start_states(cage, kick, starts), ball_places(cage, starts)
+    raw = run_rows(numbers.kind, [numbers] * 96, begun, places, Stop())
+    energy = raw.looks[:, int(0.3 / look_time(cage)) - 1, of(rows.ENERGY)]
+    return float(np.mean(~(energy < 0.5 * cage.mass * kick**2)))
+
+
+@pytest.mark.parametrize(("held", "friction"), [(False, 0.062), (True, 0.119)])
+def test_a_cage_in_round_bores_that_may_tilt_whirls_at_half_the_friction(held, friction):
+    """E10: half of the runs grow at .062, with tilt held at .119, by another program's 48 runs: 10 %.
+
+    .0640 and .1236 measured, each to 2 % by the number of runs.
+    """
+    frictions = friction * np.linspace(0.85, 1.2, 5)
+    shares = [growing(f, is_tilt_held=held) for f in frictions]
+    slope, offset = np.polyfit(frictions, shares, 1)
+    assert (0.5 - offset) / slope == pytest.approx(friction, rel=0.10)
