@@ -95,7 +95,7 @@ def whirl_probability(found: Ensemble) -> np.ndarray:
 def followed(
     cage: MovingCage, duration: float, *, direction: float = math.pi / 2.0, lead=None, **how: object
 ) -> History:
-    """Follow a run to its whole duration: from 0.5 m/s straight onto ball 0, unless told, without leads."""
+    """Follow a run to its whole duration: from 0.5 m/s straight onto ball 0 and without leads by default."""
     lead = np.zeros(cage.ball_count) if lead is None else lead
     whole = {"kick": 0.5, "duration": duration, "until": duration, "samples": 400}
     return follow(cage, direction=direction, ball_lead=lead, **whole | how)

@@ -53,6 +53,7 @@ def test_a_ball_is_spun_up_by_the_driving_race():
 
 @pytest.mark.parametrize(("slide", "force", "moment"), PIVOTING)
 def test_sliding_and_pivoting_share_the_friction(slide, force, moment):
-    """E3, a circular contact in six strips: .039 of mu N, and .035 of mu N a, are measured at most."""
+    """E3, a circular contact in six strips: 7.7 % of the force and 15.4 % of the moment are their error."""
     found = slip_field.py_func(np.float64(slide), 1.0, 0.0, 0.0, 0.25, 1e-18)
-    assert found[:2] == pytest.approx((force, moment), abs=0.04)
+    assert found[0] == pytest.approx(force, rel=0.08)
+    assert found[1] == pytest.approx(moment, rel=0.16)

@@ -268,7 +268,7 @@ def queue(
         waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
         before, first_rate, middle_rate = np.zeros(each, real), np.zeros(each, real), np.zeros(each, real)
         run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
-        next_run = live = row = 0
+        next_run, live, row, sixth = 0, 0, 0, real(1.0 / 6.0)
         s[RAMP : RAMP + LANES] = ONE
         while stop[0] == 0:
             for l in range(LANES):
@@ -316,7 +316,7 @@ def queue(
                             row += 1
                         if ball == ONE_STATE:
                             hold(s, before, speed, one, balls)
-                    stage_end(stage, s, t, d, q, h)
+                    stage_end(stage, s, t, d, q, h, sixth)
                     if ball == ONE_STATE:
                         held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, speed, one, balls)
             place(t, a, p, space)

@@ -10,8 +10,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from separatrix.cage.closed_forms import moving_mass, rebound_damping
 from separatrix.cage.rows import *
 from separatrix.cage_design import Guidance
@@ -21,14 +19,13 @@ if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage
     from separatrix.units import Metre, MetrePerSecond, NewtonPerMetre, Second
 
-SIXTH = np.float32(1.0 / 6.0)
-
 
 @inlined
-def stage_end(stage, s, t, d, q, h):
+def stage_end(stage, s, t, d, q, h, sixth):
     """State `t` of the next stage, from the rates `d` of this one; after the last, `s` and `t`.
 
-    `h`: length of the step, as often as there are numbers in the state, so that one loop does.
+    `h`: length of the step, as often as there are numbers in the state, so that one loop does; `sixth`: 1/6
+    in the precision of the state.
     """
     if stage < 3:
         keep, gain = ZERO if stage == 0 else ONE, ONE if stage == 0 else TWO
@@ -38,7 +35,7 @@ def stage_end(stage, s, t, d, q, h):
             t[e] = s[e] + ahead * h[e] * d[e]
     else:
         for e in range(s.size):
-            s[e] += SIXTH * h[e] * (q[e] + d[e])
+            s[e] += sixth * h[e] * (q[e] + d[e])
             t[e] = s[e]
 
 
