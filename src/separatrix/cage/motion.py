@@ -17,24 +17,22 @@ from separatrix.compiled import inlined
 
 
 @inlined
-def rates(s, d, a, p, places, strips, balls, ball, space, level, lobe_number):
-    """Rates `d` of the state `s`; what the forces add up to in `a`."""
+def rates(s, d, of_balls, rates_of, a, p, places, strips, ball, space, level, lobe_number):
+    """Rates `d` of the state `s`; `of_balls`, `rates_of`: their parts by ball; the sums of forces in `a`."""
     place(s, a, p, space)
-    ball_rates(s, d, a, p, places, balls, ball, space, level)
+    ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level)
     land_forces(s, a, p, strips, lobe_number, space)
     cage_rates(s, d, a, p, space)
 
 
 @inlined
-def ball_rates(s, d, a, p, places, balls, ball, space, level):
+def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
     """Rates of every ball, and the sums of what all of them do to the cage."""
-    first, speed = SPACE_STATES if space else PLANE_STATES, (2 if space else 1) * LANES
-    size = speed + (0 if ball == DAMPER else 1 if ball == ONE_STATE else 4) * LANES
+    speed = (2 if space else 1) * LANES
     for e in range(LX):
         a[e] = ZERO
-    for j in range(balls):
-        b, db = s[first + j * size : first + (j + 1) * size], d[first + j * size : first + (j + 1) * size]
-        q = places[j * BALL_ROWS : (j + 1) * BALL_ROWS]
+    for j in range(places.shape[0]):
+        b, db, q = of_balls[j], rates_of[j], places[j]
         for l in range(LANES):
             c, n, radius, lever = q[COSINE + l], q[SINE + l], p[RADIUS + l], p[LEVER + l]
             ramp, turning = s[RAMP + l], s[VS + l] * p[PER_RADIUS + l]
@@ -92,12 +90,12 @@ def ball_rates(s, d, a, p, places, balls, ball, space, level):
             a[DRIVE + l] += push * (nz * uz + nt * u) if space else push * nt * u
             if ball == ONE_STATE:
                 v = b[speed + l]
-                slope, per = p[SLOPE + l], ONE / ramp
+                slope, per = p[SLOPE + l], a[PER_RAMP + l]
                 bent = traction(v * per, slope, p[PER_KNEE + l]) + slope * v * (per - ONE)
                 # its linear part at full speed, -HELD_RATE v, is taken exactly by the step
                 db[speed + l] = p[HELD_RATE + l] * REST_SPEED - (ft + bent) * p[PER_BALL_MASS + l]
             if ball == FREE:
-                per, v = ONE / ramp, b[speed + l]
+                per, v = a[PER_RAMP + l], b[speed + l]
                 per_m, per_j, per_r = p[PER_OWN_MASS + l], p[PER_OWN_INERTIA + l], p[PER_RADIUS + l]
                 om, w = ramp * p[ORBIT + l], v * per_r
                 dz, dr = b[speed + LANES + l], b[speed + 2 * LANES + l]

@@ -148,7 +148,7 @@ def numbers_of(
         harmonics=len(cage.orbital_cosines),
         steps=steps,
     )
-    return Numbers(kind, n, strips.ravel(), waves, _limits(cage, kick, duration, least, look))
+    return Numbers(kind, n, strips, waves, _limits(cage, kick, duration, least, look))
 
 
 def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) -> None:

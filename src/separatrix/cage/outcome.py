@@ -5,7 +5,7 @@ The rules, in their order, after each look; the constants are shares and multipl
 unless they say another:
 
 1. no number any more, or a ball at the edge of its pocket's wall: UNRESOLVED;
-2. more energy than `GROWN` times that of the initial disturbance and E together: WHIRLS;
+2. more energy at any moment than `GROWN` times that of the initial disturbance and E together: WHIRLS;
 3. at rest for two looks: SETTLES;
 4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS; but what
    friction on the
@@ -118,14 +118,14 @@ def stays(looks, first, last):
 
 
 @part
-def end_of_motion(looks, i, touched, limits):
-    """Outcome and cause after look i; `UNKNOWN` if the end is not plain."""
+def end_of_motion(looks, i, touched, has_grown, limits):
+    """Outcome and cause after look i, which ended early if the run `has_grown`; `UNKNOWN` if not plain."""
     energy, drive, end = looks[i, ENERGY], limits[DRIVE], i + 1
     if not math.isfinite(energy):
         return UNRESOLVED, NOT_FINITE
     pocket, land, put_in = fed(looks, max(0, end - TEN), end)
     by_land = land > 0.5 * put_in and pocket <= 0.0
-    if energy > limits[GROWS]:
+    if has_grown:
         return WHIRLS, BY_LAND if by_land else BY_NOTHING
     seen = end - int(limits[FROM])
     settled = DRIFTS if limits[IS_ADRIFT] > 0.0 else SETTLES

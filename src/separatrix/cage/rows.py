@@ -40,6 +40,7 @@ DAMPER, ONE_STATE, FREE = 0, 1, 2
     LAND_GAP, LOBE, LOBE_SLOPE, LAND_FRICTION, LAND_STOPS, LAND_LEVER, RING_SLIDE,
     PER_OWN_MASS, PER_OWN_INERTIA, INNER,
 ) = _places(52)  # fmt: skip
+HELD_NUMBERS = of(GAIN_LAST - DECAY_HALF) + 1
 RACE_ROWS = 12 * LANES
 OUTER = INNER + RACE_ROWS
 NUMBERS = OUTER + RACE_ROWS
@@ -66,8 +67,8 @@ LEAD, GROOVE = _places(2)
 # What the forces of a moment add up to.
 (
     FX, FY, FS, FZ, MX, MY, RUB, DRIVE, LX, LY, LS, LZ, LMX, LMY, LAND_RUB, LAND_PRESS, LAND_N, LAND_HEAT,
-    GX, GY, GVX, GVY, GA, GB, GWA, GWB, TURN, RAMP_NOW, SUMS,
-) = _places(29)  # fmt: skip
+    GX, GY, GVX, GVY, GA, GB, GWA, GWB, TURN, PER_RAMP, RAMP_NOW, SUMS,
+) = _places(30)  # fmt: skip
 
 # What is watched of a run, as a sum over the steps of a look.
 (

@@ -16,6 +16,7 @@ from separatrix.cage.frame import place
 from separatrix.cage.motion import rates
 from separatrix.cage.outcome import (
     BY_WALL,
+    GROWS,
     LEAST,
     RAMP_START,
     RAMP_TIME,
@@ -26,12 +27,15 @@ from separatrix.cage.outcome import (
 )
 from separatrix.cage.pocket_force import pocket_depth
 from separatrix.cage.rows import *
-from separatrix.cage.step import held_stage_end, hold, stage_end
+from separatrix.cage.step import held_stage_end, stage_end
 from separatrix.compiled import inlined, kernel, part
 
-OUTCOME, CAUSE, ENDED, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(8)
+OUTCOME, CAUSE, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(7)
 RAMP_UP = np.float32(1e-6)
 """What a ramp may lack of full speed at its end: some roundings in single precision."""
+
+GLANCE = 8
+"""Steps between two glances at whether a run has grown too far to go on."""
 
 EVIDENCE_COLUMNS = FIRST_EXTREME + of(EXTREMES_END - WATCHED)
 """What is written of a run; after these the extremes of `rows`, in their order."""
@@ -43,11 +47,11 @@ def extreme(row: int) -> int:
 
 
 @inlined
-def orbit_speeds(s, places, waves, turned, balls):
+def orbit_speeds(s, places, waves, turned):
     """Speed of every ball's free orbit beyond that of the ball set, at its azimuth in space."""
     power = turned[2 * LANES :]
-    for j in range(balls):
-        q = places[j * BALL_ROWS : (j + 1) * BALL_ROWS]
+    for j in range(places.shape[0]):
+        q = places[j]
         for l in range(LANES):
             c, n = s[TURN_COSINE + l], s[TURN_SINE + l]
             turned[l] = power[l] = q[COSINE + l] * c - q[SINE + l] * n
@@ -79,23 +83,22 @@ def kinetic_energy(s, p, l, space):
 
 
 @part
-def stored_energy(s, a, p, places, l, balls, one, space):
+def stored_energy(s, of_balls, a, p, places, l, space):
     """Kinetic energy of the cage, and that in the pockets' springs; `a` has its geometric centre."""
-    total, first = float(kinetic_energy(s, p, l, space)), SPACE_STATES if space else PLANE_STATES
-    for j in range(balls):
-        b, q = first + j * one + l, j * BALL_ROWS + l
-        c, n = places[q + COSINE], places[q + SINE]
-        along = a[GY + l] * c - a[GX + l] * n + s[S + l] - s[b + LEAD]
+    total = float(kinetic_energy(s, p, l, space))
+    for b, q in zip(of_balls, places):  # noqa: B905 - numba knows no `strict`
+        c, n = q[COSINE + l], q[SINE + l]
+        along = a[GY + l] * c - a[GX + l] * n + s[S + l] - b[LEAD + l]
         across = p[OFFSET + l]
         if space:
-            across = s[Z + l] - p[RADIUS + l] * (a[GB + l] * c - a[GA + l] * n) - s[b + GROOVE]
-        depth = pocket_depth(along, across, places[q + AROUND], places[q + APART], p[BESIDE + l])[0]
+            across = s[Z + l] - p[RADIUS + l] * (a[GB + l] * c - a[GA + l] * n) - b[GROOVE + l]
+        depth = pocket_depth(along, across, q[AROUND + l], q[APART + l], p[BESIDE + l])[0]
         total += (0.5 * p[STIFFNESS + l] + 0.4 * p[HERTZ + l] * math.sqrt(depth)) * depth * depth
     return total
 
 
 @inlined
-def watch(s, d, a, p, places, w, balls, step, space):
+def watch(s, d, a, p, places, w, step, space):
     """Add what is watched of this moment to the sums of the look and the extremes of the run."""
     for l in range(LANES):
         x, y, gvx, gvy = a[GX + l], a[GY + l], a[GVX + l], a[GVY + l]
@@ -131,8 +134,8 @@ def watch(s, d, a, p, places, w, balls, step, space):
             w[PEAK_TILT + l] = max(w[PEAK_TILT + l], tilt)
             w[AXIAL_LOW + l] = min(w[AXIAL_LOW + l], z)
             w[AXIAL_HIGH + l] = max(w[AXIAL_HIGH + l], z)
-    for j in range(balls):
-        q, number = places[j * BALL_ROWS : (j + 1) * BALL_ROWS], np.float32(j + 1)
+    for j in range(places.shape[0]):
+        q = places[j]
         for l in range(LANES):
             push = q[FORCE + l]
             on = ONE if push > ZERO else ZERO
@@ -142,12 +145,30 @@ def watch(s, d, a, p, places, w, balls, step, space):
             q[RUBBED + l] += q[HEAT + l]
             w[STRIKES + l] += strike
             w[PEAK_FORCE + l] = max(w[PEAK_FORCE + l], push)
-            out = a[GX + l] * q[COSINE + l] + a[GY + l] * q[SINE + l]
-            beyond = max(out - p[MARGIN_IN + l], -out - p[MARGIN_OUT + l])
-            was, when = w[LEFT_BALL + l], w[LEFT_STEP + l]
-            is_first = (beyond > ZERO) & (push > ZERO) & (was == ZERO)
-            w[LEFT_BALL + l] = number if is_first else was
-            w[LEFT_STEP + l] = step if is_first else when
+    if is_far(w, p):
+        for j in range(places.shape[0]):
+            watch_walls(a, p, places[j], w, np.float32(j + 1), step)
+
+
+@part
+def is_far(w, p):
+    """Whether a cage has been so far out that a ball may have met the edge of its pocket's wall."""
+    far = False
+    for l in range(LANES):
+        far |= w[PEAK_OFFSET + l] > min(p[MARGIN_IN + l], p[MARGIN_OUT + l])
+    return far
+
+
+@inlined
+def watch_walls(a, p, q, w, number, step):
+    """Note the first ball that its pocket pushes where the pocket's wall has ended."""
+    for l in range(LANES):
+        out = a[GX + l] * q[COSINE + l] + a[GY + l] * q[SINE + l]
+        beyond = max(out - p[MARGIN_IN + l], -out - p[MARGIN_OUT + l])
+        was, when = w[LEFT_BALL + l], w[LEFT_STEP + l]
+        is_first = (beyond > ZERO) & (q[FORCE + l] > ZERO) & (was == ZERO)
+        w[LEFT_BALL + l] = number if is_first else was
+        w[LEFT_STEP + l] = step if is_first else when
 
 
 @part
@@ -168,13 +189,23 @@ def take(numbers, into, l):
 
 
 @part
-def take_places(numbers, places, l, balls):
+def take_decay(held, p, l, first, one):
+    """Put the gains of a step into its lane: those of the speeds of balls, others that decay by nothing."""
+    h = p[STEP + l]
+    plain = (1.0, 0.5 * h, 1.0, h / 6.0, h / 3.0, h / 6.0)
+    for k in range(HELD_NUMBERS):
+        held[k, l::LANES] = plain[k]
+        held[k, first + l :: one] = p[DECAY_HALF + k * LANES + l]
+
+
+@part
+def take_places(numbers, places, l):
     """Put the numbers of the balls of a run into its lane, and forget what was kept of the last one."""
     each = BALL_NUMBERS // LANES
-    places[l::LANES] = ZERO
-    for j in range(balls):
+    places[:, l::LANES] = ZERO
+    for j in range(places.shape[0]):
         for i in range(each):
-            places[j * BALL_ROWS + i * LANES + l] = numbers[j * each + i]
+            places[j, i * LANES + l] = numbers[j * each + i]
 
 
 @part
@@ -187,15 +218,18 @@ def begin_look(s, limits, time, l):
 
 
 @part
-def end_look(found, at, w, s, kept, steps, step, l):
-    """Write means, works and extremes of a look, and what the ledger of energy leaves open."""
+def write_look(found, at, w, s, kept, moments, steps, step, l):
+    """Write means, works and extremes of a look, and what the ledger of energy leaves open.
+
+    Of a look that ends before its last step, after some `moments`, the works are those of a whole one.
+    """
     for column in range(WATCHED // LANES):
-        found[column] = w[column * LANES + l] / steps
+        found[column] = w[column * LANES + l] / moments
     found[STRIKES // LANES] /= step
     works = done = 0.0
     for i in range((FRAME_WORK - POCKET_WORK) // LANES + 1):
         work = s[POCKET_WORK + i * LANES + l]
-        found[WORK_POCKET // LANES + i] = work
+        found[WORK_POCKET // LANES + i] = work * (steps / moments)
         works += work
         done += abs(work)
     at[OPEN] += abs(kept - works)
@@ -208,14 +242,32 @@ def end_look(found, at, w, s, kept, steps, step, l):
 def count_impacts(hits, heat, places, step, l):
     """Add impacts and heat of every pocket since the last look."""
     for j in range(hits.size):
-        q = j * BALL_ROWS + l
-        hits[j] += places[q + HITS]
-        heat[j] += places[q + RUBBED] * step
-        places[q + HITS] = places[q + RUBBED] = ZERO
+        hits[j] += places[j, HITS + l]
+        heat[j] += places[j, RUBBED + l] * step
+        places[j, HITS + l] = places[j, RUBBED + l] = ZERO
 
 
 @part
-def write_row(row, time, s, a, places, balls):
+def end_look(
+    n, look, moments, steps, looks, evidence, hits_of, heat_of, numbers, limits, w, s, places, kept, l
+):  # fmt: skip
+    """Write the look of a run, and judge it; whether the run has ended."""
+    found, at, step = looks[n, look], evidence[n], numbers[n, STEP // LANES]
+    write_look(found, at, w, s, kept, moments, steps, step, l)
+    count_impacts(hits_of[n], heat_of[n], places, step, l)
+    if at[OUTCOME] == UNKNOWN:
+        touched = w[PEAK_FORCE + l] + w[PEAK_LAND + l] > ZERO
+        at[OUTCOME], at[CAUSE] = end_of_motion(looks[n], look, touched, moments < steps, limits[n])
+        at[JUDGED] = look + moments / steps
+        if w[LEFT_BALL + l] > ZERO:
+            at[OUTCOME], at[CAUSE] = UNRESOLVED, BY_WALL
+            at[LEFT_AT] = (look * steps + w[LEFT_STEP + l]) * step
+    is_over = look + 1 >= limits[n, LEAST] or not math.isfinite(found[ENERGY // LANES])
+    return is_over and at[OUTCOME] != UNKNOWN
+
+
+@part
+def write_row(row, time, s, a, places):
     """Time, state, geometric centre and axis, forces of the pockets and of the land, of the first lane."""
     row[0] = time
     n = 1
@@ -225,8 +277,8 @@ def write_row(row, time, s, a, places, balls):
     for e in range(GX, GWB + LANES, LANES):
         row[n] = a[e]
         n += 1
-    for j in range(balls):
-        row[n] = places[j * BALL_ROWS + FORCE]
+    for j in range(places.shape[0]):
+        row[n] = places[j, FORCE]
         n += 1
     row[n] = a[LAND_N]
 
@@ -248,14 +300,14 @@ def queue(
     `every` so many steps; `stop`: a flag.
     """
     states, one = LANES * cage_states(space=space), LANES * ball_states(ball, space=space)
-    speed = states + (2 if space else 1) * LANES
+    speed = (2 if space else 1) * LANES
 
     def run_queue(
         start, numbers, places_of, strips_of, waves_of, limits, steps, looks, evidence, hits_of, heat_of,
         record, every, stop,
     ):  # fmt: skip
         balls = hits_of.shape[1]
-        size, each = states + one * balls, balls * LANES
+        size = states + one * balls
         s, t, d, q, h = (
             np.zeros(size, real),
             np.zeros(size, real),
@@ -264,9 +316,12 @@ def queue(
             np.zeros(size, real),
         )
         a, w, p = np.zeros(SUMS, real), np.zeros(EXTREMES_END, real), np.ones(NUMBERS, real)
-        places, strips = np.zeros(balls * BALL_ROWS, real), np.zeros(strips_of.shape[1] * LANES, real)
+        t_balls, d_balls = t[states:].reshape(balls, one), d[states:].reshape(balls, one)
+        places = np.zeros((balls, BALL_ROWS), real)
+        strips = np.zeros((strips_of.shape[1], STRIP_NUMBERS), real)
         waves, turned = np.zeros(waves_of.shape[1] * LANES, real), np.zeros(4 * LANES, real)
-        before, first_rate, middle_rate = np.zeros(each, real), np.zeros(each, real), np.zeros(each, real)
+        held = np.zeros((HELD_NUMBERS, size if ball == ONE_STATE else 0), real)
+        first = np.zeros(held.shape[1], real)
         run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
         next_run, live, row, sixth = 0, 0, 0, real(1.0 / 6.0)
         s[RAMP : RAMP + LANES] = ONE
@@ -280,10 +335,12 @@ def queue(
                         next_run, live = next_run + 1, live + 1
                         take(start[n], s, l)
                         take(numbers[n], p, l)
-                        take(strips_of[n], strips, l)
+                        take(strips_of[n].ravel(), strips.ravel(), l)
                         take(waves_of[n], waves, l)
-                        take_places(places_of[n], places, l, balls)
+                        take_places(places_of[n], places, l)
                         h[l::LANES] = p[STEP + l]
+                        if ball == ONE_STATE:
+                            take_decay(held, p, l, states + speed, one)
                         if space:
                             w[AXIAL_LOW + l] = w[AXIAL_HIGH + l] = s[Z + l]
                 if run[l] >= 0:
@@ -297,13 +354,13 @@ def queue(
                 speed_up(s, a, p)
                 for stage in range(4):
                     if waves.size > 0:
-                        orbit_speeds(t, places, waves, turned, balls)
-                    rates(t, d, a, p, places, strips, balls, ball, space, level, lobe_number)
+                        orbit_speeds(t, places, waves, turned)
+                    rates(t, d, t_balls, d_balls, a, p, places, strips, ball, space, level, lobe_number)
                     if stage == 0:
                         if i == 0:
                             for l in range(LANES):
-                                had[l] = stored_energy(s, a, p, places, l, balls, one, space)
-                        watch(s, d, a, p, places, w, balls, np.float32(i), space)
+                                had[l] = stored_energy(t, t_balls, a, p, places, l, space)
+                        watch(s, d, a, p, places, w, np.float32(i), space)
                         if row < record.shape[0] and (look[0] * steps + i) % every == 0:
                             write_row(
                                 record[row],
@@ -311,34 +368,38 @@ def queue(
                                 s,
                                 a,
                                 places,
-                                balls,
                             )
                             row += 1
-                        if ball == ONE_STATE:
-                            hold(s, before, speed, one, balls)
-                    stage_end(stage, s, t, d, q, h, sixth)
+                        if i % GLANCE == GLANCE - 1:
+                            for l in range(LANES):
+                                n = run[l]
+                                if n < 0 or evidence[n, OUTCOME] != UNKNOWN:
+                                    continue
+                                if kinetic_energy(s, p, l, space) > limits[n, GROWS]:
+                                    kept = stored_energy(t, t_balls, a, p, places, l, space) - had[l]
+                                    if end_look(
+                                        n, look[l], i + 1, steps, looks, evidence, hits_of, heat_of, numbers,
+                                        limits, w, s, places, kept, l,
+                                    ):  # fmt: skip
+                                        run[l], look[l], live = -1, -1, live - 1
                     if ball == ONE_STATE:
-                        held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, speed, one, balls)
+                        held_stage_end(stage, s, t, d, first, q, held)
+                    else:
+                        stage_end(stage, s, t, d, q, h, sixth)
             place(t, a, p, space)
             for l in range(LANES):
                 n = run[l]
                 if n < 0:
                     continue
-                found, at, step = looks[n, look[l]], evidence[n], numbers[n, STEP // LANES]
-                kept = stored_energy(s, a, p, places, l, balls, one, space) - had[l]
-                end_look(found, at, w, s, kept, steps, step, l)
-                count_impacts(hits_of[n], heat_of[n], places, step, l)
-                touched = w[PEAK_FORCE + l] + w[PEAK_LAND + l] > ZERO
-                if at[OUTCOME] == UNKNOWN:
-                    at[OUTCOME], at[CAUSE] = end_of_motion(looks[n], look[l], touched, limits[n])
-                    at[JUDGED] = look[l] + 1
-                    if w[LEFT_BALL + l] > ZERO:
-                        at[OUTCOME], at[CAUSE] = UNRESOLVED, BY_WALL
-                        at[LEFT_AT] = (look[l] * steps + w[LEFT_STEP + l]) * step
+                has_ended = False
+                if evidence[n, JUDGED] <= look[l]:  # else it had grown too far within the look
+                    kept = stored_energy(t, t_balls, a, p, places, l, space) - had[l]
+                    has_ended = end_look(
+                        n, look[l], steps, steps, looks, evidence, hits_of, heat_of, numbers, limits, w, s,
+                        places, kept, l,
+                    )  # fmt: skip
                 look[l] += 1
-                at[ENDED] = look[l]
-                is_finite = math.isfinite(found[ENERGY // LANES])
-                if at[OUTCOME] != UNKNOWN and (look[l] >= limits[n, LEAST] or not is_finite):
+                if has_ended:
                     look[l], live = -1, live - 1
 
     if equations is None:

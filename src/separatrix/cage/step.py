@@ -40,36 +40,26 @@ def stage_end(stage, s, t, d, q, h, sixth):
 
 
 @inlined
-def hold(s, before, first, size, balls):
-    """Keep the speeds of balls of one state from before the step."""
-    for j in range(balls):
-        for l in range(LANES):
-            before[j * LANES + l] = s[first + j * size + l]
+def held_stage_end(stage, s, t, d, first, middle, held):
+    """The same where balls have one state, whose decay is exact; `held`: gains of every number of the state.
 
-
-@inlined
-def held_stage_end(stage, s, t, d, before, first_rate, middle_rate, p, first, size, balls):
-    """The same for the speeds of balls of one state, whose decay is exact; `before` is `s` before the step.
-
-    It follows `stage_end`, and replaces what that did to them.
+    A number that does not decay takes the step of `stage_end`.
     """
-    for j in range(balls):
-        for l in range(LANES):
-            e, i = first + j * size + l, j * LANES + l
-            half, gain, v, rate = p[DECAY_HALF + l], p[GAIN_HALF + l], before[i], d[e]
-            if stage == 0:
-                first_rate[i] = rate
-                t[e] = half * v + gain * rate
-            elif stage == 1:
-                middle_rate[i] = rate
-                t[e] = half * v + gain * rate
-            elif stage == 2:
-                middle_rate[i] += rate
-                t[e] = half * (half * v + gain * first_rate[i]) + gain * (TWO * rate - first_rate[i])
-            else:
-                s[e] = p[DECAY + l] * v + p[GAIN_FIRST + l] * first_rate[i]
-                s[e] += p[GAIN_MIDDLE + l] * middle_rate[i] + p[GAIN_LAST + l] * rate
-                t[e] = s[e]
+    half, gain, whole, by_first, by_middle, by_last = held[0], held[1], held[2], held[3], held[4], held[5]
+    for e in range(s.size):
+        rate = d[e]
+        if stage == 0:
+            first[e] = rate
+            t[e] = half[e] * s[e] + gain[e] * rate
+        elif stage == 1:
+            middle[e] = rate
+            t[e] = half[e] * s[e] + gain[e] * rate
+        elif stage == 2:
+            middle[e] += rate
+            t[e] = half[e] * (half[e] * s[e] + gain[e] * first[e]) + gain[e] * (TWO * rate - first[e])
+        else:
+            s[e] = whole[e] * s[e] + (by_first[e] * first[e] + by_middle[e] * middle[e] + by_last[e] * rate)
+            t[e] = s[e]
 
 
 def exact_decay(rate: float, step: float) -> tuple[float, float, float, float, float, float]:
