@@ -267,6 +267,25 @@ def end_look(
 
 
 @part
+def end_grown(
+    i, steps, run, look, had, looks, evidence, hits_of, heat_of, numbers, limits, w, s, of_balls, a, p,
+    places, space,
+):  # fmt: skip
+    """End within their look the runs that have grown too far; how many leave their lanes."""
+    ended = 0
+    for l in range(LANES):
+        n = run[l]
+        if n < 0 or evidence[n, OUTCOME] != UNKNOWN or kinetic_energy(s, p, l, space) <= limits[n, GROWS]:
+            continue
+        kept = stored_energy(s, of_balls, a, p, places, l, space) - had[l]
+        if end_look(
+            n, look[l], i, steps, looks, evidence, hits_of, heat_of, numbers, limits, w, s, places, kept, l
+        ):
+            run[l], look[l], ended = -1, -1, ended + 1
+    return ended
+
+
+@part
 def write_row(row, time, s, a, places):
     """Time, state, geometric centre and axis, forces of the pockets and of the land, of the first lane."""
     row[0] = time
@@ -351,6 +370,14 @@ def queue(
             w[:WATCHED] = ZERO
             t[:] = s
             for i in range(steps):
+                if i % GLANCE == GLANCE - 1:
+                    place(t, a, p, space)
+                    live -= end_grown(
+                        i, steps, run, look, had, looks, evidence, hits_of, heat_of, numbers, limits, w, t,
+                        t_balls, a, p, places, space,
+                    )  # fmt: skip
+                    if run.max() < 0:
+                        break
                 speed_up(s, a, p)
                 for stage in range(4):
                     if waves.size > 0:
@@ -370,18 +397,6 @@ def queue(
                                 places,
                             )
                             row += 1
-                        if i % GLANCE == GLANCE - 1:
-                            for l in range(LANES):
-                                n = run[l]
-                                if n < 0 or evidence[n, OUTCOME] != UNKNOWN:
-                                    continue
-                                if kinetic_energy(s, p, l, space) > limits[n, GROWS]:
-                                    kept = stored_energy(t, t_balls, a, p, places, l, space) - had[l]
-                                    if end_look(
-                                        n, look[l], i + 1, steps, looks, evidence, hits_of, heat_of, numbers,
-                                        limits, w, s, places, kept, l,
-                                    ):  # fmt: skip
-                                        run[l], look[l], live = -1, -1, live - 1
                     if ball == ONE_STATE:
                         held_stage_end(stage, s, t, d, first, q, held)
                     else:
