@@ -9,14 +9,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix import figures
-from separatrix.figures.animation import animate
-from separatrix.figures.cage_page import write_page
 from separatrix.messages import harmless
-from separatrix.present import dataset, in_words, save
+from separatrix.present import in_words
 from separatrix.staged import staged
-from separatrix.workbook import results_workbook
-from separatrix.workbook_files import add_table, new_workbook, text_for_cell, workbook_bytes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,7 +34,7 @@ def save_answer(
     animation: str | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Write the files of an answer into a folder, all or none.
+    """Write the files of an answer into a folder, all or none; of an interrupted one its document and text.
 
     Parameters
     ----------
@@ -64,10 +59,17 @@ def save_answer(
     with staged(folder) as stage:
         for suffix, content in ((".json", written(found)), (".txt", in_words(*asked, full=True))):
             (stage / f"{verb}{suffix}").write_text(harmless(content), encoding="utf-8")
+        if verb in WITHOUT_DATA or not found.get("complete", True):
+            return
+        # what follows takes seconds to load
+        from separatrix import figures
+        from separatrix.figures.animation import animate
+        from separatrix.figures.cage_page import write_page
+        from separatrix.present import dataset, save
+        from separatrix.workbook import results_workbook
+
         if verb == "rank":
             results_workbook(found, stage / "rank.xlsx")
-        if verb in WITHOUT_DATA:
-            return
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
         data = dataset(*asked)
         save(data, stage / f"{verb}.nc")
@@ -88,6 +90,8 @@ def written(found: Document) -> str:
 
 def _write_tables(data: xr.Dataset, folder: Path) -> None:
     """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
+    from separatrix.workbook_files import add_table, new_workbook, text_for_cell, workbook_bytes
+
     names = [str(name) for name in data.variables if data[name].dims == ("case",)]
     heads = [f"{name} [{unit}]" if (unit := data[name].attrs.get("units")) else name for name in names]
     rows = [
