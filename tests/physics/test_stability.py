@@ -89,7 +89,7 @@ def test_the_curve_falls_with_the_restitution_factor(points):
 
 def test_the_number_of_threads_changes_nothing():
     """One thread, two and eight give the same curve, its points among it, to the last bit."""
-    given = replace(SETTINGS, runs=4, duration=0.02, kicks=(0.2, 1.0))
+    given = replace(SETTINGS, runs=4, duration=4e-3, kicks=(0.2, 1.0))
     settings = replace(given, restitution_factors=(0.4, 0.8))
     one, two, eight = (stability_curve(CAGE, settings, runner=Runner(jobs=jobs)) for jobs in (1, 2, 8))
     assert one == two == eight

@@ -248,7 +248,7 @@ def test_an_interrupt_leaves_a_ranking_that_says_so_and_goes_on(tmp_path):
             raise KeyboardInterrupt
 
     two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
-    long = replace(QUICK, runs=512)
+    long = replace(QUICK, runs=64)
     study, ledger = quick_study(ranking=two, stability=long), Ledger(tmp_path / NAME)
     with pytest.raises(Interrupted) as caught:
         rank(study, runner=Runner(progress=stop, ledger=ledger))

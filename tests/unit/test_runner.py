@@ -325,8 +325,8 @@ def test_a_file_that_is_no_ledger_is_refused(tmp_path):
 STUDY = """
 extends = "momentum-wheel"
 [stability]
-duration = "20 ms"
-runs = 24
+duration = "10 ms"
+runs = 16
 [ranking]
 friction_scatter = 0.2
 """
@@ -337,6 +337,7 @@ LONG_VERBS = {
 }
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("verb", LONG_VERBS)
 def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, capsys):
     """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
