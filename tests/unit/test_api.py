@@ -20,6 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarni
 SMALL = """
 extends = "momentum-wheel"
 [stability]
+kicks = ["0.4 m/s"]
 runs = 4
 duration = "2 ms"
 restitution_factors = [0.4, 0.6]

@@ -325,14 +325,15 @@ def test_a_file_that_is_no_ledger_is_refused(tmp_path):
 STUDY = """
 extends = "momentum-wheel"
 [stability]
-duration = "10 ms"
+kicks = ["0.4 m/s"]
+duration = "5 ms"
 runs = 16
 [ranking]
 friction_scatter = 0.2
 """
 LONG_VERBS = {
     "rank": [],
-    "map": ["--points", "8"],
+    "map": ["--points", "6"],
     "sweep": ["--vary", "ball_cage_friction=0.1..0.4:6", "--verdicts"],
 }
 
