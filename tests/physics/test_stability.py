@@ -154,7 +154,7 @@ def test_an_interrupted_curve_keeps_its_points_and_says_so():
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as stop:
-        stability_curve(CAGE, replace(SETTINGS, runs=8, duration=0.02), runner=Runner(progress=interrupt))
+        stability_curve(CAGE, replace(SETTINGS, runs=8, duration=5e-3), runner=Runner(progress=interrupt))
     found = stop.value.finished
     assert 2 <= len(found.curve) < 5
     limits = [one.restitution_factor for one in found.linear_limit]
