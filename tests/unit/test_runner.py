@@ -305,7 +305,8 @@ def test_a_key_depends_on_the_last_bit():
 
 def test_more_runs_go_on_from_fewer(tmp_path):
     """A curve with as many runs again takes those of the first from the ledger."""
-    ledger, settings = Ledger(tmp_path / NAME), replace(QUICK, kicks=(0.5,), runs=8, restitution_factors=(0.5,))
+    ledger = Ledger(tmp_path / NAME)
+    settings = replace(QUICK, kicks=(0.5,), runs=8, restitution_factors=(0.5,))
     stability_curve(CAGE, settings, runner=Runner(ledger=ledger))
     assert ledger.taken == 0
     stability_curve(CAGE, replace(settings, restitution_factors=(0.5, 0.6)), runner=Runner(ledger=ledger))
