@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import separatrix
 
 study = separatrix.read_study("momentum-wheel")
-quick = replace(study.stability, runs=16, duration=0.05)
+quick = replace(study.stability, kicks=(0.4,), runs=8, duration=0.05)
 first = replace(study, stability=quick)
 second = replace(first, cage=replace(study.cage, pocket_clearance=0.15e-3))
 

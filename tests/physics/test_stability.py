@@ -89,7 +89,7 @@ def test_the_curve_falls_with_the_restitution_factor(points):
 
 def test_the_number_of_threads_changes_nothing():
     """One thread, two and eight give the same curve, its points among it, to the last bit."""
-    given = replace(SETTINGS, runs=4, duration=0.02, kicks=(0.2, 1.0))
+    given = replace(SETTINGS, runs=4, duration=4e-3, kicks=(0.2, 1.0))
     settings = replace(given, restitution_factors=(0.4, 0.8))
     one, two, eight = (stability_curve(CAGE, settings, runner=Runner(jobs=jobs)) for jobs in (1, 2, 8))
     assert one == two == eight
@@ -154,7 +154,7 @@ def test_an_interrupted_curve_keeps_its_points_and_says_so():
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as stop:
-        stability_curve(CAGE, replace(SETTINGS, runs=8, duration=0.02), runner=Runner(progress=interrupt))
+        stability_curve(CAGE, replace(SETTINGS, runs=8, duration=5e-3), runner=Runner(progress=interrupt))
     found = stop.value.finished
     assert 2 <= len(found.curve) < 5
     limits = [one.restitution_factor for one in found.linear_limit]

@@ -5,15 +5,24 @@ from __future__ import annotations
 import json
 import sqlite3
 import sys
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import pytest
 
+from separatrix.app.worker import work
 from separatrix.cli import main
 from separatrix.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 """The real command, as a process is started with."""
+
+
+def work_undrawn(pipe: Connection) -> None:
+    """Compute for the page as `separatrix.app.worker.work` does, but leave pictures out."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("separatrix.figures.save_all", lambda *_: None)
+        work(pipe)
 
 
 def document(capsys, *arguments: str, status: int = 0) -> dict:

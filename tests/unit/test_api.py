@@ -20,6 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarni
 SMALL = """
 extends = "momentum-wheel"
 [stability]
+kicks = ["0.4 m/s"]
 runs = 4
 duration = "2 ms"
 restitution_factors = [0.4, 0.6]
@@ -78,9 +79,9 @@ def test_an_answer_has_the_names_of_its_record(small):
 
 def test_a_figure_by_its_name(small):
     """The first one, or the one asked for; another name is refused."""
-    answer = api.traction(small)
+    answer = api.bearing(small)
     assert answer.plot().axes
-    assert answer.plot("traction-shear").axes
+    assert answer.plot("bearing-contacts").axes
     with pytest.raises(InputError, match="no picture nothing"):
         answer.plot("nothing")
 

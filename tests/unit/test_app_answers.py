@@ -10,6 +10,7 @@ from threading import Event, Thread
 
 import numpy as np
 import pytest
+from commands import work_undrawn
 from fastapi.testclient import TestClient
 from raw_logs import anton_paar
 from test_cli_answers import SMALL
@@ -40,8 +41,9 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(root):
-    """The page of that folder, with its answers to `rank` and to a small `map`."""
-    with TestClient(application(root)) as client:
+    """The page of that folder, with its answers to `rank` and to a small `map`; no picture is written."""
+    with pytest.MonkeyPatch.context() as patch, TestClient(application(root)) as client:
+        patch.setattr("separatrix.app.jobs.work", work_undrawn)
         client.post("/run/small.toml", data={"verb": "rank"})
         axes = {"x": "restitution_factor=0.3..0.9:2", "y": "ball_cage_friction=0.05..0.5:2"}
         client.post("/run/small.toml", data={"verb": "map", "runs": "1", **axes})

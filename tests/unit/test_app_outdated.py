@@ -23,16 +23,18 @@ standard_deviation = 0.02
 """
 
 
-def silent(**_):
-    """Stand for what reports to the page."""
+def silent(*_, **__):
+    """Stand for what reports to the page, or reads for it."""
 
 
 def answer(root, verb, place="", values=None, **question):
-    """Answer a verb as the worker does."""
+    """Answer a verb as the worker does, without its pictures."""
     given = {"question": question, "values": values or {}}
     folder = root / "small" / place
     task = Task(number=1, verb=verb, study=root / "small.toml", folder=folder, root=root, **given)
-    assert _answered(task, silent)[0] == "finished"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("separatrix.figures.save_all", lambda *_: None)
+        assert _answered(task, silent)[0] == "finished"
 
 
 @pytest.fixture(scope="module")
@@ -49,8 +51,10 @@ def answered(tmp_path_factory):
 @pytest.fixture
 def page(answered):
     """The page of that folder; the study is afterwards as it was."""
-    with TestClient(server.application(answered)) as client:
-        yield client
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(server, "made_ready", silent)  # it reads every dataset, which each test would wait for
+        with TestClient(server.application(answered)) as client:
+            yield client
     (answered / "small.toml").write_text(SMALL)
 
 

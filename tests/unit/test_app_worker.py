@@ -28,7 +28,7 @@ def test_a_cancel_at_once_ends_its_job_and_no_other(tmp_path):
     study.write_text(SMALL)
     queue = Jobs(tmp_path)
     try:
-        for wait in (0.0, 0.3, 0.6, 1.2):
+        for wait in (0.0, 0.4, 1.2):
             asked = {"study": study, "folder": tmp_path / f"after-{wait}", "name": "small.toml"}
             first = queue.ask("bearing", **asked)
             time.sleep(wait)

@@ -19,6 +19,8 @@ from separatrix.errors import InputError
 from separatrix.explore.cases import read_axis
 from separatrix.study_file import read_study
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 SMALL = """
 extends = "cryogenic-turbopump"
 title = "A small map"
@@ -203,7 +205,7 @@ def test_a_second_call_takes_finished_runs_and_says_so(capsys):
         assert (json.loads(out) == first) == (points == "3")
 
 
-SLOW = ["map", "slow.toml", "--points", "16", "--runs", "2", "--jobs", "1", "--json"]
+SLOW = ["map", "slow.toml", "--points", "12", "--runs", "2", "--jobs", "1", "--json"]
 
 
 def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
@@ -222,7 +224,7 @@ def test_an_interrupted_map_goes_on_and_ends_the_same(capsys):
     assert err.endswith("Run the same command to resume.\n")
     left = [point for point in part["points"] if not point["runs"]]
     assert {point["reason"] for point in left} == {"not run: interrupted"}
-    assert 0 < part["counts"]["not_run"] == len(left) < 256
+    assert 0 < part["counts"]["not_run"] == len(left) < 144
     assert main([*SLOW, "--out", "m"]) == 0
     whole, said = capsys.readouterr()
     assert "runs were taken from" in said

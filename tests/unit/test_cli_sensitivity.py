@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
 import os
 import signal
 from pathlib import Path
@@ -52,6 +55,17 @@ OF_A_ROW = (
 )
 
 
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """The document of the small study, from two threads."""
+    place = tmp_path_factory.mktemp("small")
+    (place / "small.toml").write_text(SMALL)
+    options = ["--samples", "64", "--jobs", "2", "--json"]
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        assert main(["sensitivity", str(place / "small.toml"), *options]) == 0
+    return json.loads(out.getvalue(), parse_constant=pytest.fail)
+
+
 @pytest.fixture(autouse=True)
 def _small(tmp_path, monkeypatch):
     """Run in a folder with nothing but the small study."""
@@ -70,9 +84,9 @@ def row(document, environment, name):
     return next(row for row in one["materials"] if row["name"] == name)
 
 
-def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
+def test_the_document_has_the_keys_that_scripts_rely_on(small):
     """Every candidate in every environment; probabilities in their intervals, with their evidence."""
-    found = asked(capsys)
+    found = small
     assert set(KEYS.split()) <= set(found)
     assert set(OF_A_ROW.split()) <= set(found["overall"][0])
     rows = [r for one in found["environments"] for r in one["materials"] if r["friction"]] + found["overall"]
@@ -87,9 +101,9 @@ def test_the_document_has_the_keys_that_scripts_rely_on(capsys):
     assert found["complete"] is True
 
 
-def test_what_was_not_measured_is_missing(capsys):
+def test_what_was_not_measured_is_missing(small):
     """Everything is null but name and reason; one that is measured alone is lowest among none."""
-    found = asked(capsys)
+    found = small
     missing = row(found, "vacuum", "B")
     assert missing["reason"] == "not measured in vacuum"
     assert missing["friction"] is missing["probability_stable"] is missing["verdict"] is None
@@ -97,9 +111,9 @@ def test_what_was_not_measured_is_missing(capsys):
     assert row(found, "air", "A")["probability_lowest_friction"] > 0.99
 
 
-def test_each_friction_has_the_scatter_that_is_known_of_it(capsys):
+def test_each_friction_has_the_scatter_that_is_known_of_it(small):
     """A measured one that of a new cage, an unrepeated one the default, a stated one its own."""
-    found = asked(capsys)
+    found = small
     expected = {("air", "A"): 0.02 * (1 + 1 / 4) ** 0.5, ("vacuum", "A"): 0.09 * 0.15, ("air", "B"): 0.015}
     for place, deviation in expected.items():
         known = row(found, *place)
@@ -110,10 +124,10 @@ def test_each_friction_has_the_scatter_that_is_known_of_it(capsys):
     assert known.items() <= sources.items()
 
 
-def test_the_first_bearings_are_those_of_a_smaller_question(capsys):
+def test_the_first_bearings_are_those_of_a_smaller_question(small, capsys):
     """The first point of the convergence is that of 64 bearings; threads change nothing, to the last bit."""
     few, more = asked(capsys, "--jobs", "1"), asked(capsys, "--samples", "128")
-    assert few == asked(capsys, "--jobs", "2")
+    assert few == small
     for one, other in zip(few["convergence"], more["convergence"], strict=True):
         assert (one["name"], one["environment"], one["size"]) == (other["name"], other["environment"], [64])
         assert other["probability_stable"][0] == one["probability_stable"][0]
@@ -181,7 +195,7 @@ def test_a_number_of_bearings_that_is_no_power_of_two_is_refused(samples, capsys
 def test_the_lowest_friction_of_the_paper(capsys):
     """Armalon's is the lowest with 0.667 on Chromex 40 in gas, and with 0.99 or more elsewhere."""
     Path("paper.toml").write_text(
-        'extends = "cryogenic-turbopump"\n[stability]\nkicks = ["0.5 m/s"]\nduration = "10 ms"\n'
+        'extends = "cryogenic-turbopump"\n[stability]\nkicks = ["0.5 m/s"]\nduration = "1 ms"\n'
     )
     found = document(capsys, "sensitivity", "paper.toml", "--samples", "64", "--quiet")
     lowest = {one["name"]: row(found, one["name"], "Armalon")["probability_lowest_friction"]

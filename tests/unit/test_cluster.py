@@ -18,7 +18,7 @@ from separatrix.study_file import read_study
 
 STUDY = read_study("momentum-wheel")
 CAGE = moving_cage(solve(STUDY), 0.0)
-SETTINGS = replace(STUDY.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))
+SETTINGS = replace(STUDY.stability, runs=4, duration=0.005, restitution_factors=(0.2, 0.8))
 
 
 @pytest.fixture(scope="module")

@@ -63,7 +63,7 @@ DEAR = {"traction": _steeper, "sensitivity": _worse}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Documents of every verb for two studies."""
+    """Documents of every verb for two studies, and the arrays of a ranking."""
     made = tmp_path_factory.mktemp("compare")
     for name, text in (("first", FEW), ("second", THIN)):
         (made / f"{name}.toml").write_text(text)
@@ -71,9 +71,11 @@ def folder(tmp_path_factory):
         for verb, options in VERBS.items():
             if name == "second" and verb in DEAR:
                 continue
+            arrays = ("--out", str(made / "arrays")) if (name, verb) == ("first", "rank") else ()
             out = io.StringIO()
-            with contextlib.redirect_stdout(out):
-                assert main([verb, str(made / f"{name}.toml"), *options, "--json", "--quiet"]) == 0
+            with contextlib.redirect_stdout(out), pytest.MonkeyPatch.context() as patch:
+                patch.setattr("separatrix.figures.save_all", lambda *_: None)
+                assert main([verb, str(made / f"{name}.toml"), *options, *arrays, "--json", "--quiet"]) == 0
             (made / name / f"{verb}.json").write_text(out.getvalue())
     for verb in DEAR:
         answer = json.loads((made / "first" / f"{verb}.json").read_text())
@@ -208,7 +210,7 @@ def test_python_compares_answers_and_files(folder):
 
 def test_two_curves_are_drawn_together(folder, tmp_path):
     """Of rankings with their margins: a row for each material; without the arrays it is refused."""
-    data = separatrix.rank(folder / "first.toml", jobs=2).to_xarray()
+    data = separatrix.load(folder / "arrays" / "rank.nc")
     for name, times in (("first", 1.0), ("second", 1.1)):
         (tmp_path / name).mkdir()
         data["critical_friction"].values[:] *= times

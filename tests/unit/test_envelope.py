@@ -29,9 +29,9 @@ from separatrix.study import ClearanceState
 from separatrix.study_file import read_study
 
 STUDY = read_study("momentum-wheel")
-QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))
+QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.004))
 SPEED, FRICTION = "operation.inner_speed", "ball_cage_friction"
-SMALL = 'extends = "momentum-wheel"\n[stability]\nruns = 4\nduration = "10 ms"\n'
+SMALL = 'extends = "momentum-wheel"\n[stability]\nkicks = ["0.4 m/s"]\nruns = 4\nduration = "4 ms"\n'
 ROWS = "0 rpm,0.1,1 h\n3000 rpm,0.1,2 h\n6000 rpm,1.5,30 min\n9000 rpm,0.1,30 min\n"
 DUTY = f"{SPEED},{FRICTION},time_share\n{ROWS}"
 

@@ -36,7 +36,7 @@ from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.which_ball import transmitted_force
 
-QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
+QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)
 
 
 def quick_study(**changes):
@@ -248,7 +248,7 @@ def test_an_interrupt_leaves_a_ranking_that_says_so_and_goes_on(tmp_path):
             raise KeyboardInterrupt
 
     two = asked(("A", Friction(mean=0.1)), ("B", Friction(mean=0.2)))
-    long = replace(QUICK, runs=512)
+    long = replace(QUICK, runs=64)
     study, ledger = quick_study(ranking=two, stability=long), Ledger(tmp_path / NAME)
     with pytest.raises(Interrupted) as caught:
         rank(study, runner=Runner(progress=stop, ledger=ledger))

@@ -13,8 +13,8 @@ WHEEL = separatrix.read_study("momentum-wheel")
 
 
 def ranked(motion: MotionModel) -> separatrix.Answer:
-    """Return a ranking of two candidates from four runs of 10 ms."""
-    few = replace(WHEEL.stability, runs=4, duration=0.01, kicks=(0.5,), restitution_factors=(0.3, 0.6))
+    """Return a ranking of two candidates from four runs of 2 ms."""
+    few = replace(WHEEL.stability, runs=4, duration=0.002, kicks=(0.5,), restitution_factors=(0.3, 0.6))
     two = replace(WHEEL.ranking, candidates=WHEEL.ranking.candidates[:2])
     return separatrix.rank(
         replace(WHEEL, cage=replace(WHEEL.cage, motion=motion), stability=few, ranking=two), jobs=1

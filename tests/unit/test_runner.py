@@ -305,7 +305,8 @@ def test_a_key_depends_on_the_last_bit():
 
 def test_more_runs_go_on_from_fewer(tmp_path):
     """A curve with as many runs again takes those of the first from the ledger."""
-    ledger, settings = Ledger(tmp_path / NAME), replace(QUICK, runs=8, restitution_factors=(0.5,))
+    ledger = Ledger(tmp_path / NAME)
+    settings = replace(QUICK, kicks=(0.5,), runs=8, restitution_factors=(0.5,))
     stability_curve(CAGE, settings, runner=Runner(ledger=ledger))
     assert ledger.taken == 0
     stability_curve(CAGE, replace(settings, restitution_factors=(0.5, 0.6)), runner=Runner(ledger=ledger))
@@ -325,18 +326,20 @@ def test_a_file_that_is_no_ledger_is_refused(tmp_path):
 STUDY = """
 extends = "momentum-wheel"
 [stability]
-duration = "20 ms"
-runs = 24
+kicks = ["0.4 m/s"]
+duration = "5 ms"
+runs = 16
 [ranking]
 friction_scatter = 0.2
 """
 LONG_VERBS = {
     "rank": [],
-    "map": ["--points", "8"],
+    "map": ["--points", "6"],
     "sweep": ["--vary", "ball_cage_friction=0.1..0.4:6", "--verdicts"],
 }
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("verb", LONG_VERBS)
 def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, capsys):
     """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
