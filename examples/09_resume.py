@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import separatrix
 
 study = separatrix.read_study("momentum-wheel")
-quick = replace(study, stability=replace(study.stability, kicks=(0.4,), runs=4, duration=0.02))
+quick = replace(study, stability=replace(study.stability, runs=8, duration=0.02))
 
 
 def stop(done: int, _total: int) -> None:

@@ -25,7 +25,7 @@ test_mean = separatrix.Friction(mean=test.friction)
 environment = study.ranking.environments[0]
 mine = separatrix.Candidate(name="My compound", friction={environment: test_mean})
 question = replace(study.ranking, candidates=(*study.ranking.candidates, mine))
-quick = replace(study.stability, kicks=(0.4,), runs=8, duration=0.02)
+quick = replace(study.stability, runs=8, duration=0.02)
 found = separatrix.rank(replace(study, ranking=question, stability=quick), jobs=2).ranking
 for row in found.environments[0].materials:
     print(f"{row.rank}  {row.name}: friction {row.friction:.3f}, {row.judgement.verdict.name}")
