@@ -1,6 +1,6 @@
 """Random cages with every input at once: each ends, in finite numbers, and closes its ledger of energy.
 
-    python benchmarks/random_cages.py [--cages 1000] [--first 0]
+    python benchmarks/open_ledgers.py [--cages 1000] [--first 0]
 
 As many in the plane as in space (tests/physics/random_cages.py), 16 runs each from 0.3 m/s. A cage whose
 ledger leaves more than 1e-2 of the work done open is printed with its outcomes. Some minutes on two cores.
