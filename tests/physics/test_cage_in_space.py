@@ -232,7 +232,8 @@ def test_a_cage_in_round_bores_that_may_tilt_whirls_at_half_the_friction(held, f
 def test_a_free_cage_wobbles():
     """E4: J_p w / J_t, 206.6285 Hz in space, is 100.1557 Hz in the turning frame.
 
-    To half of its last digit; the closed form to the error of a step of 0.01 rad over five turns.
+    To half of the last digit and, as much again, what moments of seven digits leave open; to the closed form
+    by the step's error, of 0.01 rad over five turns.
     """
     ring = {"moment_of_inertia": 2.671250e-5, "transverse_inertia": 1.376458e-5, "tilt_kick": 1.0}
     cage = replace(ROUND, **ring, pocket_clearance=0.2, dynamic_unbalance=0.0)
@@ -240,6 +241,6 @@ def test_a_free_cage_wobbles():
     in_space = free.lean_rate + OMEGA * np.stack([-free.lean[:, 1], free.lean[:, 0]], axis=1)
     angle = np.unwrap(np.arctan2(in_space[:, 1], in_space[:, 0]))
     turning = (angle[-1] - angle[0]) / (free.time[-1] - free.time[0]) / (2.0 * math.pi)
-    assert turning == pytest.approx(100.1557, abs=5e-5)
+    assert turning == pytest.approx(100.1557, abs=1e-4)
     wobble = cage.moment_of_inertia / cage.transverse * OMEGA / (2.0 * math.pi)
     assert turning + OMEGA / (2.0 * math.pi) == pytest.approx(wobble, rel=1e-8)
