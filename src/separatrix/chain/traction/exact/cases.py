@@ -178,15 +178,14 @@ class ContactCase:
     wanted: tuple[Ratio | None, Ratio | None] = (None, None)
 
     def __post_init__(self) -> None:
-        b, a = self.setup.half_lengths
-        reach = max(b, a)
+        reach = max(self.setup.half_lengths)
         largest = {
             "longitudinal_creep": LARGEST_CREEP,
             "lateral_creep": LARGEST_CREEP,
             "spin": LARGEST_CREEP / reach,
             "curvature": LARGEST_CREEP / reach**2,
             **dict.fromkeys(MOVES[ContactMotion.SHIFT], LARGEST_SHIFT),
-            "distance": LARGEST_STEPS * 2.0 * b / LARGEST_SIDE,
+            "distance": LARGEST_STEPS * 2.0 * self.setup.half_lengths[0] / LARGEST_SIDE,
         }
         for name, most in largest.items():
             value, where = getattr(self, name), f"ContactCase.{name}"
@@ -344,15 +343,13 @@ def exact_contact(
             raise error.at(f"case {number}: {error.path}") from None
         if progress is not None:
             progress(number, len(question.cases))
-    answer = ContactAnswer(cases=tuple(solved))
+    slope, reason, first = None, "", question.cases[0]
     if question.slope:
-        first = question.cases[0]
         try:
             slope = traction_slope(first.setup.problem, Creep(spin=first.spin, curvature=first.curvature))
-            return replace(answer, slope=slope)
         except ConvergenceError as error:
-            return replace(answer, slope_reason=str(error))
-    return answer
+            reason = str(error)
+    return ContactAnswer(cases=tuple(solved), slope=slope, slope_reason=reason)
 
 
 class _State:
@@ -410,9 +407,10 @@ def _with_forces(
     contact: RollingContact, case: ContactCase, at: Callable[[ContactCase], ContactSolution]
 ) -> ContactCase:
     """The case with the creeps or shifts at which its forces are as wanted."""
-    bound = contact.bound.max()
     sliding = float(contact.bound.sum()) * contact.grid.cell_area
-    saturation = 2.0 * float(bound) / contact.problem.ellipse.contact_modulus  # of a bare plane contact
+    saturation = (
+        2.0 * float(contact.bound.max()) / contact.problem.ellipse.contact_modulus
+    )  # of a bare plane contact
     scale = saturation * (contact.problem.ellipse.semi_minor if case.motion is ContactMotion.SHIFT else 1.0)
     along, across = case.wanted
     given = case.lateral_shift if case.motion is ContactMotion.SHIFT else case.lateral_creep
