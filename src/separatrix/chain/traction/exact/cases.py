@@ -408,10 +408,9 @@ def _with_forces(
 ) -> ContactCase:
     """The case with the creeps or shifts at which its forces are as wanted."""
     sliding = float(contact.bound.sum()) * contact.grid.cell_area
-    saturation = (
-        2.0 * float(contact.bound.max()) / contact.problem.ellipse.contact_modulus
-    )  # of a bare plane contact
-    scale = saturation * (contact.problem.ellipse.semi_minor if case.motion is ContactMotion.SHIFT else 1.0)
+    ellipse = contact.problem.ellipse
+    saturation = 2.0 * float(contact.bound.max()) / ellipse.contact_modulus  # of a bare plane contact
+    scale = saturation * (ellipse.semi_minor if case.motion is ContactMotion.SHIFT else 1.0)
     along, across = case.wanted
     given = case.lateral_shift if case.motion is ContactMotion.SHIFT else case.lateral_creep
     if across is None:
