@@ -145,17 +145,9 @@ def simulate(
 ) -> History:
     """Follow one run of the ensemble; the motion is the same to the last bit, however it is sampled.
 
-    Parameters
-    ----------
-    cage : MovingCage
-        The cage.
-    kick, run, seed, duration, ball_scatter
-        As in the ensemble: speed of the disturbance [m/s], number of the run, seed, length [s], scatter [-].
-    samples : int
-        Largest number of rows, evenly spaced; the memory is bounded by it.
-    until : float, optional
-        Time up to which there are rows, to within one [s]; by default that up to which the run is judged, or
-        50 turns of its whirl.
+    Speed of the disturbance [m/s], number of the run, seed, length [s] and scatter [-] are as in the
+    ensemble. There are at most `samples` rows, evenly spaced, up to `until` [s]: by default the time to which
+    the run is judged, or 50 turns of its whirl.
 
     Raises
     ------

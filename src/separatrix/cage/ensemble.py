@@ -130,20 +130,9 @@ def run_ensemble(
 ) -> Ensemble:
     """Run the cage from every disturbance and seed; one that turns backward as its mirror image.
 
-    Parameters
-    ----------
-    cage : MovingCage
-        The cage.
-    settings : StabilitySettings
-        Disturbances, runs, duration, scatter and seed.
-    kicks, runs
-        Instead of those of the settings.
-    first_run : int
-        Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
-    jobs : int
-        Threads. The result is the same to the last bit for any number.
-    stop : Stop, optional
-        Ends the runs at their next look; what is returned then has no meaning.
+    Kicks and runs are those of the settings if not given. Runs 0 to 11 and then, with `first_run`, 12 to 63
+    are the same as 0 to 63 at once, to the last bit, for any number of `jobs` (threads). `stop` ends the runs
+    at their next look; what is returned then has no meaning.
 
     Raises
     ------

@@ -324,14 +324,7 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
     faster and slower around as the equilibrium says. In the plane among dampers, as in the paper, the balls
     spin about the axis of the bearing; else about their own.
 
-    Parameters
-    ----------
-    solution : Solution
-        Of the chain.
-    friction : float
-        Ball on cage [-].
-    ball : BallModel, optional
-        Instead of the study's; AUTO is one state.
+    `friction` is that of ball on cage [-]; `ball` is used instead of the study's, AUTO is one state.
 
     Raises
     ------
