@@ -64,10 +64,10 @@ def moment_at(cage: MovingCage, state: Mapping[int, float], ball: Mapping[int, A
     n, limits = numbers.numbers.copy(), numbers.limits.copy()
     n[of(rows.STEP)], limits[outcome.MOST], limits[outcome.LEAST] = AT_ONCE, 2, 2
     numbers = numbers._replace(kind=numbers.kind._replace(steps=1), numbers=n, limits=limits)
-    record = np.zeros((2, 2 + begun.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count))
+    record = np.zeros((2, 4 + begun.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count))
     run_rows(numbers.kind, [numbers], begun, ball_places(cage, starts), Stop(), np.float64, record=record)
     change = (record[1] - record[0]) / AT_ONCE
-    pockets = slice(-1 - cage.ball_count, -1)
+    pockets = slice(-3 - cage.ball_count, -3)
     return Moment(change[1 : 1 + first], record[0, pockets], change[pockets], float(record[0, -1]))
 
 
