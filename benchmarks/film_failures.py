@@ -32,7 +32,7 @@ PLACES, SIZES = (0.05, 0.3), (2.0, 5.0)
 EDGES = (0.0, 1.5, 2.0, 2.5, 3.0, 5.0, 10.0)
 """Of the groups."""
 
-WORDS = ("next to what is cut as running-in", "Seizure or a failed film", "rises in one step")
+WORDS = ("next to what is cut as running-in", "Seizure or a failed film")
 """By which flags tell of it."""
 
 Told = tuple[float, list[bool]]

@@ -11,9 +11,9 @@ from separatrix.errors import InputError
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.friction.tribometer import tribometer as reduced
 from separatrix.library import Library, as_material, beside, library_files, with_files
-from separatrix.library.records import ATMOSPHERE, KINDS, Record, contradictions, fluid_state, other_phase
+from separatrix.library.records import KINDS, Record, contradictions
 from separatrix.toml_files import nearest
-from separatrix.units import Kelvin, Pascal, shown
+from separatrix.units import Kelvin, shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -172,23 +172,18 @@ class Materials:
         rule = f"is not a {kinds.pop() if len(kinds) == 1 else 'record'} of the library"
         raise InputError("NAME", rule, shown(name), nearest(name, [record.name for record in self.records]))
 
-    def show(
-        self, name: str, *, temperature: Kelvin | None = None, pressure: Pascal | None = None
-    ) -> list[Shown]:
-        """Return records whole; at a temperature with what serves there, or with the state of a fluid.
+    def show(self, name: str, *, temperature: Kelvin | None = None) -> list[Shown]:
+        """Return records whole; at a temperature with what serves there.
 
         Raises
         ------
         InputError
-            No record has this name, or a pressure is given where none is of use.
+            No record has this name.
         """
-        found = self.find(name)
-        if pressure is not None and (temperature is None or all(record.kind != "fluid" for record in found)):
-            raise InputError("--pressure", "is for a fluid, together with --temperature")
         from separatrix.present.text.materials import Shown
 
         views = []
-        for record in found:
+        for record in self.find(name):
             if temperature is None or not isinstance(record, Record):
                 views.append(Shown(record=record))
             elif record.kind != "fluid":
@@ -197,9 +192,8 @@ class Materials:
                 one = Shown(record=record, taken_at=temperature, taken=taken, cautions=material.cautions)
                 views.append(one)
             else:
-                state = fluid_state(record, temperature, ATMOSPHERE if pressure is None else pressure)
-                cautions = [*contradictions(record.plain(), temperature), *other_phase(record, state)]
-                views.append(Shown(record=record, state=state, cautions=cautions))
+                cautions = [*contradictions(record.plain(), temperature)]
+                views.append(Shown(record=record, taken_at=temperature, cautions=cautions))
         return views
 
 

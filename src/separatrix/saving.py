@@ -6,6 +6,7 @@ import csv
 import json
 import logging
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -66,17 +67,16 @@ def save_answer(
         from separatrix.figures.animation import animate
         from separatrix.figures.cage_page import write_page
         from separatrix.present import dataset, save
-        from separatrix.workbook import results_workbook
 
-        if verb == "rank":
-            results_workbook(found, stage / "rank.xlsx")
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
         data = dataset(*asked)
         save(data, stage / f"{verb}.nc")
         if pictures:
             figures.save_all(figures.draw(verb, data), stage)
+        if verb == "rank":
+            write_ranking(found, data, stage / "rank.xlsx")
         if verb == "sweep":
-            _write_tables(data, stage)
+            _write_sweep(data, stage)
         if verb == "simulate":
             write_page(data, stage / "simulation.html")
         if animation is not None:
@@ -88,12 +88,79 @@ def written(found: Document) -> str:
     return json.dumps(found, indent=1, allow_nan=False) + "\n"
 
 
-def _write_tables(data: xr.Dataset, folder: Path) -> None:
+def write_ranking(found: Document, data: xr.Dataset, path: Path) -> None:
+    """Write the tables of a ranking as sheets: its document's rows and values, its dataset's units."""
+    from separatrix.workbook_files import add_table, new_workbook, workbook_bytes
+
+    stability = found["stability"] or {}
+    places = [{"environment": one["name"]} | row for one in found["environments"] for row in one["materials"]]
+    tables = (
+        ("candidates", "material_", places),
+        ("overall", "overall_", found["overall"]),
+        ("stability curve", "", stability.get("curve") or ()),
+        ("linear limit", "", stability.get("linear_limit") or ()),
+    )
+    book = new_workbook()
+    for title, prefix, rows in tables:
+        cells = [{name: _cell(value) for name, value in row.items()} for row in rows]
+        names = [name for name in (cells or [{}])[0] if any(row[name] is not None for row in cells)]
+        names.sort(key=[*LEADING, *names].index)
+        heads = [_heading(name, _unit(data, prefix + name)) for name in names]
+        if heads:
+            add_table(book, title, heads, [[row[name] for name in names] for row in cells], keep_columns=2)
+    rest = {key: value for key, value in found.items() if key not in ELSEWHERE}
+    single = [(name, value, _unit(data, name.replace(".", "_"))) for name, value, *_ in _values(rest)]
+    add_table(book, "answer", ("name", "value", "unit"), single)
+    add_table(book, "inputs", ("name", "value", "unit", "origin"), _values(found["study"]))
+    path.write_bytes(workbook_bytes(book))
+
+
+LEADING = ("environment", "name", "rank", "verdict", "friction", "margin")
+"""Columns of a table that come first."""
+
+ELSEWHERE = ("study", "environments", "overall", "stability", "own_curves", "chain", "cage", "provenance")
+"""Keys of a ranking that are not on the sheet of its single values."""
+
+WHOLE_RECORDS = ("record", "table")
+"""Keys of a study under which records of the library are whole."""
+
+
+def _values(item: object, name: str = "") -> Iterator[tuple[str, object, str | None, str | None]]:
+    """Yield the dotted name of each value of a document, the value, its unit and its origin."""
+    if isinstance(item, dict):
+        rest = {key: one for key, one in item.items() if key not in WHOLE_RECORDS}
+        if "value" in rest:
+            yield name, _cell(rest.pop("value")), rest.pop("unit", None), rest.pop("origin", None)
+        for key, one in rest.items():
+            yield from _values(one, f"{name}.{key}" if name else key)
+    elif isinstance(item, list) and any(isinstance(one, dict) for one in item):
+        for number, one in enumerate(item, 1):
+            yield from _values(one, f"{name}[{number}]")
+    else:
+        yield name, _cell(item), None, None
+
+
+def _cell(value: object) -> object:
+    """Return a value as one cell has it: several texts or numbers as one text, nothing of whole records."""
+    if isinstance(value, list):
+        return "; ".join(str(one) for one in value if not isinstance(one, dict | None)) or None
+    return None if isinstance(value, dict) else value
+
+
+def _unit(data: xr.Dataset, name: str) -> str | None:
+    return data[name].attrs.get("units") if name in data.variables else None
+
+
+def _heading(name: str, unit: str | None) -> str:
+    return f"{name} [{unit}]" if unit else name
+
+
+def _write_sweep(data: xr.Dataset, folder: Path) -> None:
     """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
     from separatrix.workbook_files import add_table, new_workbook, text_for_cell, workbook_bytes
 
     names = [str(name) for name in data.variables if data[name].dims == ("case",)]
-    heads = [f"{name} [{unit}]" if (unit := data[name].attrs.get("units")) else name for name in names]
+    heads = [_heading(name, _unit(data, name)) for name in names]
     rows = [
         [None if v == "" or (isinstance(v, float) and math.isnan(v)) else v for v in row]
         for row in zip(*(data[name].values.tolist() for name in names), strict=True)

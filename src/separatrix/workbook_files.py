@@ -18,7 +18,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from separatrix.errors import InputError
 from separatrix.input_files import size_of, unreadable
@@ -112,12 +112,10 @@ def _check_content(file: BinaryIO, part: zipfile.ZipInfo, label: str) -> None:
 LONGEST_TEXT = 32_000
 """Characters of the longest text of a cell, with room to spare."""
 
-LONGEST_TITLE = 31
 EVALUATED = "=+-@＝＋－＠"
 """Beginnings of a text that spreadsheet programs take for a formula."""
 
 HEADER = "1F3864"
-BAND = "F2F2F2"
 INPUT = "FFF9E5"
 LINE_HEIGHT = 15.0
 """Points."""
@@ -132,20 +130,12 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)
 class Look:
     """Look of a cell."""
 
-    number_format: str = "General"
     bold: bool = False
     italic: bool = False
     colour: str = ""
     """Of the text, as RRGGBB; empty for black."""
     fill: str = ""
     wrap: bool = False
-
-
-class Cell(NamedTuple):
-    """A value with a look of its own."""
-
-    value: object
-    look: Look
 
 
 PLAIN = Look()
@@ -165,22 +155,11 @@ def new_workbook() -> Workbook:
     return book
 
 
-def sheet_title(name: str, taken: Sequence[str]) -> str:
-    """Return a valid name of a sheet that no other has, as near to the wanted one as can be."""
-    plain = re.sub(r"[\[\]:*?/\\]", "-", printable(name, 200)).strip(" '") or "sheet"
-    known = {title.casefold() for title in taken}
-    title, number = plain[:LONGEST_TITLE], 1
-    while title.casefold() in known:
-        number += 1
-        title = f"{plain[: LONGEST_TITLE - len(f' ({number})')]} ({number})"
-    return title
-
-
-def add_sheet(book: Workbook, name: str, taken: Sequence[str] = ()) -> Worksheet:
-    """Add a sheet at the end under a name that is not taken; it prints across, as wide as the page."""
+def add_sheet(book: Workbook, name: str) -> Worksheet:
+    """Add a sheet at the end; it prints across, as wide as the page."""
     from openpyxl.worksheet.properties import PageSetupProperties
 
-    sheet: Worksheet = book.create_sheet(sheet_title(name, [*book.sheetnames, *taken]))
+    sheet: Worksheet = book.create_sheet(name)
     sheet.page_setup.orientation = "landscape"
     sheet.page_setup.fitToHeight = 0
     sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
@@ -207,7 +186,6 @@ def put(
         cell.value = "yes" if value else "no"
     elif isinstance(value, int | float) and math.isfinite(value):
         cell.value = value
-    cell.number_format = look.number_format
     if look.bold or look.italic or look.colour:
         colour = look.colour or "000000"
         cell.font = Font(name="Calibri", size=11, bold=look.bold, italic=look.italic, color=colour)
@@ -256,21 +234,14 @@ def add_table(
     heads: Sequence[str],
     rows: Iterable[Iterable[object]],
     *,
-    looks: Sequence[Look] = (),
-    sizes: Sequence[float] = (),
     keep_columns: int = 0,
-    taken: Sequence[str] = (),
-) -> Worksheet:
-    """Add a sheet of headings and rows; a value that is not a `Cell` has the look of its column."""
-    sheet = add_sheet(book, name, taken)
+) -> None:
+    """Add a sheet of headings and rows."""
+    sheet = add_sheet(book, name)
     headings(sheet, heads, keep_columns=keep_columns)
     for number, row in enumerate(rows, 2):
         for column, one in enumerate(row, 1):
-            own = one if isinstance(one, Cell) else Cell(one, looks[column - 1] if looks else PLAIN)
-            put(sheet, number, column, own.value, own.look)
-    if sizes:
-        widths(sheet, *sizes)
-    return sheet
+            put(sheet, number, column, one)
 
 
 def workbook_bytes(book: Workbook) -> bytes:

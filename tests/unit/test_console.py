@@ -37,7 +37,7 @@ OPTIONS = {
     "reproduce": ("--json", "--quiet", "--jobs"),
     "app": ("--port", "--open"),
     "tribometer": ("--json", "--out"),
-    "materials": ("list", "show", "check", "add"),
+    "materials": ("list", "show"),
 }
 """What the help of a verb names that takes no study."""
 

@@ -2,16 +2,14 @@
 
 import json
 import pickle
-import tomllib
 from importlib.resources import files
 
 import pytest
 
 from separatrix import library
 from separatrix.errors import DataError, InputError, ValidityWarning
-from separatrix.library import SHIPPED_FILES, Library, add_records, as_toml
-from separatrix.library.reading import read_library
-from separatrix.library.records import Datum, choose, contradictions, fluid_state, other_phase
+from separatrix.library import SHIPPED_FILES, Library
+from separatrix.library.records import Datum, choose, contradictions
 from separatrix.study_file import read_study, resolved
 
 DATA = files("separatrix.library") / "data"
@@ -370,100 +368,6 @@ def test_the_density_of_liquid_nitrogen_agrees_with_a_published_one():
     assert density.value == pytest.approx(806.5, rel=1e-3)
     vapour = LIBRARY.fluid("GN2").data["density"][0]
     assert vapour.value == pytest.approx(4.622, rel=3e-3)
-
-
-def test_a_state_of_the_table_needs_no_extra_and_any_other_names_it(monkeypatch):
-    """As on a machine without CoolProp."""
-    import sys
-
-    monkeypatch.setitem(sys.modules, "CoolProp", None)
-    nitrogen = LIBRARY.fluid("LN2")
-    assert fluid_state(nitrogen, 77.355).density == 806.08
-    with pytest.raises(InputError, match=r"pip install \"separatrix\[fluids\]\"") as refused:
-        fluid_state(nitrogen, 77.355, 1e6)
-    assert "\n" not in str(refused.value)
-
-
-def test_a_state_by_coolprop_has_its_phase_and_its_source():
-    """Liquid nitrogen at 80 K and 20 bar; nothing below the melting line; 77.4 K is the boiling point."""
-    pytest.importorskip("CoolProp")
-    nitrogen, gas = LIBRARY.fluid("LN2"), LIBRARY.fluid("GN2")
-    state = fluid_state(nitrogen, 80.0, 2e6)
-    assert state.phase == "liquid"
-    assert 790.0 < state.density < 806.0  # between its values at 1 atm and 77.4 K, and at 81 K
-    assert state.source == "CoolProp: Span-JPCRD-2000, Lemmon-IJT-2004"
-    assert not list(other_phase(nitrogen, state))
-    (sentence,) = other_phase(gas, fluid_state(gas, 80.0, 2e6))
-    assert sentence == "gaseous nitrogen: at 80 K and 2 MPa it is a liquid."
-    with pytest.raises(InputError, match="has no state"):
-        fluid_state(nitrogen, 40.0)
-    assert fluid_state(nitrogen, 77.4).density == 806.08
-    assert fluid_state(nitrogen, 77.0).density > 806.5
-    assert fluid_state(nitrogen, 77.355, 1e5).phase == "gas"
-
-
-@pytest.mark.parametrize("name", LIBRARY.names("fluid"))
-def test_a_state_of_a_record_is_its_own_with_and_without_coolprop(name):
-    """At a boiling point CoolProp takes the rounded temperature for the other phase, or refuses."""
-    record = LIBRARY.fluid(name)
-    for density in record.data["density"]:
-        state = fluid_state(record, density.temperature[0], density.pressure)
-        assert (state.density, state.phase) == (density.value, record.facts["phase"])
-
-
-def test_what_is_written_is_what_was_read(tmp_path):
-    """Quotation marks, backslashes, dots in names and lists come back."""
-    text = OURS.replace('"Ours"', '"O.u\'r \\"s\\" \\\\ µ"')
-    written = as_toml(tomllib.loads(text))
-    data = tomllib.loads(text)
-    data.pop("title")
-    assert tomllib.loads(written) == data
-
-
-def test_adding_keeps_what_the_library_holds_byte_for_byte(tmp_path):
-    """Comments stay; the new records follow; a second time is refused; no other file appears."""
-    held = "# ours\n" + OURS
-    target, source = tmp_path / "materials.toml", tmp_path / "new.toml"
-    target.write_text(held)
-    source.write_text(OURS.replace("Our", "Their").replace("our rig", "their rig").replace('"Ours"', '"X"'))
-    target.chmod(0o640)
-    added = add_records(source, target)
-    assert len(added.records) == 4
-    assert target.read_text().startswith(held)
-    assert target.stat().st_mode & 0o777 == 0o640
-    assert len(read_library(target).records) == 8
-    after = target.read_bytes()
-    with pytest.raises(InputError, match=r"is in materials\.toml, line"):
-        add_records(source, target)
-    assert target.read_bytes() == after
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]
-
-
-@pytest.mark.parametrize("held", ["", "# ours, none yet\n", 'title = "Ours"  # none yet\n'])
-def test_a_library_may_begin_with_words_alone(tmp_path, held):
-    """A comment or a title, and no record so far: what is added follows."""
-    target, source = tmp_path / "materials.toml", tmp_path / "new.toml"
-    target.write_text(held)
-    source.write_text(OURS)
-    add_records(source, target)
-    assert target.read_text().startswith(held)
-    assert len(read_library(target).records) == 4
-
-
-def test_a_library_that_cannot_be_written_is_left_as_it_was(tmp_path, monkeypatch):
-    """The disk is full while the new text is written: the old file stays and nothing lies beside it."""
-    target, source = tmp_path / "materials.toml", tmp_path / "new.toml"
-    target.write_text(OURS)
-    source.write_text('[film."N"]\n' + OURS.partition('[film."Our film"]\n')[2].partition("\n[bearing")[0])
-
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("separatrix.library.Path.write_text", full)
-    with pytest.raises(InputError, match=r"cannot be written \(No space left"):
-        add_records(source, target)
-    assert target.read_text() == OURS
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["materials.toml", "new.toml"]
 
 
 def test_the_library_on_the_page_is_right_and_the_page_names_every_key():

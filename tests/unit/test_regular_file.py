@@ -17,16 +17,8 @@ CALLS = {
     "a column map": ["tribometer", "a.csv", "--map", "PATH"],
     "a saved simulation": ["compare", "PATH", "PATH", "--json"],
     "a study": ["check", "PATH"],
-    "a library": ["materials", "check", "PATH"],
     "a library by option": ["materials", "list", "--library", "PATH"],
-    "records to add": ["materials", "add", "PATH", "--to", "ours.toml"],
-    "a library to add to": ["materials", "add", "new.toml", "--to", "PATH"],
 }
-NEW_RECORD = """
-[cage_material."Blend 7"]
-elastic_modulus = { value = "2 GPa", source = "Data sheet", confidence = "measured" }
-poisson_ratio = { value = 0.4, source = "Data sheet", confidence = "measured" }
-"""
 
 
 def refusal(capsys, call, path):
@@ -41,10 +33,9 @@ def refusal(capsys, call, path):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder to stand in, with a log, records, and pipes without a writer."""
+    """A folder to stand in, with a log, and pipes without a writer."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text(LOG)
-    (tmp_path / "new.toml").write_text(NEW_RECORD)
     for name in ("p.toml", "p.xlsx", "p.nc"):
         os.mkfifo(name)
     (tmp_path / "link.toml").symlink_to("p.toml")

@@ -290,16 +290,6 @@ def test_a_material_far_from_its_neighbours_is_flagged(tmp_path):
     assert [len(told) for told in flags] == [0, 0, 1, 0, 0]
 
 
-def test_an_oscillation_of_few_rows_is_not_called_stick_slip(tmp_path):
-    """2.2 a turn at 7.6 rows a turn: it may be the image of something faster."""
-    laps = np.arange(0.0, 300.0, 1.0 / 7.6)
-    friction = 0.4 + 0.05 * np.sin(2.0 * np.pi * 2.2 * laps)
-    rows = "".join(f"{lap:.4f},{f:.5f}\n" for lap, f in zip(laps, friction, strict=True))
-    (log,) = read(tmp_path, f"laps,COF\n{rows}")
-    flag = next(flag for flag in reduce_log(log).flags if flag.startswith("Friction oscillates"))
-    assert "with only 3.5 rows an oscillation it may be stick-slip, run-out or the image" in flag
-
-
 def test_a_step_that_underflows_is_reduced(tmp_path):
     """Two values of 1e-200: the square of their difference is zero, and nothing is divided by it."""
     rows = [f"{i},0.{100 + i % 7}" for i in range(60)]

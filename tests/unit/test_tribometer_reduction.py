@@ -120,10 +120,10 @@ def test_a_given_end_behind_a_failed_film_is_told_without_the_advice_to_give_one
     assert "run_in_end" not in flag
 
 
-def test_a_film_that_fails_behind_the_cut_is_told_as_a_step_where_it_fails():
-    """A rise in the steady part is none in running-in, and is not told at the cut."""
+def test_a_film_that_fails_behind_the_cut_is_not_told_at_the_cut():
+    """A rise in the steady part is none in running-in: it makes the test too short for its scatter."""
     test = reduce_log(failed(0.3, 2.5), ("time", 60.0))
-    assert "at 119." in told(test, "Friction rises in one step by 0.12")  # at 120 s, in spans of 2.03 s
+    assert told(test, "Friction is correlated over")
     assert told(test, "Friction rises from") == ""
 
 
@@ -171,27 +171,26 @@ def test_drift_is_told_per_hour_and_per_kilometre():
     assert " per km " in told(test, "Friction drifts by 0.2")
 
 
-def test_stick_slip_is_told_with_frequency_and_amplitude():
+def test_stick_slip_has_its_frequency_and_amplitude():
     """A saw-tooth of 0.06 at 2.1 Hz: its first harmonic is 2/pi of that from peak to peak."""
     one = log(friction=lambda t: 0.12 + 0.06 * (2.1 * t % 1.0 - 0.5) + 0.004 * _noise(t.size))
     test = reduce_log(one)
     assert test.stick_slip_frequency == pytest.approx(2.1, rel=0.01)  # a place of the spectrum is 1 %
     assert test.stick_slip_amplitude == pytest.approx(0.06 * 2 / np.pi, rel=0.1)  # the window's edges
-    assert "stick-slip" in told(test, "Friction oscillates at 2.1 Hz")
 
 
 def test_the_modulation_of_a_known_cycle_is_no_stick_slip():
-    """What repeats with each turn is the turn's; without the time of a cycle it is told as one of two."""
+    """What repeats with each turn is the turn's; without the time of a cycle it may be either."""
     recipe = replace(QUIET, modulation=0.04)
-    assert told(reduce_log(log(recipe)), "Friction oscillates") == ""
-    assert "once per turn" in told(reduce_log(log(recipe, knows_cycle=False)), "Friction oscillates")
+    assert reduce_log(log(recipe)).stick_slip_amplitude == 0.0
+    assert reduce_log(log(recipe, knows_cycle=False)).stick_slip_amplitude > 0.0
 
 
-def test_stick_slip_is_told_beside_a_stronger_modulation_by_a_known_cycle():
-    """Power of the turn is not what stick-slip is compared with: a tenth of it is enough."""
+def test_stick_slip_is_seen_beside_a_stronger_modulation_by_a_known_cycle():
+    """The turn and its multiples are left out of what is searched."""
     one = log(replace(QUIET, modulation=0.03, rows_of_a_cycle=20.0))
     test = reduce_log(replace(one, friction=one.friction + 0.01 * np.sin(2 * np.pi * 1.7 * one.time)))
-    assert "stick-slip." in told(test, "Friction oscillates at 1.7 Hz by 0.0")
+    assert test.stick_slip_frequency == pytest.approx(1.7, rel=0.01)  # a place of the spectrum is 1 %
     assert test.stick_slip_amplitude == pytest.approx(0.02, rel=0.1)  # the window's edges
 
 
@@ -209,7 +208,7 @@ def test_what_repeats_with_the_turn_is_no_stick_slip_above_half_the_logging_rate
     cycle = 1.03
     one = log(friction=lambda t: 0.12 + 0.1 * (np.abs(t / cycle % 1.0 - 0.5) < 0.06) + 0.003 * _noise(t.size))
     one = replace(one, conditions=replace(one.conditions, cycle_time=cycle))
-    assert told(reduce_log(one), "Friction oscillates") == ""
+    assert reduce_log(one).stick_slip_amplitude < 0.1 * 0.12  # multiples above the 12th are left
 
 
 def test_a_seizure_ends_the_steady_part_before_it():
@@ -221,11 +220,11 @@ def test_a_seizure_ends_the_steady_part_before_it():
     assert abs(test.friction - 0.12) < 4 * test.standard_error
 
 
-def test_a_spike_is_told_and_does_not_end_the_test():
-    """Friction that comes back after 2 s is a spike."""
+def test_a_spike_does_not_end_the_test():
+    """Friction that comes back after 2 s is not a seizure."""
     one = log(friction=lambda t: np.where((t > 200) & (t < 202), 0.6, 0.12) + 0.004 * _noise(t.size))
     test = reduce_log(one)
-    assert told(test, "Friction spikes once")
+    assert told(test, "Seizure or a failed film") == ""
     assert test.steady_end > 390.0
 
 
@@ -237,18 +236,6 @@ def test_a_lost_load_ends_the_steady_part_and_a_late_one_begins_it():
     assert told(test, "The normal force falls from 10 N")
     assert test.run_in_end >= 40.0
     assert test.steady_end <= 350.0
-
-
-def test_steps_of_friction_and_wear_are_told():
-    """A step of a quarter of the friction, and a jump of the wear depth."""
-    one = log(
-        friction=lambda t: np.where(t > 240.0, 0.15, 0.12) + 0.004 * _noise(t.size),
-        wear_depth=lambda t: 1e-8 * t + 1e-5 * (t > 120.0) + 1e-8 * _noise(t.size),
-    )
-    test = reduce_log(one, ("time", 10.0))
-    assert "at 3.99" in told(test, "Friction rises in one step by 0.03")  # at 240 s, in spans of 1.5 s
-    assert told(test, "Wear depth jumps by 10 um at 120.")  # to a span of 2.03 s
-    assert not told(reduce_log(log(friction=np.zeros_like(one.time))), "Friction falls")  # nothing but 0
 
 
 def test_a_test_too_short_for_its_correlation_is_told():
@@ -317,14 +304,6 @@ def test_measured_conditions_are_those_of_the_steady_part():
     assert reduce_log(replace(one, measured=frozenset())).conditions == whole  # stated, not measured
 
 
-def test_a_gap_is_told():
-    """A tenth of the test without rows is told; the mean bridges it."""
-    one = log()
-    kept = (one.time < 200.0) | (one.time > 240.0)
-    short = replace(one, friction=one.friction[kept], time=one.time[kept])
-    assert told(reduce_log(short), "No row lies in 10 %")
-
-
 def test_friction_without_noise_is_reduced():
     """A log that never varies has its value, no error, and no NaN."""
     test = reduce_log(log(friction=lambda t: np.full(t.size, 0.125)))
@@ -339,17 +318,15 @@ def test_friction_without_noise_is_reduced():
 def test_the_last_digit_of_a_log_is_in_the_error(noise):
     """Steps of 0.01: a step over root 12, times exp(-2 pi^2 (noise/step)^2), the noise in steps."""
     friction = np.round(0.123 + 0.01 * noise * _noise(4000), 2)
-    step, error = steady.last_digit(np.append(friction, 0.13))  # one more, so that the step is seen
-    assert step == pytest.approx(0.01, rel=1e-9)
+    error = steady.last_digit(np.append(friction, 0.13))  # one more, so that the step is seen
     left = np.exp(-2 * np.pi**2 * noise**2)
     assert error == pytest.approx(0.01 / 12**0.5 * left, abs=0.05 * 0.01 / 12**0.5)  # noise to 3 %, twice
 
 
-def test_friction_in_coarse_steps_is_told_and_held():
+def test_the_interval_holds_friction_in_coarse_steps():
     """Friction of 0.123 with noise of 0.002, written with two digits, has a mean of 0.1216."""
     test = reduce_log(log(friction=lambda t: np.round(0.123 + 0.002 * _noise(t.size), 2), knows_cycle=False))
     assert test.interval[0] < 0.123 < test.interval[1]
-    assert told(test, "Friction is written in steps of 0.01")
 
 
 def test_an_interval_is_students():

@@ -13,21 +13,15 @@ from minimal_xlsx import Formula, Shown, workbook
 
 from separatrix.cli import main
 from separatrix.errors import ValidityWarning
+from separatrix.present import load as load_dataset
+from separatrix.saving import write_ranking
 from separatrix.study_file import read_study, shipped_studies
 from separatrix.study_file.cells import COLUMNS, sheets_of
 from separatrix.study_file.document import SECTIONS, load
 from separatrix.study_file.templates import template_keys, template_workbook
 from separatrix.study_file.values import READERS
 from separatrix.units import parse
-from separatrix.workbook import OWN_SHEETS, results_workbook
-from separatrix.workbook_files import (
-    add_sheet,
-    new_workbook,
-    put,
-    sheet_title,
-    text_for_cell,
-    workbook_bytes,
-)
+from separatrix.workbook_files import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
 
 STUDY = """
 title = "= A title that begins like a formula"
@@ -292,105 +286,67 @@ def cells(path):
     ]
 
 
-def test_rank_writes_its_workbook_beside_the_document(folder, answer):
-    """The file that `rank --out` leaves is made from the saved document alone, byte for byte."""
-    results_workbook(answer, folder / "again.xlsx")
-    assert (folder / "again.xlsx").read_bytes() == (folder / "out" / "rank.xlsx").read_bytes()
+@pytest.fixture(scope="module")
+def data(folder, answer):
+    """The dataset of the small ranking, for its units."""
+    return load_dataset(folder / "out" / "rank.nc")
 
 
 def test_numbers_are_those_of_the_document(folder, answer):
-    """Friction, threshold and margin stand in the sheets as the document has them, to 16 digits."""
+    """Each table has a sheet: its rows in their order, the field's name with its unit, values in SI."""
     book = openpyxl.load_workbook(folder / "out" / "rank.xlsx")
-    for name, rows in [
-        ("overall", answer["overall"]),
-        *((e["name"], e["materials"]) for e in answer["environments"]),
-    ]:
-        table = list(book[name].values)
-        for row, record in zip(table[1:], rows, strict=True):
-            shown = dict(zip(table[0], row, strict=True))
-            assert shown["rank"] == record["rank"]
-            assert shown["friction (-)"] == record["friction"]
-            if record["verdict"] is not None:
-                for head, key in (
-                    ("restitution threshold (-)", "restitution_threshold"),
-                    ("margin (-)", "margin"),
-                ):
-                    assert shown[head] == pytest.approx(record[key], rel=1e-15)  # the digits of a workbook
-                low = record["restitution_threshold_low"] - record["restitution_factor"]
-                assert shown["margin, low end of 95 % (-)"] == pytest.approx(low, abs=1e-12)  # rounding
-            assert shown["verdict"] == (record["verdict"] or "not measured")
+    assert book.sheetnames == ["candidates", "overall", "stability curve", "linear limit", "answer", "inputs"]
+    places = [{"environment": e["name"]} | row for e in answer["environments"] for row in e["materials"]]
+    stability = answer["stability"]
+    curves = {"stability curve": stability["curve"], "linear limit": stability["linear_limit"]}
+    for name, records in {"candidates": places, "overall": answer["overall"], **curves}.items():
+        head, *rows = book[name].values
+        assert len(rows) == len(records)
+        for row, record in zip(rows, records, strict=True):
+            shown = dict(zip([one.partition(" [")[0] for one in head], row, strict=True))
+            numbers = {key: record[key] for key in shown if isinstance(record[key], float)}
+            assert {key: shown[key] for key in numbers} == pytest.approx(numbers, rel=1e-15)  # its digits
+            if "verdict" in shown:
+                assert (shown["rank"], shown["verdict"]) == (record["rank"], record["verdict"])
+    assert next(iter(book["candidates"].values))[:4] == ("environment", "name", "rank", "verdict")
+    assert {"friction [-]", "largest_offset [m]"} <= {cell.value for cell in book["overall"][1]}
     assert book["overall"].freeze_panes == "C2"
-    assert book["overall"]["D2"].number_format == "0.000"
 
 
 def test_inputs_and_sources_are_there(folder, answer):
-    """Each input has its unit and origin, each friction its scatter; about has version and seed."""
+    """Each input has its unit and origin, each friction its scatter and source; version and seed."""
     book = openpyxl.load_workbook(folder / "out" / "rank.xlsx")
-    lines = {(row[0], row[1]): row[2:] for row in book["inputs"].values}
-    assert lines["film", "thickness"] == (5e-7, "m", 'small.toml, line 6: "0.5 um"')
-    assert lines["cage", "gravity"] == (0, "m/s2", "default")
-    assert lines["ranking", "friction_scatter"] == (0.09, "-", "default")
-    assert {row[1] for row in book["materials"].values} >= {"440C", "PTFE transfer film"}
-    assert "candidate @SUM(1)" in {row[0] for row in book["materials"].values}
-    frictions = [row[:5] for row in book["frictions"].values]
-    assert ("'=cmd|' /C calc'!A0", "liquid nitrogen, 440C", 0.12, 0.02, 8) in frictions
-    about = dict(row for row in book["about"].values if row[0])
-    assert about["program"] == f"separatrix {answer['separatrix_version']}, rank"
-    assert (about["seed"], about["kicks (m/s)"]) == (1, "0.1; 0.5; 2.0")
-
-
-def test_what_was_not_tested_stands_beside_the_friction(answer, tmp_path):
-    """An extrapolated friction, an assumed scatter and the probability of the lowest are in each table."""
-    said = ["slip speed in the pocket 25.1 m/s, tests cover 1 to 5 m/s", "tested in air"]
-    known = {"extrapolation": said, "friction_scatter_assumed": True, "probability_lowest_friction": 0.7}
-    results_workbook(answer | {"overall": [row | known for row in answer["overall"]]}, tmp_path / "a.xlsx")
-    headings, first, *_ = openpyxl.load_workbook(tmp_path / "a.xlsx")["overall"].values
-    row = dict(zip(headings, first, strict=True))
-    assert row["friction extrapolated beyond the tests"] == "; ".join(said)
-    assert row["scatter of the friction assumed"] == "yes"
-    assert row["probability of the lowest friction (-)"] == 0.7
-
-
-def test_a_friction_alone_has_a_word_for_the_probability_of_the_lowest(answer, tmp_path):
-    """No number and no empty cell; one that was not measured has an empty cell."""
-    lone = answer["overall"][0] | {"probability_lowest_friction": None}
-    absent = dict.fromkeys(lone) | {"name": "Not measured", "extrapolation": []}
-    results_workbook(answer | {"overall": [lone, absent]}, tmp_path / "a.xlsx")
-    headings, *rows = openpyxl.load_workbook(tmp_path / "a.xlsx")["overall"].values
-    place = headings.index("probability of the lowest friction (-)")
-    assert [row[place] for row in rows] == ["none: no other measured", None]
-
-
-def test_environments_take_no_name_of_ours_and_keep_theirs(answer, tmp_path):
-    """A sheet's name may be cut or changed; the name itself stands in its rows."""
-    names = ["Inputs", "gaseous nitrogen at 77 K, 440C, run in", "a/b"]
-    renamed = [one | {"name": name} for one, name in zip(answer["environments"] * 2, names, strict=False)]
-    results_workbook(answer | {"environments": renamed}, tmp_path / "a.xlsx")
-    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
-    assert book.sheetnames[1:4] == ["Inputs (2)", "gaseous nitrogen at 77 K, 440C,", "a-b"]
-    assert set(OWN_SHEETS) == {book.sheetnames[0], *book.sheetnames[4:]}
-    for title, name in zip(book.sheetnames[1:4], names, strict=True):
-        headings, *rows = book[title].values
-        assert {row[headings.index("environment")] for row in rows} == {name}
+    lines = {row[0]: row[1:] for row in book["inputs"].values}
+    assert lines["film.thickness"] == (5e-7, "m", 'small.toml, line 6: "0.5 um"')
+    assert lines["cage.gravity"] == (0, "m/s2", "default")
+    assert lines["film.material.name"][0] == "PTFE transfer film"
+    assert lines["bearing.ball_material.elastic_modulus"][:2] == (2e11, "Pa")
+    assert lines["ranking.candidates[2].material.confidence"][0].startswith("modulus: guess")
+    friction = "ranking.candidates[1].friction.liquid nitrogen, 440C"
+    parts = ("mean", "standard_deviation", "count", "source")
+    assert [lines[f"{friction}.{part}"][0] for part in parts] == [0.12, 0.02, 8, "'-2+3"]
+    single = {row[0]: row[1:] for row in book["answer"].values}
+    assert single["separatrix_version"][0] == answer["separatrix_version"]
+    assert (single["seed"][0], single["kicks"]) == (1, ("0.1; 0.5; 2.0", "m/s"))
+    assert single["pocket.slip_speed"] == (pytest.approx(answer["pocket"]["slip_speed"]), "m/s")
 
 
 EVIL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+1", "-2+3", "\t=1+1", "\r=1", " =1+1", "＝1+1", "\x07bell"]
 
 
 def with_text_everywhere(value, text):
-    """Return a document with every text in it replaced, except those that mean something to us."""
+    """Return a document with every text in it replaced, except units."""
     if isinstance(value, dict):
-        kept = ("verdict", "unit")
-        return {k: v if k in kept else with_text_everywhere(v, text) for k, v in value.items()}
+        return {k: v if k == "unit" else with_text_everywhere(v, text) for k, v in value.items()}
     if isinstance(value, list):
         return [with_text_everywhere(item, text) for item in value]
     return text if isinstance(value, str) else value
 
 
 @pytest.mark.parametrize("text", EVIL)
-def test_no_text_is_ever_a_formula(answer, tmp_path, text):
+def test_no_text_is_ever_a_formula(answer, data, tmp_path, text):
     """Whatever a user writes, in every place of the document: text cells, no formula, no beginning of one."""
-    results_workbook(with_text_everywhere(answer, text), tmp_path / "evil.xlsx")
+    write_ranking(with_text_everywhere(answer, text), data, tmp_path / "evil.xlsx")
     found = cells(tmp_path / "evil.xlsx")
     assert {cell.data_type for _, cell in found} <= {"s", "n"}
     texts = [cell for _, cell in found if isinstance(cell.value, str)]
@@ -404,35 +360,24 @@ def test_no_text_is_ever_a_formula(answer, tmp_path, text):
     assert not [part for part in sheets if b"<f" in part]
 
 
-def test_the_same_content_gives_the_same_bytes(answer, tmp_path, monkeypatch):
+def test_the_same_content_gives_the_same_bytes(answer, data, tmp_path, monkeypatch):
     """Neither date nor time nor the order of making shows in the file."""
-    results_workbook(answer, tmp_path / "now.xlsx")
+    write_ranking(answer, data, tmp_path / "now.xlsx")
     now = time.time()
     monkeypatch.setattr(time, "time", lambda: now + 1e7)
     monkeypatch.setattr(time, "localtime", lambda *_: time.gmtime(now + 1e7))
-    results_workbook(answer, tmp_path / "later.xlsx")
+    write_ranking(answer, data, tmp_path / "later.xlsx")
     assert (tmp_path / "now.xlsx").read_bytes() == (tmp_path / "later.xlsx").read_bytes()
     with zipfile.ZipFile(tmp_path / "now.xlsx") as archive:
         core = archive.read("docProps/core.xml")
     assert core.count(b"2000-01-01T00:00:00Z<") == 2
 
 
-def test_an_unfinished_answer_has_a_workbook_too(answer, tmp_path):
-    """Without a curve and without verdicts, as an interrupt may leave it, what is there is written."""
-    bare = dict.fromkeys(answer["overall"][0]) | {"name": "A", "reason": "Not finished.", "friction": 0.1}
-    document = answer | {"stability": None, "overall": [bare], "environments": []}
-    results_workbook(document, tmp_path / "bare.xlsx")
+def test_a_table_that_an_answer_lacks_has_no_sheet(answer, data, tmp_path):
+    """A ranking without a curve."""
+    write_ranking(answer | {"stability": None}, data, tmp_path / "bare.xlsx")
     book = openpyxl.load_workbook(tmp_path / "bare.xlsx")
-    assert "stability curve" not in book.sheetnames
-    assert ("A", "not finished") in [row[1:3] for row in book["overall"].values]
-
-
-def test_names_of_sheets_are_legal_and_differ():
-    """At most 31 characters, none of the forbidden ones, no two the same in any case."""
-    names: list[str] = []
-    for wanted in ("a/b:c*[d]?", "x" * 40, "X" * 40, "", "'quoted'", "a/b:c*[d]?"):
-        names.append(sheet_title(wanted, names))
-    assert names == ["a-b-c--d--", "x" * 31, "X" * 27 + " (2)", "sheet", "quoted", "a-b-c--d-- (2)"]
+    assert book.sheetnames == ["candidates", "overall", "answer", "inputs"]
 
 
 def test_what_we_write_we_read(tmp_path):

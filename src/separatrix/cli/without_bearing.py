@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,11 +13,10 @@ from separatrix.cli.console import answer, answer_json, interruptible, progress_
 from separatrix.cli.verbs import Jobs, Json, Quiet, named, threads
 from separatrix.errors import InputError
 from separatrix.staged import refuse_existing, staged, writable_folder
-from separatrix.units import format_quantity, parse, printable, shown
+from separatrix.units import parse, printable, shown
 
 if TYPE_CHECKING:
     from separatrix.friction.tribometer import ReducedLogs
-    from separatrix.library.reading import Content
     from separatrix.present.text.materials import Shown
 
 TRIBOMETER = "Friction with its scatter from raw logs of tests."
@@ -131,25 +130,20 @@ Kind = Annotated[str | None, typer.Option("--kind", metavar="KIND", help=KIND_HE
 LIBRARY_HELP = "A library file or folder to read too; may be repeated."
 Libraries = Annotated[list[str] | None, typer.Option("--library", metavar="PATH", help=LIBRARY_HELP)]
 AT_HELP = 'For instance "77 K": the data that serve there.'
-UNDER_HELP = 'State of a fluid there [default: "101325 Pa"].'
-MATERIALS = "The library of materials; check one of your own, add to it."
+MATERIALS = "The library of materials."
 MATERIALS_EPILOG = (
     "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
     "are read, as they are for a study there."
 )
+LIST = "Every record: its numbers, how sure they are, and its library."
+SHOW = "One record whole: every number with source, conditions and confidence."
 
 
 def materials_application() -> typer.Typer:
     """Return the verbs below `materials`."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    verbs: dict[str, tuple[Callable[..., None], str]] = {
-        "list": (_list, "Every record: its numbers, how sure they are, and its library."),
-        "show": (_show, "One record whole: every number with source, conditions and confidence."),
-        "check": (_check, "Read a library file; report what it contains."),
-        "add": (_add, "Add the records of a file to a library of your own."),
-    }
-    for name, (function, text) in verbs.items():
-        app.command(name, help=text, epilog=MATERIALS_EPILOG if name in ("list", "show") else None)(function)
+    app.command("list", help=LIST, epilog=MATERIALS_EPILOG)(_list)
+    app.command("show", help=SHOW, epilog=MATERIALS_EPILOG)(_show)
     return app
 
 
@@ -164,45 +158,15 @@ def _show(
     name: Annotated[str, typer.Argument(metavar="NAME", help="A material, film, fluid or friction table.")],
     kind: Kind = None,
     temperature: Annotated[str | None, typer.Option(metavar="T", help=AT_HELP)] = None,
-    pressure: Annotated[str | None, typer.Option(metavar="P", help=UNDER_HELP)] = None,
     library: Libraries = None,
     json: Json = False,
 ) -> None:
     from separatrix.data_answers import materials
     from separatrix.present.text.materials import shown as in_words
 
-    views = materials(kind, libraries=library or ()).show(
-        name,
-        temperature=_quantity(temperature, "K", "--temperature", 1e-3, 5000.0),
-        pressure=_quantity(pressure, "Pa", "--pressure", 1e-3, 1e11),
-    )
+    at = None if temperature is None else _temperature(temperature)
+    views = materials(kind, libraries=library or ()).show(name, temperature=at)
     _deliver("show", {"records": [_plain(one) for one in views]}, None if json else in_words(views))
-
-
-def _check(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file.")], json: Json = False
-) -> None:
-    from separatrix.library import joined
-    from separatrix.library.reading import read_library
-
-    content = read_library(file)
-    joined([content])
-    _summary("check", content, None, as_json=json)
-
-
-def _add(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A library file with the new records.")],
-    to: Annotated[
-        str | None, typer.Option("--to", metavar="LIBRARY", help="The library file to add to.")
-    ] = None,
-    json: Json = False,
-) -> None:
-    from separatrix.library import add_records
-
-    if not to:
-        cure = "For instance: --to materials.toml."
-        raise InputError("--to", "is missing: the library file to add to", cure=cure)
-    _summary("add", add_records(file, Path(to)), to, as_json=json)
 
 
 def _deliver(verb: str, document: Mapping[str, object], text: str | None) -> None:
@@ -214,34 +178,15 @@ def _deliver(verb: str, document: Mapping[str, object], text: str | None) -> Non
         answer(text)
 
 
-def _summary(verb: str, content: Content, library: str | None, *, as_json: bool) -> None:
-    """Answer with the content of a library file: its records, and how many of their numbers are guesses."""
-    from dataclasses import asdict
-
-    from separatrix.present.text.materials import added, checked, counts
-
-    records = [counts(record) for record in content.records]
-    document = {**content.file.plain(), "records": [asdict(one) for one in records]}
-    if library is not None:
-        document["library"] = library
-    text = checked(content.file, records) if library is None else added(library, records)
-    _deliver(verb, document, None if as_json else text)
-
-
-def _quantity(text: str | None, unit: str, option: str, low: float, high: float) -> float | None:
-    if text is None:
-        return None
-    value = parse(text, unit, option)
-    if not low <= value <= high:
-        rule = f"must lie between {format_quantity(low, unit)} and {format_quantity(high, unit)}"
-        raise InputError(option, rule, shown(text))
+def _temperature(text: str) -> float:
+    value = parse(text, "K", "--temperature")
+    if not 1e-3 <= value <= 5000.0:
+        raise InputError("--temperature", "must lie between 0.001 K and 5000 K", shown(text))
     return value
 
 
 def _plain(one: Shown) -> dict[str, object]:
     whole = one.record.plain()
-    if one.state is not None:
-        return whole | {"state": one.state.plain(), "cautions": list(one.cautions)}
     if one.taken_at is not None:
         return whole | {"taken": dict(one.taken), "taken_at": one.taken_at, "cautions": list(one.cautions)}
     return whole

@@ -1,4 +1,4 @@
-"""Records of the library: every number with its source, conditions and confidence; states of fluids."""
+"""Records of the library: every number with its source, conditions and confidence."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple, TypedDict
 
-from separatrix.errors import InputError
 from separatrix.study import Friction
-from separatrix.units import Kelvin, KilogramPerMetre3, Pascal, format_quantity
+from separatrix.units import Kelvin, format_quantity
 
 KINDS = ("bearing material", "cage material", "film", "fluid", "friction table")
 """Kinds of records; in a file the section is the same word with an underscore."""
@@ -18,14 +17,6 @@ CONFIDENCES = ("measured", "maker", "literature", "handbook", "guess")
 
 NEAR: Kelvin = 10.0
 """A datum with one temperature serves this far to either side of it."""
-
-ATMOSPHERE: Pascal = 101325.0
-SAME_TEMPERATURE: Kelvin = 0.05
-"""A state of the record serves this near to its temperature, so that "77.4 K" is the boiling point; the
-density changes by less than 0.1 % on the way, that of helium gas by 2 %."""
-
-SAME_PRESSURE = 1e-3
-EXTRA = 'Install the extra: pip install "separatrix[fluids]".'
 
 
 class Property(NamedTuple):
@@ -94,14 +85,6 @@ class Datum:
         low, high = self.temperature
         margin = NEAR if low == high else 0.0
         return low - margin <= temperature <= high + margin
-
-    def is_state_at(self, temperature: Kelvin, pressure: Pascal) -> bool:
-        """Whether it is of a state of a fluid at this temperature and this pressure."""
-        if self.temperature is None or self.pressure is None:
-            return False
-        near = abs(self.pressure - pressure) <= SAME_PRESSURE * pressure
-        low, high = self.temperature
-        return near and low - SAME_TEMPERATURE <= temperature <= high + SAME_TEMPERATURE
 
     def plain(self) -> dict[str, object]:
         """Return it as plain data with every condition, None where it is not known."""
@@ -222,31 +205,6 @@ def choose(data: Sequence[Datum], temperature: Kelvin | None, words: str) -> Cho
     return Choice(nearest, f"{words}: not stated at {at}, the value at {stated} is used")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FluidState:
-    """State of a fluid at a temperature and a pressure; viscosity and heat capacity in SI."""
-
-    name: str
-    temperature: Kelvin
-    pressure: Pascal
-    phase: str
-    density: KilogramPerMetre3
-    viscosity: float | None
-    heat_capacity: float | None
-    source: str
-
-    def plain(self) -> dict[str, object]:
-        """Return it as plain data with units."""
-        units = {"density": "kg/m3", "viscosity": "Pa s", "heat_capacity": "J/kg/K"}
-        return {
-            "temperature": {"value": self.temperature, "unit": "K"},
-            "pressure": {"value": self.pressure, "unit": "Pa"},
-            "phase": self.phase,
-            **{key: {"value": getattr(self, key), "unit": unit} for key, unit in units.items()},
-            "source": self.source,
-        }
-
-
 def contradictions(record: Mapping[str, Any], temperature: Kelvin) -> Iterator[str]:
     """Sentences on a fluid whose temperature rules out the phase in its name at any pressure.
 
@@ -267,52 +225,3 @@ def contradictions(record: Mapping[str, Any], temperature: Kelvin) -> Iterator[s
     if triple is not None and temperature < triple:
         limit = f"the triple point is {format_quantity(triple, 'K')}"
         yield f"{name}: at {at} it is solid, or a thin vapour; {limit}. {cure}"
-
-
-def fluid_state(record: Record, temperature: Kelvin, pressure: Pascal = ATMOSPHERE) -> FluidState:
-    """State of a fluid at a temperature and a pressure.
-
-    Notes
-    -----
-    Equations of state and of viscosity are those of CoolProp (I. H. Bell and others, Industrial and
-    Engineering Chemistry Research 53, 2498, 2014), which names the source of each. A state of the record
-    itself serves with and without that extra: on the saturation line temperature and pressure leave the phase
-    open, and the name decides.
-
-    Raises
-    ------
-    InputError
-        The state lies outside the equation of state, or CoolProp is needed and not installed.
-    """
-    where = f"{record.name} at {format_quantity(temperature, 'K')} and {format_quantity(pressure, 'Pa')}"
-    numbers = ("density", "viscosity", "heat_capacity")
-    known: dict[str, Any] = {"name": record.name, "temperature": temperature, "pressure": pressure}
-    near = [
-        next((d for d in record.data.get(key, ()) if d.is_state_at(temperature, pressure)), None)
-        for key in numbers
-    ]
-    if near[0] is not None:
-        known |= {key: d and d.value for key, d in zip(numbers, near, strict=True)}
-        return FluidState(**known, phase=record.facts["phase"], source=near[0].source)
-    try:
-        from CoolProp import CoolProp
-    except ImportError:
-        raise InputError(where, "is not in the built-in table", cure=EXTRA) from None
-    substance = record.facts.get("coolprop")
-    if substance is None:
-        raise InputError(where, "has no state in its record, and names no fluid of CoolProp")
-    state = ("T", temperature, "P", pressure, substance)
-    try:
-        known |= {key: CoolProp.PropsSI(what, *state) for key, what in zip(numbers, "DVC", strict=True)}
-        phase = str(CoolProp.PhaseSI(*state)).replace("_", " ")
-    except ValueError as error:
-        raise InputError(where, f"has no state: {str(error).partition(':')[0][:100]}") from None
-    equations = [CoolProp.get_BibTeXKey(substance, what) for what in ("EOS", "VISCOSITY")]
-    return FluidState(**known, phase=phase, source=f"CoolProp: {', '.join(equations)}")
-
-
-def other_phase(record: Record, state: FluidState) -> Iterator[str]:
-    """Sentence for a fluid of that name which is in another phase."""
-    if {record.facts["phase"], state.phase} == {"liquid", "gas"}:
-        at = f"{format_quantity(state.temperature, 'K')} and {format_quantity(state.pressure, 'Pa')}"
-        yield f"{record.name}: at {at} it is a {state.phase}."

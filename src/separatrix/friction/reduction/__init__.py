@@ -80,14 +80,11 @@ class Reduction:
     steady_rows: slice  # rows of the steady part
     along: Array  # abscissa of every row of the log, shape (row,)
     stretch: cycles.Stretch  # rows in which the contact slid under its load
-    cycle: float | None  # length of a cycle in the unit of the abscissa; None if unknown
     run_in: RunIn | None  # how the end of running-in was found; None where it was given
     spans: cycles.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""
     mean: steady.SteadyMean
     steady_friction: Array  # friction of the rows of the steady part, shape (row,)
-    last_digit: tuple[float, float]
-    """Step in which friction is written, and the standard error that it causes."""
     cycle_means: Array
     """Means of whole cycles of the steady part, shape (cycle,); empty where no cycle is known."""
     oscillation: cycles.Oscillation
@@ -138,12 +135,10 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
         steady_rows=steady_rows,
         along=along,
         stretch=stretch,
-        cycle=cycle,
         run_in=found,
         spans=spans,
         mean=mean,
         steady_friction=friction,
-        last_digit=steady.last_digit(friction),
         cycle_means=stretch.cycle_means(spans),
         oscillation=strongest,
         events=events,
@@ -175,7 +170,7 @@ def _test(
         checksum=log.checksum,
         conditions=conditions,
         friction=mean.mean,
-        standard_error=float(np.linalg.norm((error, rest, steady.last_digit(friction)[1]))),
+        standard_error=float(np.linalg.norm((error, rest, steady.last_digit(friction)))),
         degrees_of_freedom=mean.degrees_of_freedom,
         standard_deviation=float(values.std(ddof=1)),
         effective_count=effective,
@@ -205,7 +200,7 @@ def _steady(
         notes = (_few(*stretch.cycles()),)
         stretch = replace(stretch, done=None)
         if given is None:  # within a cycle friction may change as it likes
-            return stretch, None, RunIn(end=0.0, rest=0.0, ends=True, level=True), notes
+            return stretch, None, RunIn(end=0.0, rest=0.0, ends=True), notes
     cut: float | None = None
     found: RunIn | None = None
     if given is None:

@@ -33,7 +33,6 @@ class Spans:
     start: float
     width: float
     means: Array  # shape (span,); where a span has no row, the straight line between its neighbours
-    counts: Array  # rows in each span, shape (span,)
 
     @property
     def centres(self) -> Array:
@@ -181,7 +180,7 @@ def means(abscissa: Array, values: Array, start: float, end: float, count: int) 
     if full.any():  # a span without a row is bridged
         spans = np.arange(count)
         found = np.asarray(np.interp(spans, spans[full], found[full]), dtype=float)
-    return Spans(start=start, width=width, means=found, counts=held)
+    return Spans(start=start, width=width, means=found)
 
 
 SEGMENTS = 8  # parts of the test whose spectra are averaged, overlapping by half

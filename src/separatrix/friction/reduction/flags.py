@@ -13,7 +13,7 @@ from scipy.ndimage import median_filter
 from separatrix.friction.file import in_words
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.conditions import changes
-from separatrix.friction.reduction.cycles import FEWEST, Spans, means
+from separatrix.friction.reduction.cycles import Spans
 from separatrix.friction.reduction.steady import LONG
 from separatrix.units import format_number, format_quantity
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 SEIZURE = 3.0  # friction over its usual level from which, if it stays, a contact counts as seized
 FORCE_LOSS = 0.5  # share of the usual normal force below which, if it stays, the load counts as lost
-STICK_SLIP = 0.1  # peak to peak over mean friction from which an oscillation is reported
 DRIFT_SIZE = 0.02  # change over the steady part, over the mean, from which a significant drift is reported
 FEWEST_EFFECTIVE = 20.0  # independent values below which a test is reported as too short
 SMOOTHED = 5  # rows of the running median: fewer in a row are not an event
@@ -30,14 +29,8 @@ LASTING = 0.1  # share of the rows through which a state must last to count as s
 CHUNKS = 256  # stretches from whose means the usual friction is taken
 NOISE = 7.0  # standard deviations above its mean that noise does not reach
 ONSET = 0.1  # share of the rise to the limit at which a seizure begins
-STEP_GAIN, STEP_SIZE = 0.4, 0.1
-"""A step leaves less than this share of the scatter around a straight line, and is larger than this share
-of the mean."""
-
-EDGE = 0.05  # share of the steady part at its ends, or three spans, within which no step is reported
+EDGE = 0.05  # share of the steady part, or three spans, by which a rise may lie behind running-in
 RISE = 2.0  # steady friction over that before a rise in running-in from which the rise is reported
-JUMP = 10.0
-"""A jump of wear over the usual scatter of its increments over two spans; it is also a fifth of all wear."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,14 +38,14 @@ class Event:
     """Something that happens at one row."""
 
     kind: str
-    """``"loading"``, ``"seizure"``, ``"force lost"``, ``"spike"``, ``"friction step"`` or ``"wear step"``."""
+    """``"loading"``, ``"seizure"`` or ``"force lost"``."""
     row: int  # first row of it; of ``"loading"`` the first row after it
-    size: float  # largest friction, lowest force [N], or the step: friction or depth [m]
+    size: float  # largest friction, or lowest force [N]
     usual: float  # what it is compared with
 
 
 def row_events(log: RawLog) -> tuple[Event, ...]:
-    """Return what single rows show: loading, seizure, spikes, lost load; in the order of the rows."""
+    """Return what single rows show: loading, seizure, lost load; in the order of the rows."""
     found = [*_force_events(log), *_friction_events(log)]
     return tuple(sorted(found, key=lambda event: event.row))
 
@@ -80,14 +73,10 @@ def _friction_events(log: RawLog) -> Iterator[Event]:
     for first, last in _stretches(smooth > max(SEIZURE * usual, noise)):
         if first == 0 or last - first < SMOOTHED:
             continue
-        stays = last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows
-        row = first
-        if stays:
+        if last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows:  # it stays
             calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (SEIZURE - 1.0)))
             row = int(calm[-1]) + 1 if calm.size else first
-        kind = "seizure" if stays else "spike"
-        yield Event(kind=kind, row=row, size=float(smooth[first:last].max()), usual=usual)
-        if stays:
+            yield Event(kind="seizure", row=row, size=float(smooth[first:last].max()), usual=usual)
             return
 
 
@@ -111,34 +100,13 @@ def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def friction_step(spans: Spans) -> tuple[float, float] | None:
-    """Return place and size of a step that explains the means far better than a straight line; else None."""
-    y, n = spans.means, spans.means.size
-    if n < FEWEST:
-        return None
-    x = np.arange(n) - (n - 1) / 2
-    level = y - y.mean()
-    straight = float(level @ level - (x @ level) ** 2 / (x @ x))
-    edge = max(3, int(EDGE * n))
-    split = np.arange(edge, n - edge)
-    left = np.cumsum(level)[split - 1]
-    gain = left**2 * n / (split * (n - split))
-    best = int(np.argmax(gain))
-    k = int(split[best])
-    size = float(y[k:].mean() - y[:k].mean())
-    small = abs(size) <= STEP_SIZE * abs(float(y.mean()))  # nor where all are 0
-    if small or level @ level - gain[best] > STEP_GAIN * straight:
-        return None
-    return spans.start + spans.width * k, size
-
-
 def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float] | None:
     """Return place and level before a rise in running-in to far above it; else None.
 
     The spans are those of the whole test, running-in ends at `end` of their ruler, and `friction` is steady
     behind it. The place is that of the rising step that explains the means best; it must be in what is cut,
-    or so near behind that `friction_step` does not look there. The level is the lower of the medians of both
-    halves before it: neither a fall that comes first nor a slow rise lifts it.
+    or just behind. The level is the lower of the medians of both halves before it: neither a fall that
+    comes first nor a slow rise lifts it.
     """
     y, n = spans.means, spans.means.size
     split = np.arange(1, n)
@@ -151,53 +119,29 @@ def run_in_rise(spans: Spans, end: float, friction: float) -> tuple[float, float
     return (place, before) if is_cut and friction > max(0.0, RISE * before) else None
 
 
-def wear_step(spans: Spans) -> tuple[float, float] | None:
-    """Return place and size of a sudden change of wear depth; else None."""
-    if spans.means.size < FEWEST:
-        return None
-    increments = spans.means[2:] - spans.means[:-2]  # over the span in which it may be
-    excess = increments - np.median(increments)
-    scatter = 1.4826 * float(np.median(np.abs(excess)))
-    k = int(np.argmax(np.abs(excess)))
-    if abs(excess[k]) <= JUMP * scatter or abs(excess[k]) < 0.2 * float(np.ptp(spans.means)):
-        return None
-    return spans.start + spans.width * (k + 1.5), float(excess[k])
-
-
 RATES = {"time": (3600.0, "per h"), "distance": (1000.0, "per km"), "cycles": (1000.0, "per 1000 cycles")}
 """Size and words of the unit of a drift, by the abscissa."""
 
 CHANCE = 0.01  # probability without any drift below which a drift is reported
-CLEAR = 0.25  # power of an oscillation over that of all the rest from which it is reported
 HALF = 0.5  # share of a test beyond which running-in is reported as long
 FEW_ROWS = 36  # rows below which running-in cannot be judged
-RESOLVED = 5.0  # rows an oscillation below which it may be the image of a faster one
 MOSTLY = 1.4  # standard error over that by noise from which most of it is what may be left of running-in
 HIGH = 1.0  # friction above which a wrong column or unit is likelier than a contact
-GAP = 0.05  # share of the steady part without a row that is reported
 
 
 def flags(one: Reduction) -> Iterator[str]:
     """Yield what a reader has to consider about a test."""
-    for part in (_ends, _run_in, _drift, _oscillation, _changes, _length, _size, _rows):
+    for part in (_ends, _run_in, _drift, _length, _size):
         yield from part(one)
     yield from changes(one.log, one.steady_rows)
 
 
-def _at_row(one: Reduction, row: int) -> str:
-    """Return the place of a row in words."""
-    return in_words(float(one.along[min(row, one.along.size - 1)]), one.test.run_in_axis)
-
-
-def _at(one: Reduction, ruled: float) -> str:
-    """Return a place on the ruler in words."""
-    return in_words(one.stretch.place(ruled), one.test.run_in_axis)
-
-
 def _ends(one: Reduction) -> Iterator[str]:
-    """Report what begins or ends the test."""
+    """Report where the load comes late or is lost, and where a film fails."""
+    axis = one.test.run_in_axis
     for event in one.events:
-        place, usual = _at_row(one, event.row), format_number(event.usual, 3)
+        place = in_words(float(one.along[min(event.row, one.along.size - 1)]), axis)
+        usual = format_number(event.usual, 3)
         force, low = format_quantity(event.usual, "N"), format_quantity(event.size, "N")
         if event.kind == "loading":
             yield f"The normal force reaches its {force} only at {place}: what is before is left out."
@@ -208,35 +152,31 @@ def _ends(one: Reduction) -> Iterator[str]:
                 f"Seizure or a failed film: friction rises from {usual} to {format_number(event.size, 3)} at "
                 f"{place} and stays up; the steady part ends before it."
             )
+    if (rise := run_in_rise(one.stretch.spans(), one.spans.start, one.test.friction)) is not None:
+        low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
+        place = in_words(one.stretch.place(rise[0]), axis)
+        cut = "if running-in ends elsewhere, write run_in_end in the column map; " if one.run_in else ""
+        yield (
+            f"Friction rises from {low} to {high} near {place}, in or next to what is cut as running-in: a "
+            f"failed film, or a genuine rise. Look at the plot; {cut}if the film failed, use the log only up "
+            "to the rise."
+        )
 
 
 def _run_in(one: Reduction) -> Iterator[str]:
-    """Report running-in that is long, does not end, or ends far above where it began."""
+    """Report running-in that does not end, or takes most of the test."""
     test, found, start = one.test, one.run_in, float(one.stretch.along[0])
     share = (test.run_in_end - start) / (test.steady_end - start)
     end = in_words(test.run_in_end, test.run_in_axis)
-    rest = 0.0 if found is None else found.rest
-    of_mean = f"{format_number(rest, 2)} ({100 * rest / max(abs(test.friction), 1e-300):.2g} % of the mean)"
     if found is not None and not found.ends:
+        of_mean = 100 * found.rest / max(abs(test.friction), 1e-300)
         yield (
-            f"Running-in does not end: friction still changes behind {end}, {100 * share:.0f} % of "
-            f"the test; later parts differ from the mean by up to {of_mean}."
+            f"Running-in does not end: friction still changes behind {end}, {100 * share:.0f} % of the test; "
+            f"later parts differ from the mean by up to {format_number(found.rest, 2)} ({of_mean:.2g} % of "
+            "it)."
         )
-    elif found is not None and not found.level and rest > one.mean.standard_error:
-        yield (
-            f"The steady part is not level: its later parts differ from its mean by up to {of_mean}, "
-            "which is in the interval."
-        )
-    if share > HALF and (found is None or found.ends):
+    elif share > HALF:
         yield f"Running-in takes {100 * share:.0f} % of the test, up to {end}."
-    if (rise := run_in_rise(one.stretch.spans(), one.spans.start, test.friction)) is not None:
-        low, high = format_number(rise[1], 3), format_number(test.friction, 3)
-        cut = "if running-in ends elsewhere, write run_in_end in the column map; "
-        yield (
-            f"Friction rises from {low} to {high} near {_at(one, rise[0])}, in or next to what is cut as "
-            f"running-in: a failed film, or a genuine rise. Look at the plot; {cut if found else ''}if the "
-            "film failed, use the log only up to the rise."
-        )
 
 
 def _drift(one: Reduction) -> Iterator[str]:
@@ -251,52 +191,6 @@ def _drift(one: Reduction) -> Iterator[str]:
         f"Friction drifts by {rate} {words} (standard error {error}), from {first} to {last} over the steady "
         "part: its mean is that of this part, not of its end."
     )
-
-
-def _oscillation(one: Reduction) -> Iterator[str]:
-    """Report an oscillation that is large enough and exceeds the noise."""
-    found, test = one.oscillation, one.test
-    small = found.amplitude < STICK_SLIP * abs(test.friction)
-    if found.amplitude <= 0.0 or small or found.signal_to_noise < CLEAR:
-        return
-    rate = format_number(found.frequency, 3)
-    where = {"time": f"at {rate} Hz", "distance": f"{rate} times per m", "cycles": f"{rate} times per cycle"}
-    what = "stick-slip"
-    if one.cycle is None:
-        what = "stick-slip, or once per turn or stroke (no cycle time is known)"
-    spacing = (test.steady_end - test.run_in_end) / max(test.steady_rows - 1, 1)
-    rows = 1.0 / (found.frequency * spacing)
-    if rows < RESOLVED:
-        what = (
-            f"with only {format_number(rows, 2)} rows an oscillation it may be stick-slip, run-out or the "
-            "image of something faster (aliasing); log more rows to distinguish them"
-        )
-    yield (
-        f"Friction oscillates {where[test.run_in_axis]} by {format_number(found.amplitude, 2)} from peak to "
-        f"peak, {100 * found.amplitude / abs(test.friction):.0f} % of its mean, with "
-        f"{format_number(found.signal_to_noise, 2)} times the power of all the rest: {what}."
-    )
-
-
-def _changes(one: Reduction) -> Iterator[str]:
-    """Report friction that rises far in the steady part and comes back, and steps in friction or wear."""
-    low, high = one.test.run_in_end, one.test.steady_end
-    spikes = [e for e in one.events if e.kind == "spike" and low <= one.along[e.row] <= high]
-    if spikes:
-        largest = max(spikes, key=lambda event: event.size)
-        often = "once" if len(spikes) == 1 else f"{len(spikes)} times, most"
-        sizes = f"{format_number(spikes[0].usual, 3)} to {format_number(largest.size, 3)}"
-        yield f"Friction spikes {often} at {_at_row(one, largest.row)}: from {sizes}, and comes back."
-    if (step := friction_step(one.spans)) is not None:
-        word = f"{'rises' if step[1] > 0 else 'falls'} in one step by {format_number(abs(step[1]), 2)}"
-        yield f"Friction {word} at {_at(one, step[0])}: a wear event, or a new surface."
-    depth, spans = one.log.wear_depth, one.spans
-    if depth is None or not np.isfinite(depth).all():
-        return
-    jump = wear_step(means(one.stretch.ruler, depth[one.rows], spans.start, spans.end, spans.means.size))
-    if jump is not None:
-        size = format_quantity(abs(jump[1]), "m", 2)
-        yield f"Wear depth jumps by {size} at {_at(one, jump[0])}: a wear event."
 
 
 def _length(one: Reduction) -> Iterator[str]:
@@ -320,7 +214,7 @@ def _length(one: Reduction) -> Iterator[str]:
 
 
 def _size(one: Reduction) -> Iterator[str]:
-    """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows."""
+    """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows, or no noise."""
     mean = one.test.friction
     low, high = (float(value) for value in np.percentile(one.steady_friction, (1.0, 99.0)))
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
@@ -334,25 +228,8 @@ def _size(one: Reduction) -> Iterator[str]:
             f"Friction {format_number(mean, 3)} is above {format_number(HIGH)}, which dry sliding seldom "
             "reaches: check that its column is not a force, and the units of the forces."
         )
-
-
-def _rows(one: Reduction) -> Iterator[str]:
-    """Report noise that is lost in the last digit of the log, and a stretch without rows."""
-    step, error = one.last_digit
-    if step == 0.0:
+    if np.ptp(one.steady_friction) == 0.0:
         yield (
-            f"Friction is {format_number(one.test.friction)} in every row: the log does not show its noise, "
+            f"Friction is {format_number(mean)} in every row: the log does not show its noise, "
             "and the interval holds none."
         )
-    elif error > one.mean.standard_error:
-        yield (
-            f"Friction is written in steps of {format_number(step, 2)}, more than its noise: that alone "
-            f"makes a standard error of {format_number(error, 2)}."
-        )
-    longest = current = 0
-    for count in one.spans.counts:
-        current = current + 1 if count == 0 else 0
-        longest = max(longest, current)
-    share = longest / one.spans.counts.size
-    if share > GAP:
-        yield f"No row lies in {100 * share:.0f} % of the steady part in one piece: the mean bridges it."

@@ -144,12 +144,12 @@ def spectrum(cosine: Array, corner: Array | float, floor: Array | float) -> Arra
     return np.asarray(floor + (1.0 - floor) * (1.0 / (1.0 + (cosine / corner) ** 2)), dtype=float)
 
 
-def last_digit(rows: Array) -> tuple[Ratio, Ratio]:
-    """Return the step in which a log writes friction, and the error that it leaves in a mean.
+def last_digit(rows: Array) -> Ratio:
+    """Return the error that the steps in which a log writes friction leave in a mean.
 
     A value represents all within half a step of it: a standard error of the step over root 12 [1]_. Noise
     that reaches several steps averages that away: what is left is the characteristic function of a normal
-    distribution at one turn in a step [2]_. Both are zero where all rows are the same.
+    distribution at one turn in a step [2]_. It is zero where all rows are the same.
 
     References
     ----------
@@ -159,12 +159,12 @@ def last_digit(rows: Array) -> tuple[Ratio, Ratio]:
     """
     values = np.unique(rows)
     if values.size < 2:
-        return 0.0, 0.0
+        return 0.0
     step, scatter = float(np.diff(values).min()), float(rows.std())
     if scatter > 10.0 * step:
-        return step, 0.0  # to the last bit
+        return 0.0  # to the last bit
     noise = max(0.0, (scatter / step) ** 2 - 1.0 / 12.0)
-    return step, float(step / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise))
+    return float(step / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise))
 
 
 def _places(count: int) -> Array:
@@ -185,7 +185,7 @@ SEEN = 0.05
 
 STRETCH = 1.3  # factor by which the place found may move up to where the differences are noise alone
 NOISE = 2.0  # squares of standard errors that are noise in a difference: the rest of it is what may be left
-UNEVEN = 0.02  # what may be left, as a share of the mean, from which a steady part is not level
+UNEVEN = 0.02  # drift of a tail, as a share of its mean, from which running-in goes on
 OUTLIER = 6.0
 """Standard deviations from its neighbours at which a single span is a spike, which is not running-in."""
 
@@ -205,14 +205,13 @@ class RunIn:
     """Largest difference between the mean behind the end and that of a later part, less its noise [-]."""
     ends: bool
     """Whether an earlier place than the latest will do, and friction does not go on changing behind it."""
-    level: bool  # whether what may be left is at most `UNEVEN` of the mean
 
 
 def run_in(values: Array) -> RunIn:
     """Return where running-in ends, from means over equal spans, shape (span,)."""
     n = values.size
     if n < FEWEST or np.ptp(values) <= ROUNDING * np.abs(values).max():
-        return RunIn(end=0.0, rest=0.0, ends=True, level=True)
+        return RunIn(end=0.0, rest=0.0, ends=True)
     # spikes of one or two spans are replaced by the median of their neighbours
     middle = median_filter(values, 5, mode="nearest")
     excess = np.abs(values - middle)
@@ -223,7 +222,7 @@ def run_in(values: Array) -> RunIn:
     even = power[:COSINES].mean() <= EVEN * power[COSINES : 4 * COSINES].mean()  # no slow wander, no curve
     straight = _Tails(line, _without_line)
     if even and straight.first(straight.noise) == 0:
-        return straight.from_place(0, abs(float(values.mean())))
+        return straight.from_place(0)
     tails = _Tails(values, _without_level)
     # differences for which nothing is cut, shape (place, later place)
     part = 1.0 - tails.left[None, :] / tails.left[:, None]
@@ -232,7 +231,7 @@ def run_in(values: Array) -> RunIn:
     if first:
         reach = int(np.searchsorted(tails.starts, STRETCH * tails.starts[first] + 1, side="right")) - 1
         first = max(first, min(tails.first(tails.noise), reach))
-    found = tails.from_place(first, abs(float(tails.means[first])))
+    found = tails.from_place(first)
     return replace(found, ends=False) if first and _goes_on(values, int(tails.starts[first])) else found
 
 
@@ -264,12 +263,11 @@ class _Tails:
         earlier = np.tril(np.ones_like(limit, dtype=bool))
         return int(np.argmax((earlier | (self.difference <= limit)).all(axis=1)))
 
-    def from_place(self, place: int, mean: float) -> RunIn:
+    def from_place(self, place: int) -> RunIn:
         """Return the end of running-in at a place."""
         square = (self.difference[place] ** 2 - NOISE * self.variance[place])[place:]
         rest = float(np.sqrt(max(0.0, float(square.max()))))
-        ends = place < self.starts.size - 1
-        return RunIn(end=float(self.share[place]), rest=rest, ends=ends, level=rest <= UNEVEN * mean)
+        return RunIn(end=float(self.share[place]), rest=rest, ends=place < self.starts.size - 1)
 
 
 def _without_level(values: Array) -> Array:

@@ -1,11 +1,11 @@
-"""Text of the library: lists of records, whole records, and the contents of a file."""
+"""Text of the library: lists of records, and whole records."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from separatrix.library.records import Datum, Facts, FluidState, FrictionTable, LibraryFile, Record
+from separatrix.library.records import Datum, Facts, FrictionTable, Record
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -34,45 +34,12 @@ POINTS = ("point", "critical temperature", "critical pressure")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shown:
-    """A record, and what of it serves at a temperature: a datum of each property, or the state of a fluid."""
+    """A record, and what of it serves at a temperature: a datum of each property of a solid."""
 
     record: AnyRecord
     taken_at: Kelvin | None = None
     taken: Mapping[str, int] = field(default_factory=dict)
-    state: FluidState | None = None
     cautions: Sequence[str] = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Counts:
-    """Contents of a record of a library file, and how many of its numbers are guesses."""
-
-    kind: str
-    name: str
-    line: int | None
-    replaces: bool
-    numbers: int
-    guesses: int
-    without_temperature: int
-
-
-def counts(record: AnyRecord) -> Counts:
-    """Count the numbers of a record."""
-    data: list[Datum] = []
-    if isinstance(record, FrictionTable):
-        numbers = sum(value is not None for row in record.friction.values() for value in row.values())
-    else:
-        data = [datum for several in record.data.values() for datum in several]
-        numbers = len(data)
-    return Counts(
-        kind=record.kind,
-        name=record.name,
-        line=record.line,
-        replaces=record.replaces,
-        numbers=numbers,
-        guesses=sum(datum.confidence.startswith("guess") for datum in data),
-        without_temperature=sum(datum.temperature is None for datum in data),
-    )
 
 
 def listed(records: Sequence[AnyRecord]) -> str:
@@ -145,8 +112,6 @@ def _whole(one: Shown) -> str:
     origin = "shipped" if file.shipped else "of the user"
     about.append(("Library", f"{file.label}, {origin}, sha256 {file.checksum[:12]}..."))
     blocks = [heading(f"{record.name} ({record.kind})"), facts(about), whole]
-    if one.state is not None:
-        blocks.append(section("State", facts(_state(one.state))))
     return "\n\n".join([*blocks, *(paragraph(f"Note: {caution}", indent="") for caution in one.cautions)])
 
 
@@ -170,40 +135,9 @@ def _data(record: Record, one: Shown) -> list[str]:
             text = f"{', '.join([text, *filter(None, parts)])}; {datum.confidence}: {datum.source}"
             mark = "*" if i == one.taken.get(key) else " "
             lines.append(paragraph(text, first=f"{mark} ", indent="    "))
-    if one.taken_at is not None:
+    if one.taken and one.taken_at is not None:
         lines.append(f"* serves at {format_quantity(one.taken_at, 'K')}")
     return lines
-
-
-def _state(state: FluidState) -> list[tuple[str, str]]:
-    numbers = (
-        ("Temperature", state.temperature, "K"),
-        ("Pressure", state.pressure, "Pa"),
-        ("Density", state.density, "kg/m3"),
-        ("Viscosity", state.viscosity, "Pa s"),
-        ("Heat capacity", state.heat_capacity, "J/kg/K"),
-    )
-    rows = [
-        (words, ABSENT if value is None else format_quantity(value, unit, 6))
-        for words, value, unit in numbers
-    ]
-    return [*rows, ("Phase", state.phase), ("Source", state.source)]
-
-
-def checked(file: LibraryFile, records: Sequence[Counts]) -> str:
-    """Return the contents of a library file."""
-    headers = ("kind", "name", "line", "numbers", "guesses", "no temperature")
-    rows = [
-        [r.kind, r.name, str(r.line or ABSENT), *map(str, (r.numbers, r.guesses, r.without_temperature))]
-        for r in records
-    ]
-    verdict = f"{file.label} is a valid library: {len(rows)} record{'s'[: len(rows) != 1]}."
-    return f"{table(headers, rows, left=2)}\n\n{verdict}\n"
-
-
-def added(library: str, records: Sequence[Counts]) -> str:
-    """Return the added records."""
-    return f"Added to {library}: {', '.join(f'{record.kind} {record.name}' for record in records)}.\n"
 
 
 def _span(bounds: Sequence[float], unit: str) -> str:
