@@ -59,7 +59,7 @@ class Checked:
     """Values by section and key, those of the file that it extends among them."""
 
     tested: tuple[str, ...] = ()
-    """Materials of the frictions that it names."""
+    """Materials of the tests that it names in [ranking] friction."""
 
     @property
     def version(self) -> str:
@@ -136,7 +136,7 @@ def check(study: Path, root: Path) -> Checked:
 
 
 def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], tuple[str, ...]]:
-    """Return what a study that extends another has, by section and key, and the materials of its frictions."""
+    """Return what a study that extends another has, by section and key, and the materials of its tests."""
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
             found = load(path)
