@@ -3,12 +3,6 @@
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
-// htmx takes up what it has put into the page some 20 ms later.
-// A form that is sent before that would leave the page.
-document.addEventListener("submit", (event) => {
-  if (event.target.matches("[hx-get], [hx-post]")) htmx.process(event.target);
-}, true);
-
 function looks() {
   const style = getComputedStyle(document.documentElement);
   const of = (name) => style.getPropertyValue(name).trim();
@@ -35,7 +29,6 @@ async function fetched(place) {
 }
 
 async function show(figure) {
-  figure.dataset.shown = "true";
   try {
     const found = await fetched(figure.dataset.source);
     const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
@@ -115,19 +108,13 @@ function ended(event) {
   if (event.detail.requestConfig.path.startsWith("/edit/")) sent.clear();
 }
 
-function showAll(root) {
-  if (typeof Plotly === "undefined") return;
-  for (const figure of root.querySelectorAll(".plot[data-source]:not([data-shown])")) show(figure);
-}
-
 document.addEventListener("DOMContentLoaded", () => {
-  showAll(document);
+  for (const figure of document.querySelectorAll(".plot")) show(figure);
   dark.addEventListener("change", () => {
     for (const canvas of document.querySelectorAll(".plot .canvas")) if (canvas.data) Plotly.relayout(canvas, looks());
   });
   document.body.addEventListener("htmx:beforeRequest", sending);
   document.body.addEventListener("htmx:beforeSwap", inPlace);
   document.body.addEventListener("htmx:afterRequest", ended);
-  document.body.addEventListener("htmx:afterSettle", (event) => showAll(event.target));
   document.body.addEventListener("htmx:sendError", () => message("The server does not answer. Start it again: nothing that was finished is lost."));
 });
