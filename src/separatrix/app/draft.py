@@ -181,7 +181,7 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         if key in table:
             del table[key]
     else:
-        put(table, key, typed(value, is_name=is_name(section, key)))
+        _put(table, key, _typed(value, is_name=is_name(section, key)))
     return tomlkit.dumps(document)
 
 
@@ -193,7 +193,7 @@ def parsed(text: str) -> TOMLDocument:
         raise InputError("The text", f"is not valid TOML: {error}", cure=MEND) from None
 
 
-def put(table: MutableMapping[str, Any], key: str, value: object) -> None:
+def _put(table: MutableMapping[str, Any], key: str, value: object) -> None:
     """Set a key; comments behind its old value and in its old list stay."""
     old = table.get(key)
     if isinstance(old, Array) and isinstance(value, list) and _same_list(old, value):
@@ -228,7 +228,7 @@ def with_unit(value: str, unit: str) -> str:
     return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
 
 
-def typed(value: str, *, is_name: bool = False) -> object:
+def _typed(value: str, *, is_name: bool = False) -> object:
     """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
     value = value.strip()
     if not is_name and _NUMBER.fullmatch(value):
