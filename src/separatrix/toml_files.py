@@ -93,10 +93,10 @@ def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object]
         raise _invalid_toml(error, text, label) from None
     if not data:
         raise InputError(label, "is empty", cure=kind.empty)
-    return data, _lines_of_keys(text)
+    return data, lines_of_keys(text)
 
 
-def _lines_of_keys(text: str) -> dict[str, int]:
+def lines_of_keys(text: str) -> dict[str, int]:
     """Line number of each key by its dotted path: ``bearing.bore``, ``ranking.candidates.0.name``."""
     found: dict[str, int] = {}
     seen: dict[str, int] = {}
