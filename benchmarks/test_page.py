@@ -1,9 +1,8 @@
-"""How soon the local page answers what needs no new run, in Chromium: a view, a figure, a slider.
+"""How soon the local page answers what needs no new run, in Chromium: a view, a figure.
 
 Needs the extra `browser` and Chromium, as `make browser-test` does.
 """
 
-import itertools
 import sys
 from pathlib import Path
 
@@ -17,13 +16,6 @@ from browser_tests.conftest import ARGUMENTS, CHROMIUM, STUDY, Server  # noqa: E
 from separatrix.cli import main  # noqa: E402
 
 VERBS = (["rank"], ["map", "--points", "4", "--runs", "2"], ["simulate"])
-MOVE = """async (value) => {
-  const box = document.getElementById("explore"), before = box.dataset.updated;
-  const slider = box.querySelector('[data-key="film.thickness"]');
-  slider.value = value;
-  slider.dispatchEvent(new Event("input", { bubbles: true }));
-  while (box.dataset.updated === before) await new Promise((done) => setTimeout(done, 5));
-}"""
 
 
 @pytest.fixture(scope="module")
@@ -58,18 +50,10 @@ def test_first_view(benchmark, page, server):
 @pytest.mark.parametrize(
     "place",
     [
-        *("study/small.toml", "answer/rank/small.toml", "cage/small.toml", "explore/small.toml", "logs"),
-        *("plot/rank/candidates/small.toml", "plot/map/map/small.toml", "motion/small.toml"),
+        *("study/small.toml", "answer/rank/small.toml", "cage/small.toml"),
+        *("plot/rank/candidates/small.toml", "plot/map/map/small.toml"),
     ],
 )
 def test_what_needs_no_run(benchmark, page, server, place):
     """From request to answer."""
     assert benchmark(page.request.get, f"{server.address}/{place}").ok
-
-
-def test_a_slider(benchmark, page, server):
-    """From the move to new numbers and figure; of two thicknesses in turn."""
-    page.goto(f"{server.address}/explore/small.toml")
-    page.get_by_text("The curve belongs to these values.").wait_for()
-    values = itertools.cycle((0.2, 0.4))
-    benchmark(lambda: page.evaluate(MOVE, next(values)))

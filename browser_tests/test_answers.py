@@ -1,32 +1,22 @@
-"""Jobs and answers: progress, cancel and resume, figures to hover over, a point of a map, the moving cage."""
+"""Jobs and answers: progress, cancel and resume, figures to hover over, files."""
 
 from __future__ import annotations
 
 import json
 
-import numpy as np
 import pytest
-import xarray as xr
 from conftest import PATIENCE, Server, ended, run
 from playwright.sync_api import expect
-
-from separatrix.chain.restitution import damping_for
 
 
 @pytest.fixture(scope="module")
 def ranked(folder, server, browser):
-    """The small study with its ranking, its map and a run; as a person would make them."""
+    """The small study with its ranking, as a person would make it."""
     page = browser.new_context().new_page()
     page.set_default_timeout(PATIENCE)
     page.goto(server.link)
     page.goto(f"{server.address}/study/small.toml")
     run(page, "rank")
-    card = page.locator(".verb", has=page.get_by_role("heading", name="map", exact=True))
-    card.get_by_text("Options").click()
-    card.get_by_label("points").fill("4")
-    card.get_by_label("runs").fill("2")
-    run(page, "map")
-    run(page, "simulate")
     page.context.close()
     return folder / "small"
 
@@ -67,65 +57,6 @@ def test_a_duty_cycle_is_run_and_its_envelope_pointed_at(view, server, ranked, f
     expect(figure.locator(".hoverlayer")).to_contain_text("P(stable)")
     figure.locator(".barlayer path").nth(1).hover(force=True)
     expect(figure.locator(".hoverlayer")).to_contain_text("inner speed 12000 rpm: 50 % of the time")
-
-
-@pytest.mark.parametrize("axes", ["default", "keys"])
-def test_a_click_in_a_map_simulates_that_point(view, server, ranked, folder, axes):
-    """The run has the values of the cell: the restitution factor and friction, or two keys of the study."""
-    page = view()
-    if axes == "keys":
-        page.goto(f"{server.address}/study/small.toml")
-        card = page.locator(".verb", has=page.get_by_role("heading", name="map", exact=True))
-        card.get_by_text("Options").click()
-        card.get_by_label("x", exact=True).fill("cage.mass=20..40g:3")
-        card.get_by_label("y", exact=True).fill("film.race_friction=0.05..0.2:3")
-        card.get_by_label("runs").fill("2")
-        run(page, "map")
-    page.goto(f"{server.address}/answer/map/small.toml")
-    cells = page.locator(".plot .canvas .heatmaplayer image")
-    cells.wait_for()
-    box = cells.bounding_box()
-    page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.1 * box["height"])
-    ended(page, "simulate mass" if axes == "keys" else "simulate restitution")
-    page.get_by_role("link", name="Watch the cage").first.click()
-    expect(page.locator("#grown")).not_to_be_empty()
-    newest = max((ranked / "points").iterdir(), key=lambda path: path.stat().st_mtime)
-    found = xr.load_dataset(newest / "simulate.nc")
-    drawn = xr.load_dataset(ranked / "map.nc")
-    wanted = [float(drawn["x"].values[1 if axes == "keys" else 2]), float(drawn["y"].values[-1])]
-    if axes == "default":
-        wanted[0] = damping_for(
-            wanted[0], float(found["cage_ball_cage_stiffness"]), float(found["cage_mass"])
-        )
-        got = [float(found["cage_race_damping"]), float(found["cage_ball_cage_friction"])]
-    else:
-        document = json.loads((newest / "simulate.json").read_text(encoding="utf-8"))["study"]
-        got = [document["cage"]["mass"]["value"], document["film"]["race_friction"]["value"]]
-    np.testing.assert_allclose(got, wanted, rtol=1e-9)
-
-
-def test_sliders_redraw_at_once_and_refine_behind(view, server, ranked):
-    """New numbers and figure at once; then the curve of these values is computed."""
-    page = view()
-    page.goto(f"{server.address}/explore/small.toml")
-    expect(page.locator("#state")).to_have_text("The curve belongs to these values.")
-    eta = page.locator("[data-number=eta]").inner_text()
-    _move(page, "film.thickness", 0.2)
-    expect(page.locator("[data-number=eta]")).not_to_have_text(eta)
-    _move(page, "cage.mass", 0.5)
-    expect(page.locator("#state")).to_contain_text("in the background")
-    expect(page.locator("#state")).to_have_text("The curve belongs to these values.", timeout=PATIENCE)
-
-
-def _move(page, key: str, value: float) -> None:
-    """Move a slider of the page."""
-    page.locator(f'[data-key="{key}"]').evaluate(
-        """(slider, value) => {
-          slider.value = value;
-          slider.dispatchEvent(new Event("input", { bubbles: true }));
-        }""",
-        value,
-    )
 
 
 def test_a_file_is_downloaded(view, server, ranked):

@@ -108,6 +108,20 @@ def test_what_is_computed_is_what_was_typed(view, server, folder, button):
     assert answer["study"]["film"]["thickness"]["value"] == pytest.approx(0.65e-6, rel=1e-12)
 
 
+def test_materials_of_a_friction_table_are_ticked(view, server):
+    """A tick is in the text at once, and two quick ones both are."""
+    page = view()
+    page.goto(f"{server.address}/study/small.toml")
+    boxes = page.get_by_role("group", name="materials")
+    boxes.get_by_label("Meldin HTC 100").uncheck()
+    boxes.get_by_label("Vespel SP 211").check()
+    expect(page.locator("#text")).to_have_value(_has('materials = ["Armalon", "Vespel SP 211"]'))
+    expect(boxes.get_by_label("Vespel SP 211")).to_be_checked()
+    page.get_by_role("button", name="Discard the edits").click()
+    expect(boxes.get_by_label("Meldin HTC 100")).to_be_checked()
+    expect(boxes.get_by_label("Vespel SP 211")).not_to_be_checked()
+
+
 def test_inherited_values_are_shown(view, server):
     """A study that extends another shows the other's values in fields of its own that are empty."""
     page = view()

@@ -1,9 +1,8 @@
-"""What the page runs and shows: jobs with progress, answers, figures, points of a map, sliders, logs."""
+"""What the page runs and shows: jobs with progress, answers, figures."""
 
 import itertools
 import json
 import os
-import re
 import signal
 import time
 from threading import Event, Thread
@@ -12,18 +11,14 @@ import numpy as np
 import pytest
 from commands import work_undrawn
 from fastapi.testclient import TestClient
-from raw_logs import anton_paar
 from test_cli_answers import SMALL
 
+from separatrix.app import server
 from separatrix.app.jobs import Job, Jobs
 from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.server import application, made_ready
 from separatrix.app.worker import Task
-from separatrix.chain.solution import Solution, solve
-from separatrix.figures.motion import is_in_space
-from separatrix.limits.map_records import varied
 from separatrix.present import load
-from separatrix.study_file import read_study
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
 PATIENCE = 300.0
@@ -94,81 +89,6 @@ def test_a_figure_has_its_series_and_a_text_at_each_point(page, figure, names):
     assert all(texts)
 
 
-@pytest.mark.parametrize(("x", "y"), [(0.31, 0.06), (0.88, 0.49)])
-def test_a_click_in_a_map_runs_the_point_next_to_it(page, root, x, y):
-    """The run has the friction, and the race damping of the restitution factor, of that point."""
-    page.post("/point/small.toml", data={"x": x, "y": y})
-    until(page, lambda jobs: jobs[0].startswith("finished"))
-    eta, friction = round(x, 1), {0.06: 0.05, 0.49: 0.5}[y]
-    place = root / "small" / "points" / f"restitution_factor-{eta:g}_ball_cage_friction-{friction:g}"
-    data = load(place / "simulate.nc")
-    assert float(data["cage_ball_cage_friction"]) == pytest.approx(friction)
-    assert float(data["kick"]) == pytest.approx(float(load(root / "small" / "map.nc")["kick"]))
-    (run,) = re.findall('id="run">(.*?)</script>', page.get(f"/cage/small.toml?point={place.name}").text)
-    seen = json.loads(run)
-    assert seen["centre"][-2:] == pytest.approx(
-        1e9 * data["position"].values[-1], abs=0.5
-    )  # whole nanometres
-    assert seen["lean"] is None
-
-
-def test_the_damping_of_a_point_is_that_of_its_restitution_factor(page, root):
-    """Races that give way less return more; both points above are of one cage."""
-    places = sorted((root / "small" / "points").iterdir())
-    low, high = (float(load(place / "simulate.nc")["cage_race_damping"]) for place in places)
-    assert 0.0 < low < high
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {},
-        {"film.thickness": 2e-6},
-        {"film.race_friction": 0.2, "cage.ball_cage_friction": 0.2},
-        {"cage.mass": 0.05},
-    ],
-)
-def test_sliders_show_what_the_chain_computes(page, root, values):
-    """Eta of the changed study; threshold and margin on the finished curve; other cages are to be refined."""
-    found = page.get("/explored/small.toml", params=values).json()
-    changed = solve(varied(read_study(root / "small.toml"), values))
-    eta = changed.restitution.restitution_factor
-    assert found["eta"] == f"{eta:.3f}"
-    assert float(found["margin"]) == pytest.approx(float(found["threshold"]) - eta, abs=0.01)  # 2 decimals
-    assert found["is_refined"] == ("cage.mass" not in values)
-
-
-def test_a_slider_of_the_cage_refines_its_curve(page):
-    """The curve of the changed cage is computed once, and then belongs to the values."""
-    page.post("/refine/small.toml?cage.mass=0.05")
-    until(page, lambda jobs: jobs[0].startswith("finished"))
-    assert page.get("/explored/small.toml?cage.mass=0.05").json()["is_refined"]
-
-
-def test_a_slider_out_of_range_is_refused_in_words(page):
-    """As a study file would be."""
-    found = page.get("/explored/small.toml?film.race_friction=7")
-    assert (found.status_code, "race_friction" in found.text) == (422, True)
-
-
-def test_a_point_of_a_map_in_space_is_simulated_and_shown_in_space(page, root):
-    """The click takes the motion of the map, not that of the study; the page has the run and its script."""
-    axes = {"x": "restitution_factor=0.3..0.9:2", "y": "ball_cage_friction=0.05..0.5:2", "motion": "space"}
-    (root / "tilting.toml").write_text(SMALL)
-    page.post("/run/tilting.toml", data={"verb": "map", "runs": "1", **axes})
-    until(page, lambda jobs: jobs[0].startswith("finished"))
-    page.post("/point/tilting.toml", data={"x": 0.3, "y": 0.05})
-    until(page, lambda jobs: jobs[0].startswith("finished"))
-    (place,) = (root / "tilting" / "points").iterdir()
-    assert is_in_space(load(place / "simulate.nc"))
-    text = page.get(f"/cage/tilting.toml?point={place.name}").text
-    (run,) = re.findall('id="run">(.*?)</script>', text)
-    assert len(json.loads(run)["time"]) > 2
-    for source in re.findall('(?:src|href)="(/static/cage/[^"]+)"', text):
-        assert page.get(source).status_code == 200
-    assert not re.search(r"<script(?! type=.application/json)(?![^>]* src=)", text)  # none runs inline
-
-
 def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
     """A table of the pick-list, with margins: shares of the time, and the envelope to point at."""
     rows = ("operation.inner_speed,time_share", "9000 rpm,1 h", "15000 rpm,3 h")
@@ -200,16 +120,27 @@ def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
 
 
 def test_the_newest_answers_are_read_before_they_are_looked_at(page, monkeypatch):
-    """At the start of the server, and at the end of a job; what sliders need is computed then, too."""
+    """At the start of the server, and at the end of a job."""
     again = Page(folder=page.app.state.page.folder, jobs=page.app.state.page.jobs)
-    solved = []
-    monkeypatch.setattr(Solution, "friction", property(lambda _: solved.append(True)))
     made_ready(again)
-    assert solved == [True]
     monkeypatch.setattr("separatrix.present.load", refuse)
     for verb in ("rank", "map", "sweep"):
         assert again.dataset(again.folder.answers("small.toml") / f"{verb}.nc") is not None
         assert page.app.state.page.dataset(again.folder.answers("small.toml") / f"{verb}.nc") is not None
+
+
+def test_the_page_ends_after_what_it_reads(tmp_path, monkeypatch):
+    """A thread that the interpreter ends while it reads a dataset would keep the lock of HDF5 for ever."""
+    read = []
+
+    def slow(_):
+        time.sleep(0.5)  # longer than the page is open
+        read.append(True)
+
+    monkeypatch.setattr(server, "made_ready", slow)
+    with TestClient(application(tmp_path)):
+        pass
+    assert read == [True]
 
 
 def refuse(path):
@@ -275,22 +206,6 @@ def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
         time.sleep(0.1)
 
 
-def test_a_dropped_log_is_read_and_its_cut_is_moved(page, root):
-    """Friction of the steady part, found and then cut by hand."""
-    time_ = np.arange(0.0, 600.0, 0.5)
-    log = anton_paar(0.2 + 0.3 * np.exp(-time_ / 40.0), time_)
-    assert page.put("/logs/test.txt", content=log).status_code == 200
-    found = page.get("/log/test.txt").text
-    assert "What was read" in found
-    moved = page.get("/log/test.txt?run_in=300 s").text
-    assert "running-in ends at 300 s" in moved
-    figure = page.get("/log-figure/test.txt/0?run_in=300 s").json()
-    assert figure["layout"]["shapes"][0]["x0"] == pytest.approx(300.0, abs=1.0)  # the next row
-    assert page.put("/logs/test.txt", content=log).status_code == 200  # the same again
-    assert page.put("/logs/test.txt", content=log + b" ").status_code == 422
-    assert page.get("/log/test.txt?run_in=never").status_code == 422
-
-
 @pytest.mark.parametrize(("seconds", "is_told"), [(5.0, False), (20.0, True)])
 def test_who_waits_for_a_report_is_told_why(seconds, is_told, tmp_path):
     """A new installation compiles for minutes, while the job says what it is at and no point is done."""
@@ -298,7 +213,6 @@ def test_who_waits_for_a_report_is_told_why(seconds, is_told, tmp_path):
     job = Job(
         task=task,
         study="a.toml",
-        title="report",
         state="running",
         message="Computing bearing for the report.",
         started=time.monotonic() - seconds,

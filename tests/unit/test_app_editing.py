@@ -44,6 +44,11 @@ def edit(page, **fields):
     return page.post("/edit/small.toml", data=fields)
 
 
+def text_of(page):
+    """Text of small.toml, with its unsaved edits."""
+    return draft.current_text(_folder(page) / "small.toml")
+
+
 @pytest.mark.parametrize(
     ("section", "key", "value", "expected"),
     [
@@ -85,7 +90,7 @@ def test_a_form_sent_back_unchanged_changes_no_value(study):
 
 
 def test_the_form_has_every_key_of_the_records():
-    """What a study file may hold can be typed in; candidates have a form of their own."""
+    """What a study file may hold can be typed in; candidates of the user's own are written in the text."""
     shown = {(one.section, one.key) for one in template_keys()}
     lacking = {(section, key) for section, readers in READERS.items() for key in readers} - shown
     assert lacking == {("ranking", "candidates")}
@@ -146,6 +151,77 @@ def test_a_study_with_a_fault_is_not_run(page):
     assert (_folder(page) / "small.toml").read_text() == SMALL
 
 
+def test_the_materials_of_the_tests_are_ticked(page):
+    """Those of the friction table, in its order; a tick goes to the end, and none is the default: all."""
+    small = SMALL.replace('["Armalon", "Meldin HTC 100"]', '["vespel sp-211", "Armalon", "Oak"]')
+    found = edit(page, text=small).text
+    boxes = re.findall(r'type="checkbox" name="box-\d+" value="([^"]+)"( checked)?', found)
+    assert [name for name, ticked in boxes if ticked] == ["Armalon", "vespel sp-211", "Oak"]
+    assert boxes[0] == ("Meldin HTC 100", "")
+    more = re.search('id="f-ranking-materials-more">(.*?)</div>', found)[1]
+    assert "names a material that pin-on-disk-77K lacks" in more
+    sent = {"field": "ranking.materials"}
+    ticked = ["Meldin HTC 100", "Armalon", "vespel sp-211"]
+    edit(page, **sent, **{f"box-{i}": name for i, name in enumerate(ticked)})
+    assert 'materials = ["vespel sp-211", "Armalon", "Meldin HTC 100"]' in text_of(page)
+    edit(page, **sent)
+    assert "materials" not in text_of(page)
+
+
+def test_the_materials_of_a_friction_file_are_ticked(page):
+    """A file that cannot be read has none: the list is typed then."""
+    test = '[[test]]\nmaterial = "Ours"\ncounterface = "440C"\nmedium = "air"\nfriction = 0.2\n'
+    (_folder(page) / "tests.toml").write_text(test)
+    own = SMALL.partition("[ranking]")[0] + '[ranking]\nfriction = "NAME"\n'
+    ticked = edit(page, text=own.replace("NAME", "tests.toml")).text
+    assert 'type="checkbox" name="box-1" value="Ours"' in ticked
+    typed = edit(page, text=own.replace("NAME", "../tests.toml")).text
+    assert '<input id="f-ranking-materials"' in typed
+    assert "Inherited: 11.1125 mm" in typed
+
+
+def test_a_list_keeps_its_comments():
+    """An item goes with the comment behind it; the others stay as they are written."""
+    text = '[ranking]\nmaterials = [\n  "A", # a\n  # of May\n  "B", # b\n] # both\n'
+    found = draft.edited(text, "ranking", "materials", '["B", "C"]')
+    assert tomllib.loads(found)["ranking"]["materials"] == ["B", "C"]
+    assert re.findall("#.*", found) == ["# of May", "# b", "# both"]
+    turned = draft.edited(text, "ranking", "materials", '["B", "A"]')
+    assert tomllib.loads(turned)["ranking"]["materials"] == ["B", "A"]
+
+
+def test_a_new_key_is_above_the_comment_of_the_next_section():
+    """The comment is about what follows it."""
+    found = draft.edited('[cage]\nmass = "1 g"\n\n# worn\n[film]\n', "cage", "land_friction", "0.2")
+    assert found == '[cage]\nmass = "1 g"\nland_friction = 0.2\n\n# worn\n[film]\n'
+
+
+OWN = """[ranking]
+environment = "air"
+[[ranking.candidates]]
+name = "Two"
+friction = { air = 7 }
+"""
+
+
+def test_a_fault_of_a_candidate_is_above_the_fields_of_its_section(page):
+    """A candidate has no field: it is written in the text. Its section is open."""
+    found = edit(page, text=f'extends = "cryogenic-turbopump"\n{OWN}').text
+    head = r'<details class="section" open>\s*<summary>ranking<'
+    section = re.search(f"{head}.*?</details>", found, re.DOTALL)[0]
+    assert found.count("must lie between 0 and 2") == 1
+    assert "must lie between 0 and 2" in section
+
+
+def test_a_text_that_the_form_cannot_change_stays(page):
+    """One with a table of a candidate behind another section."""
+    text = OWN.replace("friction = { air = 7 }", "[cage]\n[ranking.candidates.friction]\nair = 0.1")
+    edit(page, text=text)
+    found = edit(page, field="ranking.environment", value="vacuum").text
+    assert "Mend it in the text first" in found
+    assert text_of(page) == text
+
+
 @pytest.mark.parametrize("name", ["../up", "a/b", ".hidden", "", "small", "x" * 200, "a\0b"])
 def test_a_new_study_has_a_plain_name_that_is_free(page, name):
     """Nothing is written for another one."""
@@ -166,15 +242,6 @@ def test_a_new_study_without_a_name_is_refused_in_plain_words(page):
     """Not as a file of a name that nobody typed."""
     found = page.post("/new", data={"name": " "}).text
     assert "The name must not be empty. Type one, for instance my-bearing." in found
-
-
-@pytest.mark.parametrize("value", ["nan", "inf", "-1", "0", "x"])
-@pytest.mark.parametrize(("method", "place"), [("POST", "refine"), ("GET", "explored")])
-def test_a_slider_has_a_finite_value_above_zero(page, method, place, value):
-    """Another one is refused with the rule, and no job begins."""
-    found = page.request(method, f"/{place}/small.toml?cage.mass={value}")
-    assert (found.status_code, "cage.mass must be finite and &gt; 0 [kg]; got" in found.text) == (422, True)
-    assert page.app.state.page.jobs.all() == []
 
 
 @pytest.mark.parametrize(

@@ -22,15 +22,12 @@ from separatrix.messages import grouped, noted_warnings
 from separatrix.study import Study
 from separatrix.study_file import read_study
 from separatrix.study_file.document import load
-from separatrix.study_file.templates import NOTHING, Offered, is_name, offered_by
+from separatrix.study_file.templates import is_name, tested_materials
 from separatrix.toml_files import MOST_BYTES, read_text
 from separatrix.units import NUMBER, shown
 
 DRAFT = ".{}.draft"
 """Name of the draft of a study, beside it: a server that is killed loses no edit."""
-
-TomlTable = MutableMapping[str, Any]
-"""A table of tomlkit, whose items keep their comments."""
 
 ONE_AT_A_TIME = threading.Lock()
 """What studies note on the way is collected by one thread."""
@@ -43,15 +40,11 @@ _NUMBER = re.compile(rf"\s*{NUMBER}\s*")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
-    """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message.
-
-    `inside` is the rest of its path, for a key with tables: ``[2].friction."air, 440C".mean``.
-    """
+    """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message."""
 
     section: str
     key: str
     message: str
-    inside: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,8 +58,8 @@ class Checked:
     inherited: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     """Values by section and key, those of the file that it extends among them."""
 
-    offered: Offered = NOTHING
-    """Names that it may use."""
+    tested: tuple[str, ...] = ()
+    """Materials of the tests that it names in [ranking] friction."""
 
     @property
     def version(self) -> str:
@@ -131,19 +124,19 @@ def check(study: Path, root: Path) -> Checked:
         text = read_text(path)
     except InputError as error:
         return Checked(text="", study=None, faults=tuple(_faults(error, path, study)))
-    inherited, offered = _around(path, root)
+    inherited, tested = _around(path, root)
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings() as notes:
             found = read_study(path)
     except InputError as error:
         faults = tuple(_faults(error, path, study))
-        return Checked(text=text, study=None, faults=faults, inherited=inherited, offered=offered)
+        return Checked(text=text, study=None, faults=faults, inherited=inherited, tested=tested)
     noted = tuple(grouped(notes))
-    return Checked(text=text, study=found, faults=(), notes=noted, inherited=inherited, offered=offered)
+    return Checked(text=text, study=found, faults=(), notes=noted, inherited=inherited, tested=tested)
 
 
-def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], Offered]:
-    """Return the values of a study that extends another by section and key, and the names that it may use."""
+def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], tuple[str, ...]]:
+    """Return what a study that extends another has, by section and key, and the materials of its tests."""
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
             found = load(path)
@@ -152,17 +145,17 @@ def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], Offer
                 name: {key: value for key, value in values.items() if not isinstance(value, InputError)}
                 for name, values in sections.items()
             }
-            return given, offered_by(found)
+            return given, tested_materials(found)
     except InputError:  # shown among the faults
-        return {}, NOTHING
+        return {}, ()
 
 
 def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
     faults = []
     for one in error.problems or (error,):
         message, at = str(one).replace(path.name, study.name), _KEY.search(one.path)
-        where = (at["section"], at["key"] or "", one.path[at.end() :]) if at else ("", "", "")
-        faults.append(Fault(section=where[0], key=where[1], inside=where[2], message=message))
+        section, key = (at["section"], at["key"] or "") if at else ("", "")
+        faults.append(Fault(section=section, key=key, message=message))
     return faults
 
 
@@ -188,7 +181,7 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         if key in table:
             del table[key]
     else:
-        put(table, key, typed(value, is_name=is_name(section, key)))
+        _put(table, key, _typed(value, is_name=is_name(section, key)))
     return tomlkit.dumps(document)
 
 
@@ -200,7 +193,7 @@ def parsed(text: str) -> TOMLDocument:
         raise InputError("The text", f"is not valid TOML: {error}", cure=MEND) from None
 
 
-def put(table: TomlTable, key: str, value: object) -> None:
+def _put(table: MutableMapping[str, Any], key: str, value: object) -> None:
     """Set a key; comments behind its old value and in its old list stay."""
     old = table.get(key)
     if isinstance(old, Array) and isinstance(value, list) and _same_list(old, value):
@@ -235,7 +228,7 @@ def with_unit(value: str, unit: str) -> str:
     return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
 
 
-def typed(value: str, *, is_name: bool = False) -> object:
+def _typed(value: str, *, is_name: bool = False) -> object:
     """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
     value = value.strip()
     if not is_name and _NUMBER.fullmatch(value):

@@ -9,7 +9,7 @@ from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from tomlkit.exceptions import TOMLKitError
 
-from separatrix.app import candidates, draft
+from separatrix.app import draft
 from separatrix.app.form import as_typed, form
 from separatrix.app.page import Form, Page
 from separatrix.errors import InputError
@@ -110,8 +110,8 @@ def routes(page: Page) -> APIRouter:
         job = page.jobs.job(number)
         if job is None:
             raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
-        task, more = job.task, {"name": job.study, "title": job.title}
-        page.jobs.ask(task.verb, task.study, task.folder, question=task.question, values=task.values, **more)
+        task = job.task
+        page.jobs.ask(task.verb, task.study, task.folder, name=job.study, question=task.question)
         return all_jobs()
 
     return router
@@ -119,17 +119,7 @@ def routes(page: Page) -> APIRouter:
 
 def edited_by(text: str, sent: dict[str, str]) -> str:
     """Return the text of a study with what one part of the form changes in it."""
-    if "added" in sent:
-        return candidates.added(text, sent["added"])
-    digits = sent.get("candidate", sent.get("removed", ""))
-    number = int(digits) if re.fullmatch("[0-9]{1,8}", digits) else -1
-    if "removed" in sent:
-        return candidates.removed(text, number)
     value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
-    if "candidate" in sent:
-        first, *inside = sent.get("part", "").split(".")
-        environment = [sent["environment"].strip()] if "environment" in sent else []
-        return candidates.changed(text, number, (first, *environment, *inside), value)
     section, _, key = sent.get("field", "").rpartition(".")
     if ticked := [value for name, value in sent.items() if name.startswith("box-")]:
         given = draft.parsed(text).unwrap().get(section, {}).get(key, [])  # its order is that of the answer
@@ -150,7 +140,6 @@ def _summary(page: Page, name: str) -> dict[str, object]:
         "name": name,
         "title": page.title(name) or ranked.get("title", ""),
         "answers": answers,
-        "outdated": page.outdated_answers(name),
         "best": best,
         "counts": counts,
         "count": len(overall),
@@ -179,7 +168,6 @@ def _running(page: Page, name: str, found: Study | None) -> dict[str, object]:
         "verbs": VERBS,
         "lacking": lacking,
         "answers": page.answered(name),
-        "outdated": page.outdated_answers(name),
         "jobs": page.jobs.all(),
         "motions": [one.value for one in MotionModel],
         "tables": page.folder.tables(name),

@@ -28,7 +28,6 @@ class Job:
 
     task: Task
     study: str
-    title: str
     state: str = WAITING
     done: int = 0
     total: int = 0
@@ -79,9 +78,7 @@ class Jobs:
         folder: Path,
         *,
         name: str,
-        title: str = "",
         question: Mapping[str, object] | None = None,
-        values: Mapping[str, float] | None = None,
     ) -> Job:
         """Put a question into the queue unless the same one is active already; refused if too many wait."""
         with self._lock:
@@ -92,7 +89,6 @@ class Jobs:
                 folder=folder,
                 root=self.root,
                 question=dict(question or {}),
-                values=dict(values or {}),
             )
             active = [job for job in self._jobs.values() if job.is_active]
             for job in active:
@@ -101,7 +97,7 @@ class Jobs:
             if len(active) >= MOST_WAITING:
                 raise InputError("The queue", f"has {MOST_WAITING} jobs", cure="Wait, or cancel some.")
             self._last += 1
-            self._jobs[asked.number] = job = Job(task=asked, study=name, title=title or verb)
+            self._jobs[asked.number] = job = Job(task=asked, study=name)
             ended = [number for number, one in self._jobs.items() if not one.is_active]
             for number in ended[: max(0, len(ended) - MOST_KEPT)]:
                 del self._jobs[number]

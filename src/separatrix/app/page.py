@@ -9,7 +9,7 @@ import tomllib
 import zipfile
 import zlib
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -21,7 +21,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
 from separatrix.app.jobs import Jobs
-from separatrix.app.outdated import Studies
 from separatrix.errors import InputError
 from separatrix.input_files import is_inside
 from separatrix.questions import VERBS
@@ -46,9 +45,6 @@ _NAME = re.compile(r"[^\W_][\w .,()+-]{0,99}")
 _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
 _SHEET = re.compile(rb'name="bearing"', re.IGNORECASE)
 _BEGINNING = 64 * 1024
-LOGS = "logs"
-"""Folder of the tribometer logs that were dropped on the page."""
-
 
 MOST_READ = 64
 """Answers and titles that are kept in memory."""
@@ -186,11 +182,6 @@ class Page:
     jobs: Jobs
     _read: OrderedDict[Path, _Read] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
-    studies: Studies = field(init=False)
-
-    def __post_init__(self) -> None:
-        """Have the saved studies read once."""
-        self.studies = Studies(self.folder.root)
 
     def html(self, template: str, **values: object) -> HTMLResponse:
         """Return a page or a part of one."""
@@ -201,17 +192,6 @@ class Page:
         path = place / f"{verb}.json"
         found: Document | None = self._known(path, lambda: json.loads(path.read_text(encoding="utf-8")))
         return found
-
-    def outdated(self, study: str, place: Path, verb: str, values: Mapping[str, float] | None = None) -> str:
-        """Return in one sentence why a saved answer is not that of the study as it is now; empty if it is."""
-        path = place / f"{verb}.json"
-        return self.studies.change(self.folder.study(study), path, values) if self.folder.has(path) else ""
-
-    def outdated_answers(self, study: str) -> dict[str, str]:
-        """Return the verbs whose saved answer is no longer that of the study, each with the reason."""
-        place = self.folder.answers(study)
-        found = {verb: self.outdated(study, place, verb) for verb in self.answered(study)}
-        return {verb: sentence for verb, sentence in found.items() if sentence}
 
     def title(self, study: str) -> str:
         """Return the title that the file of a study has; empty if it has none of its own."""

@@ -7,7 +7,6 @@ import hmac
 import secrets
 import socket
 import threading
-import warnings
 from collections.abc import AsyncIterator, Awaitable, Callable, MutableMapping
 from http import HTTPStatus
 from importlib.util import find_spec
@@ -22,14 +21,12 @@ from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
-from separatrix.app import editing, exploring, logs, results
+from separatrix.app import editing, results
 from separatrix.app.jobs import Jobs
 from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.worker import Task
-from separatrix.chain.solution import solve
-from separatrix.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.errors import InputError, SeparatrixError
 from separatrix.figures.cage_page import PARTS
-from separatrix.study_file import read_study
 from separatrix.units import printable, shown
 
 HOST = "127.0.0.1"
@@ -100,7 +97,7 @@ def application(root: Path) -> FastAPI:
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
-    for routes in (editing.routes, results.routes, exploring.routes, logs.routes):
+    for routes in (editing.routes, results.routes):
         app.include_router(routes(page))
 
     def words(request: Request, faults: list[str], status: HTTPStatus) -> Response:
@@ -134,17 +131,11 @@ def application(root: Path) -> FastAPI:
 
 
 def made_ready(page: Page) -> None:
-    """Load what the first views need, while the page answers already.
-
-    These are the templates, the newest answers that have figures, and the kernels that the sliders use.
-    """
-    warnings.simplefilter("ignore", ValidityWarning)  # shown in the page, where an answer has some
+    """Load what the first views need, while the page answers already: templates, and the newest answers."""
     for name in TEMPLATES.list_templates():
         TEMPLATES.get_template(name)
     for path in page.newest(results.READ)[:MOST_READY]:
         page.dataset(path)
-    found = solve(read_study("cryogenic-turbopump"))
-    _ = found.restitution, found.friction  # computed at first use
 
 
 class TooLarge(Exception):  # noqa: N818 - a reply, not a fault

@@ -44,11 +44,7 @@ Send = Callable[..., None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """A question: the verb, the study file, the folder of the answer, options of the verb, models of motion.
-
-    `values` are numbers of the study that are other than in the file, by the names of a map; no file is then
-    read back, and the answer is for looking only.
-    """
+    """A question: verb, study file, folder of the answer, options of the verb with the models of motion."""
 
     number: int
     verb: str
@@ -56,7 +52,6 @@ class Task:
     folder: Path
     root: Path
     question: Mapping[str, object] = field(default_factory=dict)
-    values: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +172,6 @@ def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None
 def _answered(task: Task, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
     from separatrix.input_files import reading_only_in
-    from separatrix.limits.map_records import varied
     from separatrix.messages import grouped, noted_warnings
     from separatrix.present import document
     from separatrix.questions import asked_study, computed, verb_named
@@ -189,7 +183,6 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
     with noted_warnings() as notes, reading_only_in(task.root):
         verb = None if task.verb == REPORT else verb_named(task.verb)
         study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
-        study = varied(study, task.values) if task.values else study
         _refuse_links_out(task)
         task.folder.mkdir(parents=True, exist_ok=True)
 

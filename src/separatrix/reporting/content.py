@@ -217,7 +217,7 @@ def _about(kept: Mapping[str, Kept]) -> list[str]:
     main = next(verb for verb in ("rank", "stability", *kept) if verb in kept)
     sentences = []
     for verb, one in kept.items():
-        names = differing(kept[main].document, one.document)
+        names = _differing(kept[main].document, one.document)
         if names:
             more = f" and {len(names) - 4} more" if len(names) > 4 else ""
             sentences.append(
@@ -267,7 +267,7 @@ def read_document(path: Path, verb: str) -> Row:
     return found
 
 
-def differing(first: Row, second: Row) -> list[str]:
+def _differing(first: Row, second: Row) -> list[str]:
     """Return the names of the inputs that differ between two documents, and the version if that does."""
     ours, theirs = (dict(of_study(one["study"])) for one in (first, second))
     names = [at.key for at in differences(ours, theirs)]

@@ -245,44 +245,14 @@ class _Choices:
             validation.add(cell)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Offered:
-    """Names for the candidates of a study; empty where there are none to offer."""
-
-    cage_materials: tuple[str, ...] = ()
-    """Of the library of the study."""
-
-    environments: tuple[str, ...] = ()
-    """Those of the friction tables of the library."""
-
-    tested: tuple[str, ...] = ()
-    """Materials of the table of the library, or the file, in [ranking] friction."""
-
-
-NOTHING = Offered()
-
-
-def offered_by(document: Document) -> Offered:
-    """Return the names that a study may use; none if its library cannot be read."""
-    try:
-        library = library_of(document)
-    except InputError:  # refused where the study is read
-        return NOTHING
-    tables = [library.friction_table(name) for name in library.names("friction table")]
-    return Offered(
-        cage_materials=library.names("cage material"),
-        environments=tuple(dict.fromkeys(env for one in tables for env in one.environments)),
-        tested=_tested(document, library),
-    )
-
-
-def _tested(document: Document, library: Library) -> tuple[str, ...]:
-    """Materials of the table or file in [ranking] friction; none if it cannot be read."""
+def tested_materials(document: Document) -> tuple[str, ...]:
+    """Return the materials of the table or file in [ranking] friction; none if it cannot be read."""
     name = document.sections.get("ranking", {}).get("friction")
     if not isinstance(name, str):
         return ()
     try:
         if not name.endswith(".toml"):
+            library = library_of(document)
             return tuple(library.friction_table(library.named("friction table", name) or name).friction)
         from separatrix.friction.file import read_friction
 

@@ -1,24 +1,12 @@
-// Figures, clicks in a map, the cut of running-in, files that are dropped. All data come from this server.
+// Figures, and parts of the page that are replaced in place. All data come from this server.
 "use strict";
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
-
-// htmx takes up what it has put into the page some 20 ms later.
-// A form that is sent before that would leave the page.
-document.addEventListener("submit", (event) => {
-  if (event.target.matches("[hx-get], [hx-post]")) htmx.process(event.target);
-}, true);
 
 function looks() {
   const style = getComputedStyle(document.documentElement);
   const of = (name) => style.getPropertyValue(name).trim();
   return { paper_bgcolor: of("--paper"), plot_bgcolor: of("--paper"), font: { color: of("--ink"), family: "inherit" } };
-}
-
-function draw(figure, data, layout) {
-  const canvas = figure.querySelector(".canvas");
-  const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
-  return Plotly.react(canvas, data, { ...layout, ...looks() }, options).then(() => canvas);
 }
 
 function message(text) {
@@ -32,36 +20,22 @@ function message(text) {
   }
 }
 
-async function answered(response) {
-  if (response.ok) return response;
+async function fetched(place) {
+  const response = await fetch(place, { headers: { "HX-Request": "true" } });
+  if (response.ok) return response.json();
   const page = new DOMParser().parseFromString(await response.text(), "text/html");
   const words = [...page.querySelectorAll(".refusal p")].map((one) => one.textContent).join(" ");
   throw new Error(words || `The server answered ${response.status}.`);
 }
 
-const asked = (place, options = {}) =>
-  fetch(place, { ...options, headers: { "HX-Request": "true", ...(options.headers || {}) } }).then(answered);
-
 async function show(figure) {
-  figure.dataset.shown = "true";
   try {
-    const found = await (await asked(figure.dataset.source)).json();
-    const canvas = await draw(figure, found.data, found.layout);
-    if (figure.dataset.point) canvas.on("plotly_click", (event) => choose(figure.dataset.point, event.points[0]));
-    if ("cut" in figure.dataset) canvas.on("plotly_click", (event) => cut(event.points[0].x, figure.dataset.cut));
+    const found = await fetched(figure.dataset.source);
+    const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
+    await Plotly.react(figure.querySelector(".canvas"), found.data, { ...found.layout, ...looks() }, options);
   } catch (error) {
     message(error.message);
   }
-}
-
-function choose(place, point) {
-  htmx.ajax("POST", place, { target: "#jobs", values: { x: point.x, y: point.y } });
-}
-
-function cut(at, unit) {
-  const field = document.getElementById("run-in");
-  field.value = `${Number(at.toPrecision(4))} ${unit || "cycles"}`.trim();
-  field.form.requestSubmit();
 }
 
 // Make a part of the page like another one, and keep focus, caret, scroll and what is being typed.
@@ -109,13 +83,10 @@ function inPlace(event) {
   const { target, xhr } = event.detail;
   if (!event.detail.shouldSwap || !["editor", "jobs"].includes(target.id) || !target.firstElementChild) return;
   event.detail.shouldSwap = false;
-  const { then } = event.detail.requestConfig.elt.dataset;
   const next = target.cloneNode(false);
   next.innerHTML = xhr.responseText;
   morph(target, document.adoptNode(next));
   for (const one of target.children) htmx.process(one); // the target itself keeps its queue of requests
-  const field = then && document.querySelector(then);
-  if (field) field.focus(); // that of a candidate which was added, or of the next one to add
 }
 
 function sending(event) {
@@ -137,54 +108,13 @@ function ended(event) {
   if (event.detail.requestConfig.path.startsWith("/edit/")) sent.clear();
 }
 
-function showAll(root) {
-  if (typeof Plotly === "undefined") return;
-  for (const figure of root.querySelectorAll(".plot[data-source]:not([data-shown])")) show(figure);
-}
-
-async function upload(files) {
-  const state = document.getElementById("uploaded");
-  for (const file of files) {
-    state.textContent = `Copying ${file.name} ...`;
-    try {
-      const response = await asked(`/logs/${encodeURIComponent(file.name)}`, { method: "PUT", body: file });
-      const list = document.getElementById("loglist");
-      list.innerHTML = await response.text();
-      htmx.process(list);
-      state.textContent = `${file.name} is copied.`;
-      htmx.ajax("GET", `/log/${encodeURIComponent(file.name)}`, { target: "#log" });
-    } catch (error) {
-      state.textContent = "";
-      message(`${file.name}: ${error.message}`);
-    }
-  }
-}
-
-function dropping() {
-  const place = document.getElementById("drop");
-  if (!place) return;
-  const over = (is) => (event) => {
-    event.preventDefault();
-    place.classList.toggle("over", is);
-  };
-  place.addEventListener("dragover", over(true));
-  place.addEventListener("dragleave", over(false));
-  place.addEventListener("drop", (event) => {
-    over(false)(event);
-    upload(event.dataTransfer.files);
-  });
-  document.getElementById("pick").addEventListener("change", (event) => upload(event.target.files));
-}
-
 document.addEventListener("DOMContentLoaded", () => {
-  showAll(document);
-  dropping();
+  for (const figure of document.querySelectorAll(".plot")) show(figure);
   dark.addEventListener("change", () => {
     for (const canvas of document.querySelectorAll(".plot .canvas")) if (canvas.data) Plotly.relayout(canvas, looks());
   });
   document.body.addEventListener("htmx:beforeRequest", sending);
   document.body.addEventListener("htmx:beforeSwap", inPlace);
   document.body.addEventListener("htmx:afterRequest", ended);
-  document.body.addEventListener("htmx:afterSettle", (event) => showAll(event.target));
   document.body.addEventListener("htmx:sendError", () => message("The server does not answer. Start it again: nothing that was finished is lost."));
 });
