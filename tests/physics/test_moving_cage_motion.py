@@ -191,7 +191,7 @@ def test_a_force_is_added_without_touching_the_package():
     settings = replace(SETTINGS, ball_scatter=0.0)
     starts, numbers = random_starts(cage, settings, 0, 1), numbers_of(cage, 0.5, 0.01)
     states, places = start_states(cage, 0.5, starts), ball_places(cage, starts)
-    record = np.zeros((11, 2 + states.shape[1] + 8 + cage.ball_count))
+    record = np.zeros((11, 4 + states.shape[1] + 8 + cage.ball_count))
     raw = run_rows(
         numbers.kind,
         [numbers],
