@@ -19,10 +19,10 @@ from separatrix.comparing.pair import compared
 from separatrix.comparing.saved import VERBS, read_answers
 from separatrix.comparing.shown import in_words, input_words, pair_words, result_words, shown_rows
 from separatrix.errors import InputError
-from separatrix.figures.cage_page import view
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.style import study_of
+from separatrix.figures.view import view
 from separatrix.input_files import reading_only_in
 from separatrix.limits.map_records import KICK, RESTITUTION
 from separatrix.questions import verb_named

@@ -28,7 +28,7 @@ from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.worker import Task
 from separatrix.chain.solution import solve
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
-from separatrix.figures.cage_page import PARTS
+from separatrix.figures.view import PARTS
 from separatrix.study_file import read_study
 from separatrix.units import printable, shown
 

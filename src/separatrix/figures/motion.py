@@ -37,7 +37,7 @@ SHORTEST, BANDS = 8, 12.0
 STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
 
-MOST_FRAMES, A_TURN = 360, 6
+MOST_FRAMES, A_TURN = 240, 6
 """Most frames of a film; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
 
 GAP = 1.5
