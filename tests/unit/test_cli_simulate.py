@@ -6,7 +6,6 @@ import html
 import itertools
 import json
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +20,7 @@ from separatrix.cli import main
 from separatrix.comparing.saved import read_file
 from separatrix.comparing.shown import pictures
 from separatrix.figures.animation import animate
-from separatrix.figures.cage_page import page, view
+from separatrix.figures.view import page, view
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -240,21 +239,13 @@ def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
         (["--kick", "0 m/s"], "must be >"),
         (["--kick", "-1 m/s"], "must be >"),
         (["--run", "-1"], "--run must lie between"),
-        (["--animate", "avi"], "must be gif or mp4"),
+        (["--animate", "mp4"], "must be gif"),
         (["--animate", "gif", "--json"], "--out DIR"),
     ],
 )
 def test_wrong_options_are_refused_in_one_line(options, said, capsys):
     """One line, status 2, nothing written."""
     assert said in refused(capsys, "simulate", "cryogenic-turbopump", *options)
-
-
-def test_an_mp4_without_its_extra_is_refused_before_the_run(capsys, monkeypatch):
-    """One line that says what to install; the run is not made and nothing is written."""
-    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    monkeypatch.setattr("separatrix.verbs.simulate", lambda *_, **__: pytest.fail("it was made"))
-    line = refused(capsys, "simulate", "cryogenic-turbopump", "--animate", "mp4")
-    assert "pip install 'separatrix[animation]'" in line
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -264,7 +255,7 @@ def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("separatrix.figures.scene.Scene.faces", stop)
+    monkeypatch.setattr("separatrix.figures.animation.draw_cage", stop)
     assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
     assert "no file was written" in capsys.readouterr().err
     assert not list(Path().iterdir())

@@ -148,7 +148,8 @@ def turned_by(data: xr.Dataset) -> Array:
 def force_key(at: Scene) -> str:
     """Return which colours the forces have."""
     forces = [f"0 to {format_number(one, 3)} N {where}" for one, where in zip(at.largest, WHERE, strict=True)]
-    return ", ".join(forces[: 1 + (at.largest[1] > 0.0)])
+    shown = ", ".join(forces[: 1 + (at.largest[1] > 0.0)])
+    return f"{shown}; root scale, the largest since the frame before"
 
 
 def span_key(data: xr.Dataset, moments: Array) -> str:
