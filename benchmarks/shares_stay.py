@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.cage import MovingCage, RunOutcome, moving_cage, settings_for
-from separatrix.cage.ensemble import follow, piece_of
+from separatrix.cage.ensemble import Runs, follow, piece_of
 from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import numbers_of
 from separatrix.chain.solution import solve
@@ -40,7 +40,7 @@ def settled(cage: MovingCage, settings: StabilitySettings, runs: int, longer: fl
     pieces = []
     for kick in settings_for(settings, cage).kicks:
         numbers = numbers_of(cage, kick, longer * settings.duration, refine=refine)
-        pieces.append(piece_of(cage, kick, settings, 0, runs)._replace(numbers=numbers))
+        pieces.append(piece_of(Runs(cage, settings, 0, runs), kick)._replace(numbers=numbers))
     outcome = follow(pieces, jobs=2)["outcome"]
     return int(np.isin(outcome, (int(RunOutcome.SETTLES), int(RunOutcome.ROLLS))).sum())
 

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.cage import RunOutcome, moving_cage, outcome, rows
-from separatrix.cage.ensemble import Piece, follow, piece_of
+from separatrix.cage.ensemble import Piece, Runs, follow, piece_of
 from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import of
@@ -46,7 +46,7 @@ def random_pieces(state: Solution, runs: int, seed: int) -> list[Piece]:
         speed = pocket_speed(cage.cage_speed, cage.pocket_clearance)
         kick = speed * float(np.exp(rng.uniform(*np.log(KICKS))))
         number = int(rng.integers(1_000_000))
-        pieces.append(piece_of(replace(cage, ball_cage_friction=friction), kick, settings, number, 1))
+        pieces.append(piece_of(Runs(replace(cage, ball_cage_friction=friction), settings, number, 1), kick))
     return pieces
 
 

@@ -16,12 +16,10 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.solution import Solution
-from separatrix.chain.traction.exact.contact import ContactProblem
 from separatrix.comparing.records import Comparison
 from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
-from separatrix.present.contact import GIVEN, NUMBERS, UNITS
 from separatrix.study_file import document
 from separatrix.study_file.templates import quantity_of, section_remarks, template_keys, units_like
 from separatrix.study_file.values import READERS, required_fields
@@ -151,26 +149,6 @@ TRIBOMETER = (
     Line("default_scatter", "-", meaning="assumed for an unrepeated test, as a share of the mean"),
     Line("friction_file", meaning="path of the friction file, null if none was written"),
 )
-CONTACT = (
-    Line("contacts", meaning="a row for each contact: bodies, film and grid"),
-    Line("columns", meaning="cells along the contact"),
-    Line("rows", meaning="cells across it"),
-    Line("on_gap", meaning="whether the contact is given by its gap"),
-    *SLOPE,
-    Line("reason", meaning="why there is no answer"),
-    Line("cases", meaning="a row for each case"),
-    Line("case", meaning="number of the case"),
-    Line("contact", meaning="its contact, from 0"),
-    Line("motion", meaning="rolling, shift or transient"),
-    *(Line(name, UNITS[name], meaning="given, or found from a wanted force") for name in GIVEN),
-    *(Line(name, UNITS[name], meaning="of the solution") for name in NUMBERS),
-    Line("force_share", "-", meaning="force along, over that of sliding"),
-    Line("lateral_force_share", "-", meaning="force across, over that of sliding"),
-    Line("stick_cells", meaning="cells that stick"),
-    Line("slip_cells", meaning="cells that slip"),
-    Line("iterations", meaning="of the solver"),
-    Line("residual", "-", meaning="what the solver left"),
-)
 TRACTION = (
     *CONTACTS,
     Line("free_rolling", meaning="the exact contact in free rolling"),
@@ -208,7 +186,6 @@ VERBS = {
     ),
     "compare": Verb((Comparison,), (Line("of", meaning="verb of the two answers"),)),
     "tribometer": Verb((RawLog, ColumnRead, TestFriction), TRIBOMETER),
-    "contact": Verb((ContactProblem,), CONTACT),
 }
 
 

@@ -20,15 +20,17 @@ figure, axes = plt.subplots(layout="constrained")
 found = {}
 for name, race in races.items():
     problem = separatrix.ContactProblem(ellipse=ellipse, bodies=(ball, race), friction=friction)
-    asked = separatrix.rolling_cases(problem, longitudinal=creeps, columns=28, rows=28, title=name)
-    found[name] = separatrix.solve_contact(asked)
-    data = found[name].to_xarray()
-    axes.plot(100 * creeps, -data["force"] / data["load"], "o-", label=name)
-    last = found[name].cases[4].solution
-    print(f"{name}: {100 * last.stick_share:.0f} % of the area sticks at a creep of {100 * creeps[4]:.2f} %")
+    asked = separatrix.rolling_cases(problem, longitudinal=creeps, columns=28, rows=28)
+    found[name] = [one.solution for one in separatrix.exact_contact(asked).cases]
+    axes.plot(100 * creeps, [one.traction_coefficient for one in found[name]], "o-", label=name)
+    share = found[name][4].stick_share
+    print(f"{name}: {100 * share:.0f} % of the area sticks at a creep of {100 * creeps[4]:.2f} %")
+    half = separatrix.ContactCase(setup=asked.cases[0].setup, wanted=(-0.5, None))  # the force is stated
+    (one,) = separatrix.exact_contact(separatrix.ContactQuestion(cases=(half,))).cases
+    print(f"  half the force of sliding at a creep of {100 * one.case.longitudinal_creep:.3f} %")
 axes.set(xlabel="creep [%]", ylabel="traction coefficient [-]")
 axes.legend()
 
 area = ellipse.semi_major * ellipse.semi_minor
 # Kalker's C11 of a circle
-c11 = -found["bare"].cases[0].solution.force / (steel.shear_modulus * area * creeps[0])
+c11 = -found["bare"][0].force / (steel.shear_modulus * area * creeps[0])

@@ -9,7 +9,7 @@ import numpy as np
 
 import separatrix
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import MovingCage, follow, moving_cage, run_ensemble
+from separatrix.cage import MovingCage, moving_cage, run_ensemble
 from separatrix.study import BallModel, MotionModel, StabilitySettings
 
 MOMENT = StabilitySettings(kicks=(0.1,), runs=1, duration=1e-3)
@@ -25,7 +25,7 @@ def chain() -> None:
 def cage() -> None:
     """A cage among balls of two levels, in plane and space, and in the double precision of `follow`."""
     sys.path.append(str(Path(__file__).parent / "physics"))
-    from cages import TURNING
+    from cages import TURNING, follow
 
     space = {"motion": MotionModel.SPACE, "groove_damping": 766.0, "groove_stiffness": 5e6}
     law = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)

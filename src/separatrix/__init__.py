@@ -10,26 +10,27 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer ContactCases bearing check compare map mobility rank report restitution "
-    "sensitivity simulate solve_contact stability sweep traction",
+    "api": "Answer bearing check compare map mobility rank report restitution "
+    "sensitivity simulate stability sweep traction",
     "ball_traction": "BallTraction",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
     "chain.contacts": "BearingState RaceContact RaceTraction",
     "chain.creep": "Creep contact_creep",
     "chain.equilibrium": "Equilibrium contact",
-    "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes race_curvatures",
+    "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes "
+    "ellipse_of_curvatures race_curvatures",
     "chain.lubrication": "LubricationCurve lubrication_curve",
     "chain.mobility": "Impacts LinearMobility Mobility SlipLaw",
     "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
     "chain.solution": "Solution solve",
     "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
     "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
+    "chain.traction.exact.cases": "ContactAnswer ContactCase ContactMotion ContactQuestion ContactSetup Gap "
+    "SolvedCase exact_contact rolling_cases",
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "comparing.records": "Comparison",
     "data_answers": "Materials TribometerAnswer materials tribometer",
-    "contact_file": "read_contact",
-    "contact_file.question": "ContactQuestion rolling_cases",
     "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
     "friction.logs": "read_log",

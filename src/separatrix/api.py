@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from separatrix.comparing.records import Comparison
-    from separatrix.contact_file.question import ContactAnswer, ContactQuestion, SolvedCase
     from separatrix.present.nodes import Document
     from separatrix.reporting.record import Report
 
@@ -112,83 +111,6 @@ def _answer(verb: str, study: Asked, question: Mapping[str, object] | None = Non
     for note in answer.notes:
         warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
-
-
-@dataclass(frozen=True, kw_only=True)
-class ContactCases:
-    """Solved cases of one contact without a bearing, from `solve_contact`."""
-
-    record: ContactAnswer
-    notes: tuple[str, ...]
-
-    @property
-    def cases(self) -> tuple[SolvedCase, ...]:
-        """The cases in their order, each with its `ContactSolution`, or a reason and None."""
-        return self.record.cases
-
-    def document(self) -> Document:
-        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        from separatrix.present.contact import document
-
-        return document(self.record, self.notes)
-
-    def summary(self) -> str:
-        """Text, as the command line prints it."""
-        from separatrix.present.contact import in_words
-
-        return in_words(self.record, self.notes)
-
-    def to_xarray(self) -> xr.Dataset:
-        """Numbers and fields of the cases with their units, as they are saved in netCDF files."""
-        from separatrix.present.contact import contact_dataset
-
-        return contact_dataset(self.record)
-
-    def to_dataframe(self) -> pd.DataFrame:
-        """One row for each case, in SI units."""
-        data = self.to_xarray()
-        return data[[name for name in data.data_vars if data[name].dims == ("case",)]].to_dataframe()
-
-    def plot(self, name: str | None = None) -> Figure:
-        """Return the first figure of the cases, or the one whose file has this name."""
-        from separatrix.figures import plot
-
-        return plot("contact", self.to_xarray(), name)
-
-
-def solve_contact(asked: str | Path | ContactQuestion) -> ContactCases:
-    """Tractions, slip and forces of one contact without a bearing.
-
-    Parameters
-    ----------
-    asked : str, Path or ContactQuestion
-        A contact file (TOML), an input file of CONTACT (.inp), or what `rolling_cases` makes.
-
-    Returns
-    -------
-    ContactCases
-        A case that does not converge is among them with its reason.
-
-    Raises
-    ------
-    InputError
-        What is wrong with the file, a line each, or a contact that cannot be set up.
-
-    Warns
-    -----
-    ValidityWarning
-        A film is compressed beyond the range of linear elasticity.
-    """
-    from separatrix.contact_file import read_contact
-    from separatrix.contact_file.question import ContactQuestion
-    from separatrix.contact_file.solving import solve_cases
-
-    with noted_warnings() as notes:
-        question = asked if isinstance(asked, ContactQuestion) else read_contact(asked)
-        record = solve_cases(question)
-    for note in grouped(notes):
-        warnings.warn(note, ValidityWarning, stacklevel=2)
-    return ContactCases(record=record, notes=tuple(grouped(notes)))
 
 
 def check(study: Asked) -> Answer[CheckAnswer]:

@@ -10,8 +10,8 @@ Only kernels that Python calls are cached, with all that they call in one file. 
 another name and then renames it, and a cached kernel has one signature only: processes that compile it at the
 same time write the same file, so that they can share a folder.
 
-Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and one option
-that numba does not document, `_nrt`.
+Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and what numba
+does not document: the option `_nrt`, and that a kernel is compiled by its method `_compile_for_args`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from types import FunctionType
+from typing import ParamSpec, TypeVar, cast
 
 import llvmlite.binding
 import numba
@@ -41,6 +42,9 @@ llvmlite.binding.set_option("separatrix", "--runtime-memory-check-threshold=64")
 
 P = ParamSpec("P")
 R = TypeVar("R")
+
+ROOM = 1 << 17
+"""Values for which the interpreter's stack has room while a kernel is compiled: more than it takes."""
 
 UNUSED = 14 * 86400.0
 """Time after which compiled code of other sources is removed [s]: some days of changing between versions."""
@@ -127,9 +131,25 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     usual = CONFIG["CACHE_DIR"]
     try:
         CONFIG["CACHE_DIR"] = str(_FOLDER or "")
-        return _compiled(function, cache=_FOLDER is not None)
+        compiled = _compiled(function, cache=_FOLDER is not None)
     finally:
         CONFIG["CACHE_DIR"] = usual
+    vars(compiled)["_compile_for_args"] = _with_room(compiled._compile_for_args)  # type: ignore[attr-defined]
+    return compiled
+
+
+def _with_room(function: Callable[P, R]) -> Callable[P, R]:
+    """Call a function where the interpreter's stack has room for all that it calls.
+
+    Python keeps the frames of calls in chunks of 16 kB and gives a chunk back as soon as its first call
+    returns. A compiler whose calls go over such an edge again and again spends a third of its time there.
+    """
+
+    def call(*args: P.args, **options: P.kwargs) -> R:
+        return function(*args, **options)
+
+    code = call.__code__.replace(co_stacksize=ROOM)
+    return cast(Callable[P, R], FunctionType(code, call.__globals__, closure=call.__closure__))
 
 
 def part(function: Callable[P, R]) -> Callable[P, R]:

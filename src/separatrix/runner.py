@@ -15,10 +15,19 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.ensemble import BY_BALL, SPACE_ONLY, WHOLE_NUMBERS, Ensemble, Stop
+from separatrix.cage.ensemble import (
+    BY_BALL,
+    SPACE_ONLY,
+    WHOLE_NUMBERS,
+    Ensemble,
+    Runs,
+    Stop,
+    ensemble_of,
+    pieces_of,
+)
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.ledger import Ledger, key_of
-from separatrix.side_by_side import Gathered, Runs, Turns, ensemble_of, pieces_of, run_each
+from separatrix.side_by_side import Gathered, Turns, run_each
 from separatrix.study import StabilitySettings
 from separatrix.units import MetrePerSecond, Ratio, Second
 

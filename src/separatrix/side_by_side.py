@@ -9,68 +9,18 @@ from __future__ import annotations
 import math
 import threading
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future, wait
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from separatrix.cage.ensemble import (
-    BY_BALL,
-    Ensemble,
-    Piece,
-    Stop,
-    check_length,
-    follow,
-    follow_alike,
-    other_way_round,
-    piece_of,
-)
-from separatrix.cage.moving_cage import MovingCage, turned_forward
-from separatrix.study import StabilitySettings
+from separatrix.cage.ensemble import Ensemble, Piece, Runs, Stop, ensemble_of, follow, follow_alike, pieces_of
 from separatrix.units import Array, MetrePerSecond
 
 TOGETHER = 256
 """Runs that are followed together, about: a second or two of work, of which an interrupt leaves nothing."""
 
 Evidence = dict[str, Array]  # by name, of a piece: each array has shape (run, ...)
-
-
-class Runs(NamedTuple):
-    """Runs of one cage by their numbers: the first, and how many."""
-
-    cage: MovingCage
-    settings: StabilitySettings
-    first_run: int
-    runs: int
-
-
-def pieces_of(asked: Sequence[Runs], kicks: Iterable[MetrePerSecond]) -> list[Piece]:
-    """What the engine takes of these runs from every kick, kick by kick."""
-    for one in asked:
-        check_length(one.settings.duration, one.cage)
-    each = [(turned_forward(one.cage), *one[1:]) for one in asked]
-    return [
-        piece_of(cage, float(kick), settings, first_run, runs)
-        for kick in kicks
-        for cage, settings, first_run, runs in each
-    ]
-
-
-def ensemble_of(asked: Sequence[Runs], kicks: Sequence[MetrePerSecond], found: Evidence) -> Ensemble:
-    """Ensemble of runs from every kick by their evidence, that of a backward cage from its mirror image."""
-    backward = np.concatenate([np.full(one.runs, one.cage.rotation_sense < 0) for one in asked])
-    columns = np.tile(backward, len(kicks))
-    if backward.any():
-        for name in BY_BALL:
-            found[name][columns] = other_way_round(found[name][columns])
-        left, balls = found["left_ball"], asked[0].cage.ball_count
-        found["left_ball"] = np.where(columns & (left > 1), balls + 2 - left, left)
-    shaped: dict[str, Any] = {
-        name: values.reshape(len(kicks), backward.size, *values.shape[1:]) for name, values in found.items()
-    }
-    duration = asked[0].settings.duration
-    return Ensemble(kicks=np.array(kicks, dtype=np.float64), duration=duration, **shaped)
 
 
 def run_each(asked: Sequence[Runs], kicks: Sequence[MetrePerSecond], *, stop: Stop | None = None) -> Ensemble:

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from separatrix.cage import Cause, Ensemble, History, MovingCage, RunOutcome, follow
-from separatrix.cage.closed_forms import whirl_rate
+from separatrix.cage import Cause, Ensemble, History, MovingCage, RunOutcome
+from separatrix.cage.closed_forms import felt_mass, whirl_rate
+from separatrix.cage.course import follow_start
+from separatrix.cage.disturbance import Starts
 from separatrix.distribution import Distribution
 from separatrix.limits.curve import Tracer, rising, threshold_factors
 from separatrix.limits.response import GrowthCounter
@@ -139,3 +141,29 @@ def threshold_points(cage, settings, jobs=1):
     tracer = Tracer(GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False)
     found = runner.work_out(tracer.point, tracer.first, into=dict, more=tracer.more)
     return rising(found.values())
+
+
+def follow(
+    cage, *, kick, direction, ball_lead, duration, samples=4000, until=None, real=np.float64, refine=1
+) -> History:
+    """Follow the run that starts in this direction [rad] and with these leads, shape (ball,) [m]."""
+    starts = Starts(
+        direction=np.array([direction]),
+        tilt_direction=np.zeros(1),
+        axial_sense=np.ones(1),
+        lead=np.array([ball_lead]),
+        more=np.zeros((1, cage.ball_count)),
+        angle=np.array([cage.ball_angles]),
+    )
+    return follow_start(cage, kick, starts, duration, samples, until, real=real, refine=refine)
+
+
+def impact_restitution(cage, *, may_turn=True):
+    r"""Restitution of an impact of the series spring and damper on the mass that it feels [-].
+
+    :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})` with :math:`\zeta = \sqrt{km}/2C_\mu`, 0 from :math:`\zeta
+    = 1`. The nominal eta has m = M; a thin ring that may turn returns more: 0.928 for 0.90, 0.698 for 0.60.
+    """
+    m = felt_mass(cage, may_turn=may_turn)
+    zeta = math.sqrt(cage.ball_cage_stiffness * m) / (2.0 * cage.slow_damping)
+    return math.exp(-math.pi * zeta / math.sqrt((1.0 - zeta) * (1.0 + zeta))) if zeta < 1.0 else 0.0

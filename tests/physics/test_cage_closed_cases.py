@@ -10,12 +10,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from cages import AT_REST, ON_A_LAND, damping_of, followed, linear_roots
+from cages import AT_REST, ON_A_LAND, damping_of, followed, impact_restitution, linear_roots
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import MovingCage, impact_restitution
+from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import rebound, rebound_damping
 from separatrix.study import Guidance
 

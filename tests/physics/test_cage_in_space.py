@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from cages import AT_REST, TURNING, damping_of
+from cages import AT_REST, TURNING, damping_of, follow
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import MovingCage, follow, outcome, rows
+from separatrix.cage import MovingCage, outcome, rows
 from separatrix.cage.disturbance import Starts, ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
 from separatrix.cage.numbers import look_time, numbers_of

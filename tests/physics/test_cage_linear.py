@@ -10,13 +10,12 @@ from cages import AT_REST, TURNING, damping_of, followed, linear_roots
 from separatrix.ball_traction import BallTraction
 from separatrix.cage import (
     MovingCage,
-    drift_law,
     linear_critical_friction,
     linear_whirl_frequency,
     numbers,
     run_ensemble,
 )
-from separatrix.cage.closed_forms import whirl_rate
+from separatrix.cage.closed_forms import drift_rate_law, whirl_rate
 from separatrix.study import MotionModel, StabilitySettings
 
 M, K, Z, R = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count, AT_REST.pitch_radius
@@ -122,9 +121,9 @@ def test_a_landless_cage_drifts_at_the_rate_of_the_law(clearance):
     """2 M Omega^2/(Z C_mu), the slow root, whose next order is 7e-4; 2e-3 with clearance."""
     cage = gripped(500.0, 0.05, cage_speed=700.0, pocket_clearance=clearance)
     slow = min(linear_roots(replace(cage, ball_cage_friction=0.0)), key=abs)
-    assert slow.real == pytest.approx(drift_law(cage), rel=1.5e-3)
+    assert slow.real == pytest.approx(drift_rate_law(cage), rel=1.5e-3)
     found = run_ensemble(cage, StabilitySettings(kicks=(0.5,), runs=4, duration=0.4))
-    assert found.drift_rate == pytest.approx(drift_law(cage), rel=5e-3 if clearance else 2e-3)
+    assert found.drift_rate == pytest.approx(drift_rate_law(cage), rel=5e-3 if clearance else 2e-3)
 
 
 PITCH, CRITICAL, TILT = math.radians(25.44303), 0.045720, 0.039251

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import EVERYTHING, ON_A_LAND, TURNING
+from cages import EVERYTHING, ON_A_LAND, TURNING, follow
 from plane_program import Course, integrate
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import History, MovingCage, follow
+from separatrix.cage import History, MovingCage
 from separatrix.study import Guidance, PocketShape
 
 LAW = BallTraction(mass=6.567e-3, slope=188.0, speed=0.39)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.hertz import contact_ellipse
+from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.chain.traction.exact import (
     Body,
     ContactProblem,
@@ -25,9 +25,8 @@ from separatrix.chain.traction.exact import (
     transient,
     worn_band,
 )
+from separatrix.chain.traction.exact.cases import rolling_cases
 from separatrix.chain.traction.exact.grid import cell_counts
-from separatrix.contact_file import read_contact
-from separatrix.contact_file.question import rolling_cases
 from separatrix.errors import InputError
 
 STEEL = Body(base=solid(200e9, 0.3))
@@ -221,35 +220,13 @@ def test_the_valid_ones_are_solved():
     assert math.isfinite(slope().slope)
 
 
-LONG = """
-[contact]
-load = "300 N"
-semi_axis_rolling = "0.5 mm"
-semi_axis_lateral = "0.1 mm"
-[body_1]
-material = "440C"
-[body_2]
-material = "440C"
-[friction]
-coefficient = 0.1
-[motion]
-longitudinal = 0.001
-"""
-
-
-def test_cells_that_are_left_out(tmp_path):
-    """40 x 40, more columns in contacts longer than wide, up to 8:1, in a file and from Python.
-
-    Given numbers stay.
-    """
+def test_cells_that_are_left_out():
+    """40 x 40, more columns in contacts longer than wide, up to 8:1; given numbers stay."""
     counts = [cell_counts(None, None, semi_minor=b, semi_major=1.0) for b in (0.1, 1.0, 5.0, 8.0, 100.0)]
     assert counts == [(40, 40), (40, 40), (68, 24), (80, 20), (80, 20)]
     assert cell_counts(12, 16, semi_minor=5.0, semi_major=1.0) == (12, 16)
-    file = tmp_path / "long.toml"
-    file.write_text(LONG)
-    setup = read_contact(file).cases[0].setup
+    long = problem(ellipse=ellipse_of_axes(300.0, 0.5e-3, 0.1e-3, 110e9))
+    setup = rolling_cases(long).cases[0].setup
     assert (setup.columns, setup.rows) == (68, 24)
-    again = rolling_cases(setup.problem).cases[0].setup
-    assert again.contact().grid.shape == rolling_contact(setup.problem).grid.shape == (24, 68)
-    file.write_text(LONG + "[grid]\ncolumns = 40\n")
-    assert read_contact(file).cases[0].setup.columns == 40
+    assert setup.contact().grid.shape == rolling_contact(long).grid.shape == (24, 68)
+    assert rolling_cases(long, columns=40).cases[0].setup.columns == 40

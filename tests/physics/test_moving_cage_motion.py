@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import AT_REST, ON_A_LAND, TURNING, damping_of
+from cages import AT_REST, ON_A_LAND, TURNING, damping_of, follow
 from random_cages import random_cage
 from space_program import SmallSteps
 
 from separatrix.ball_traction import BallTraction
-from separatrix.cage import MovingCage, RunOutcome, follow, outcome, run_ensemble, simulate
+from separatrix.cage import MovingCage, RunOutcome, outcome, run_ensemble, simulate
 from separatrix.cage.disturbance import ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
 from separatrix.cage.motion import rates

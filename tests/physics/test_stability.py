@@ -7,7 +7,8 @@ import pytest
 from cages import SMALL as CAGE
 from cages import threshold_points
 
-from separatrix.cage import drift_law, run_ensemble
+from separatrix.cage import run_ensemble
+from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.limits.curve import curve_of_points, restitution_threshold, stability_curve
 from separatrix.limits.point import critical_friction, linear_limit
 from separatrix.limits.response import GrowthCounter, cage_at
@@ -185,7 +186,7 @@ def test_an_ensemble_in_parts_is_the_whole_one():
 def test_the_curve_of_a_landless_cage_says_that_it_drifts():
     """Turning without a land: the rate of the linear law, and no word of stable; silent where it is held."""
     landless = replace(CAGE, cage_speed=400.0)
-    law = drift_law(landless)
+    law = drift_rate_law(landless)
     found = curve_of_points(landless, SETTINGS, [])
     assert found.drifts
     assert found.drift_rate_law == law

@@ -65,23 +65,7 @@ def run(
         "pocket_angle": ("ball", 2 * np.pi * np.arange(count) / count),
         "half_play": ("ball", np.full(count, 0.5 * play)),
         "judged_from": 0.0,
-        "judged_until": 0.0,
-        "frequency": ("frequency", np.arange(-8.0, 8.0)),
-        "tone": ("tone", np.arange(8.0)),
-        "analysis_spectra_offset": ("frequency", np.full(16, 1e-4)),
-        "analysis_spectra_slip_rate": ("tone", np.full(8, 0.1 * touching)),
-        "analysis_spectra_lean": np.nan,
-        "analysis_spectra_axial": np.nan,
-        "analysis_whirl_cage_speed": 600.0,
-        "analysis_whirl_window_time": ("window", [0.002, 0.008]),
-        "analysis_whirl_window_offset_ratio": ("window", [1.5, np.nan]),
-        "analysis_whirl_window_cage_slip": ("window", [0.0, 1e-3]),
-        "analysis_impacts_force_edges": ("edge", np.logspace(-3.0, 1.0, 4)),
-        "analysis_impacts_force_count": ("bin", [0.0, 0.0, 8.0 * touching]),
-        "analysis_impacts_clock_edges": ("edge", np.linspace(-np.pi / 3.0, 5.0 * np.pi / 3.0, 4)),
-        "analysis_impacts_clock_impulse": ("bin", np.array([1.0, 0.0, 2.0]) * touching),
-        "analysis_rubbing_pocket_power": ("ball", np.full(count, 0.3)),
-        "analysis_rubbing_land_power": 1.0,
+        "followed": 0.0,
     }
     if space:
         variables |= {
@@ -89,9 +73,6 @@ def run(
             "lean": (("time", "across"), 10.0 * position),
             "lean_rate": (("time", "across"), 10.0 * velocity),
             "ball_axial": (("time", "ball"), np.zeros((samples, count))),
-            "analysis_spectra_lean": ("frequency", np.full(16, 1e-3)),
-            "analysis_spectra_axial": ("tone", np.full(8, 1e-5)),
-            "analysis_whirl_window_tilt_ratio": ("window", [1.0, np.nan]),
         }
     made = xr.Dataset(variables | changes, coords={"time": time}, attrs={"study": "{}"})
     return made.transpose("time", ...)

@@ -28,12 +28,11 @@ from separatrix.staged import staged, writable_folder
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
     *("new", "check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate"),
-    *("rank", "sensitivity", "sweep", "tribometer", "contact", "compare"),
+    *("rank", "sensitivity", "sweep", "tribometer", "compare"),
     *("reproduce", "report", "app", "materials"),
 ]
 OPTIONS = {
     "new": ("--json", "--quiet"),
-    "contact": ("--json", "--out", "--quiet"),
     "compare": ("--json", "--out", "--quiet", "--full"),
     "reproduce": ("--json", "--quiet", "--jobs"),
     "app": ("--port", "--open"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import xarray as xr
 from exact_cases import contact, kalker, saturation
 
 from separatrix.figures import contact as figures
@@ -51,27 +50,3 @@ def test_power_is_not_negative_and_its_map_sums_to_the_dissipation(area):
     inside = np.where(area.fraction > 0.0, area.fraction, 1.0)
     assert shown.min() >= 0.0
     assert (shown * inside).sum() * cell == pytest.approx(area.dissipation, rel=1e-9)
-
-
-@pytest.mark.parametrize("varied", ["lateral_creep", "spin", "longitudinal_shift", "none"])
-def test_forces_are_drawn_against_what_varies(varied):
-    """The first input that is not the same in all cases; else the number of the case."""
-    names = (
-        "longitudinal_creep",
-        "lateral_creep",
-        "spin",
-        "curvature",
-        "longitudinal_shift",
-        "lateral_shift",
-    )
-    absent = np.full(3, np.nan)
-    data = {name: ("case", np.zeros(3)) for name in names} | {
-        "turn": ("case", absent),
-        "distance": ("case", absent),
-    }
-    if varied in data:
-        data[varied] = ("case", np.array([1.0, 2.0, 3.0]))
-    data |= {name: ("case", np.ones(3)) for name in ("load", "force", "lateral_force", "stick_share")}
-    figure = figures.forces(xr.Dataset(data, coords={"case": [1, 2, 3]}))
-    label = {"none": "case", "longitudinal_shift": "longitudinal shift"}.get(varied, varied.replace("_", " "))
-    assert figure.axes[0].get_xlabel().startswith(label)

@@ -33,9 +33,7 @@ def compared(data):
     return simulation.comparison(data, drawn.run(), ("one", "the other"))
 
 
-@pytest.mark.parametrize(
-    "draw", [simulation.course, simulation.whirl, simulation.forces, simulation.energy, compared]
-)
+@pytest.mark.parametrize("draw", [simulation.course, compared])
 @pytest.mark.parametrize("data", ODD.values(), ids=ODD.keys())
 def test_every_run_is_drawn_without_a_warning(draw, data):
     """Warnings are errors here."""
@@ -75,23 +73,6 @@ def test_whirl_spectrum_tells_forward_from_backward(turns, speed):
     # one bin of a run of 1 s
     assert frequency[share.argmax()] == pytest.approx(turns * np.sign(speed), abs=1.0)
     assert share.max() == 1.0
-
-
-def test_the_spectrum_against_time_follows_a_whirl_that_turns_faster():
-    """A velocity that turns at 1000 t Hz is strongest near 1000 t Hz in each piece of the run."""
-    time = np.linspace(0, 1, 4001)
-    middles, frequency, share = motion.spectrum_against_time(turning(time, np.pi * 1000.0 * time**2))
-    # one bin
-    wanted = pytest.approx(1000.0 * middles, abs=frequency[1] - frequency[0])
-    assert frequency[share.argmax(axis=1)] == wanted
-    assert middles[0] < 0.1
-    assert middles[-1] > 0.9
-
-
-def test_the_spectrum_against_time_fills_its_picture():
-    """The first piece begins at 0: no gap that looks like a cage at rest."""
-    axes = simulation.whirl(drawn.run(samples=400)).axes[4]
-    assert axes.collections[0].get_coordinates()[0, 0, 0] == 0.0
 
 
 def test_a_circle_of_few_samples_is_drawn_as_a_circle():
@@ -142,33 +123,10 @@ def test_on_the_land_boundary_the_depth_is_zero(guidance, side, lobes):
     assert land_boundary(drawn.run(cage_land_clearance=np.nan)) is None
 
 
-def test_a_contact_is_counted_once_and_on_its_side():
-    """One that begins before the first sample counts; one that changes side counts on both."""
-    signed = np.array([[5.0, 0.0, 0.0], [4.0, -1.0, 2.0], [0.0, 0.0, -2.0], [3.0, -1.0, -2.0]])
-    found = simulation.contact_counts(np.abs(signed), np.where(signed > 0.0, np.pi, 0.0))
-    assert found.tolist() == [[2, 0, 1], [0, 2, 1], [0, 0, 0]]
-    assert simulation.contact_counts(np.ones((4, 1)), np.full((4, 1), -0.5 * np.pi)).tolist() == [
-        [0],
-        [0],
-        [1],
-    ]
-
-
-@pytest.mark.parametrize("columns", [3, 10, 40])
-def test_pooling_loses_no_impact(columns):
-    """The largest force of each pocket stays, with fewer columns than samples and with more."""
-    rng = np.random.default_rng(1)
-    time, force = np.linspace(0.0, 1.0, 11), rng.random((11, 4))
-    shown = simulation.pooled(time, force, np.linspace(0.0, 1.0 + 1e-9, columns + 1))
-    assert shown.shape == (columns, 4)
-    assert shown.max(axis=0).tolist() == force.max(axis=0).tolist()
-
-
-@pytest.mark.parametrize(("judged", "spans"), [({"judged_from": 0.008, "judged_until": 0.009}, 3), ({}, 0)])
+@pytest.mark.parametrize(("judged", "spans"), [({"judged_from": 0.008, "followed": 0.009}, 3), ({}, 0)])
 def test_the_judged_part_of_a_run_is_shaded(judged, spans):
-    """In offset, rotation and energy; nothing where the run is not judged."""
-    data = drawn.run(samples=40, **judged)
-    pages = simulation.course(data).axes + simulation.energy(data).axes[:1]
+    """In offset, forces and energy; nothing where the run is not judged."""
+    pages = simulation.course(drawn.run(samples=40, **judged)).axes
     shaded = [patch for axes in pages for patch in axes.patches if patch.get_alpha() == 0.2]
     assert [float(patch.get_xy()[0]) for patch in shaded] == pytest.approx([8.0] * spans)
     assert all(patch.get_extents().width > 0.0 for patch in shaded)
@@ -182,30 +140,6 @@ def test_equal_clearances_and_the_path_on_them_are_all_seen():
     assert land.get_linewidth() > 3.0 * pockets.get_linewidth()
     assert land.get_alpha() < 0.6
     assert path.get_zorder() > max(land.get_zorder(), pockets.get_zorder())
-
-
-def test_the_close_view_begins_before_the_largest_force():
-    """Also where the kick throws the cage into a pocket at once: the force lies inside the picture."""
-    data = drawn.run(samples=400)
-    data["contact_force"][:] = 0.0
-    data["contact_force"][1, 2] = 50.0
-    near = simulation.close_view(data)
-    first, last = simulation.view_ends(near)
-    peak = simulation.milliseconds(near)[int(simulation.largest_force(near).argmax())]
-    assert (peak - first) / (last - first) > 0.1
-
-
-def test_the_close_view_shows_some_turns_around_the_largest_force():
-    """A whirl of 143 Hz: six turns are 42 ms, longer than the run; one of 5 kHz: 1.2 ms around it."""
-    slow = drawn.run(samples=400)
-    assert simulation.close_view(slow).sizes["time"] == 400
-    velocity, force = motion.ring(1.0, 2 * np.pi * 5e3 * slow["time"].values), slow["contact_force"].copy()
-    force[200, 3] = 1e3
-    fast = simulation.close_view(slow.assign(velocity=(("time", "across"), velocity), contact_force=force))
-    width = float(fast["time"][-1] - fast["time"][0])
-    # the samples at its ends
-    assert width == pytest.approx(simulation.TURNS / 5e3, abs=3 * 0.01 / 400)
-    assert simulation.largest_force(fast).max() == 1e3
 
 
 def test_energy_is_shown_in_a_unit_of_which_it_is_at_least_one():

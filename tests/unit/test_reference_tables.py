@@ -24,23 +24,6 @@ SMALL = replace(
 IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.MotionModel.SPACE))
 WORN = replace(SMALL, film=replace(SMALL.film, wear=separatrix.study.Wear(friction=0.3, share=0.2)))
 
-CONTACT = """
-[contact]
-load = "300 N"
-semi_axis_rolling = "0.15 mm"
-semi_axis_lateral = "0.45 mm"
-[body_1]
-material = "440C"
-[body_2]
-material = "440C"
-[friction]
-coefficient = 0.1
-[motion]
-longitudinal = 0.001
-[grid]
-columns = 6
-rows = 8
-"""
 ASKED = {
     "check": lambda: separatrix.check(SMALL),
     "bearing": lambda: separatrix.bearing(SMALL),
@@ -101,15 +84,6 @@ def test_every_name_of_the_verbs_without_a_study_has_a_line(tmp_path, monkeypatc
     found = document(capsys, "tribometer", "a.csv", "--map", "map.toml")
     assert found["fits"]
     assert missing("tribometer", found) == set()
-
-
-def test_every_name_of_a_contact_has_a_line(tmp_path, monkeypatch, capsys):
-    """A case on a coarse grid."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "ball.toml").write_text(CONTACT)
-    found = document(capsys, "contact", "ball.toml")
-    assert len(found["cases"]) == 1
-    assert missing("contact", found) == set()
 
 
 @pytest.mark.parametrize("verb", VERBS)

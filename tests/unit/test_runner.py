@@ -18,14 +18,13 @@ import pytest
 from commands import COMMAND, pieces
 
 from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
-from separatrix.cage.ensemble import follow_alike
+from separatrix.cage.ensemble import Runs, follow_alike
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.errors import InputError
 from separatrix.ledger import NAME, Ledger, key_of
 from separatrix.limits.curve import stability_curve
 from separatrix.runner import PART, Interrupted, Runner, joined
-from separatrix.side_by_side import Runs
 from separatrix.study import MotionModel, PocketShape
 from separatrix.study_file import read_study
 

@@ -1,13 +1,10 @@
 """The motion of the cage among its balls, from the forces to the evidence of an ensemble."""
 
-from separatrix.cage.analysis import CourseAnalysis, analyse
 from separatrix.cage.closed_forms import (
-    drift_law,
-    impact_restitution,
     linear_critical_friction,
     linear_whirl_frequency,
 )
-from separatrix.cage.course import History, follow, simulate
+from separatrix.cage.course import CourseAnalysis, History, analyse, simulate
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble, Stop, longest_duration, run_ensemble
 from separatrix.cage.moving_cage import MovingCage, moving_cage
@@ -22,9 +19,6 @@ __all__ = [
     "RunOutcome",
     "Stop",
     "analyse",
-    "drift_law",
-    "follow",
-    "impact_restitution",
     "linear_critical_friction",
     "linear_whirl_frequency",
     "longest_duration",

@@ -61,14 +61,6 @@ def _inertial_critical_friction(cage: MovingCage, law: BallTraction) -> Ratio:
     return float(min((f for f in frictions if f > 0.0), default=math.inf))
 
 
-def drift_law(cage: MovingCage) -> float:
-    r"""Growth rate of a landless cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
-
-    The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction.
-    """
-    return 2.0 * cage.mass * cage.cage_speed**2 / (cage.ball_count * cage.slow_damping)
-
-
 def room(cage: MovingCage) -> Metre:
     """Offset that the cage centre has: to its land, or half its pocket clearance without a land [m]."""
     return cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
@@ -83,36 +75,25 @@ def drive_energy(cage: MovingCage) -> Joule:
     r"""Kinetic energy that the frame and the loads can give the cage over its room, without any kick [J].
 
     .. math:: \tfrac12 M (\Omega w)^2 + 2 w (M g + U \Omega^2) + \tfrac12 (M + J/R^2) (2 V)^2
+              + 2 w_z (M |g_z| + |J_p - J_t| \Omega^2 \delta / R)
 
     with the room :math:`w`: the depth of the centrifugal potential, which is also the energy, in the turning
     frame, of a cage that rests on its land at a place fixed in space; the fall across the room under
     gravity and unbalance; and an impact of balls that lead and lag at speeds up to V. In space the fluid
-    that moves with the cage counts in the first and the last M, and `axial_drive_energy` is added.
+    that moves with the cage counts in the first and the last M; and gravity along the axis and dynamic
+    unbalance act over half the axial clearance :math:`w_z` of the pockets, and the tilt :math:`w_z/R`.
     """
-    w, M, speed = room(cage), moving_mass(cage), cage.cage_speed
+    w, M, speed, R = room(cage), moving_mass(cage), cage.cage_speed, cage.pitch_radius
     fall = 2.0 * w * (cage.mass * cage.gravity + cage.unbalance * speed**2)
     pairs = zip(cage.orbital_cosines, cage.orbital_sines, strict=True)
     V = sum(math.hypot(*pair) for pair in pairs)
-    struck = M + cage.moment_of_inertia / cage.pitch_radius**2
-    across = 0.5 * M * (speed * w) ** 2 + fall + 0.5 * struck * (2.0 * V) ** 2
-    return across + axial_drive_energy(cage)
-
-
-def axial_drive_energy(cage: MovingCage) -> Joule:
-    r"""What gravity along the axis and dynamic unbalance can give a cage in space over its axial room [J].
-
-    .. math:: 2 w_z M |g_z| + 2 \frac{w_z}{R} |J_p - J_t| \Omega^2 \delta
-
-    with half the axial clearance :math:`w_z` of the pockets, and the tilt :math:`w_z/R` that it leaves. 0 in
-    the plane, and where no pocket limits the axial motion.
-    """
-    w = axial_half_play(cage)
+    across = 0.5 * M * (speed * w) ** 2 + fall + 0.5 * (M + cage.moment_of_inertia / R**2) * (2.0 * V) ** 2
     if not cage.is_in_space:
-        return 0.0
+        return across
     leaning = abs(cage.moment_of_inertia - cage.transverse) * cage.dynamic_unbalance
-    fall = 0.0 if cage.is_axially_held else cage.mass * abs(cage.axial_gravity)
-    tilting = 0.0 if cage.is_tilt_held else leaning * cage.cage_speed**2 / cage.pitch_radius
-    return 2.0 * w * (fall + tilting)
+    along = 0.0 if cage.is_axially_held else cage.mass * abs(cage.axial_gravity)
+    tilting = 0.0 if cage.is_tilt_held else leaning * speed**2 / R
+    return across + 2.0 * axial_half_play(cage) * (along + tilting)
 
 
 def axial_half_play(cage: MovingCage) -> Metre:
@@ -128,25 +109,18 @@ def drifts(cage: MovingCage) -> bool:
 
 
 def drift_rate_law(cage: MovingCage) -> float:
-    """Rate at which the linear law has a landless cage drift [1/s]; 0 for one with a land."""
-    return drift_law(cage) if math.isinf(cage.land_gap) else 0.0
+    r"""Growth rate of a landless cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
+
+    The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction; 0 with a land.
+    """
+    law = 2.0 * cage.mass * cage.cage_speed**2 / (cage.ball_count * cage.slow_damping)
+    return law if math.isinf(cage.land_gap) else 0.0
 
 
 def felt_mass(cage: MovingCage, *, may_turn: bool = True) -> float:
     """Mass that an impact feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
     turning = cage.pitch_radius**2 / cage.moment_of_inertia if may_turn else 0.0
     return 1.0 / (1.0 / cage.mass + turning)
-
-
-def impact_restitution(cage: MovingCage, *, may_turn: bool = True) -> Ratio:
-    r"""Restitution of an impact of the series spring and damper on the mass that it feels [-].
-
-    :math:`\eta = \exp(-\pi\zeta/\sqrt{1-\zeta^2})` with :math:`\zeta = \sqrt{km}/2C_\mu`, 0 from :math:`\zeta
-    = 1`. The nominal eta has m = M; a thin ring that may turn returns more: 0.928 for 0.90, 0.698 for 0.60.
-    """
-    m = felt_mass(cage, may_turn=may_turn)
-    zeta = math.sqrt(cage.ball_cage_stiffness * m) / (2.0 * cage.slow_damping)
-    return math.exp(-math.pi * zeta / math.sqrt((1.0 - zeta) * (1.0 + zeta))) if zeta < 1.0 else 0.0
 
 
 def rebound(damping_ratio: Ratio) -> Ratio:

@@ -1,10 +1,10 @@
-"""The course of one run: orbit, rotation, tilt, balls, forces and energies against time."""
+"""The course of one run against time: orbit, tilt, balls, forces, energies, and what they show."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -17,9 +17,18 @@ from separatrix.cage.disturbance import (
     settings_for,
     start_states,
 )
-from separatrix.cage.ensemble import Piece, Raw, Stop, check_length, evidence_of, other_way_round, run_rows
+from separatrix.cage.ensemble import (
+    Ensemble,
+    Piece,
+    Raw,
+    Stop,
+    check_length,
+    evidence_of,
+    other_way_round,
+    run_rows,
+)
 from separatrix.cage.moving_cage import MovingCage, turned_forward
-from separatrix.cage.numbers import ball_level, numbers_of, pocket_rectangle
+from separatrix.cage.numbers import look_time, numbers_of, pocket_rectangle
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import of
 from separatrix.errors import InputError
@@ -33,28 +42,34 @@ from separatrix.units import (
     Newton,
     PerSecond,
     Radian,
+    RadianPerSecond,
     Ratio,
     Second,
     Watt,
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from separatrix.cage.numbers import Numbers
 
 MOST_SAMPLES = 1_000_000
+
+FEWEST = 16
+"""Samples of the judged part below which the whole run is taken."""
 
 WHIRL_TURNS = 50
 """Turns of a whirl that a history shows at least, whenever its end was plain."""
 
 SOURCES = {
-    "pocket_friction": rows.POCKET_WORK,
-    "land_friction": rows.LAND_WORK,
-    "land_normal": rows.LAND_PRESS_WORK,
-    "balls": rows.BALL_WORK,
-    "frame_and_loads": rows.FRAME_WORK,
+    "pocket_friction": (rows.POCKET_WORK, rows.WORK_POCKET),
+    "land_friction": (rows.LAND_WORK, rows.WORK_LAND),
+    "land_normal": (rows.LAND_PRESS_WORK, rows.WORK_PRESS),
+    "balls": (rows.BALL_WORK, rows.WORK_BALL),
+    "frame_and_loads": (rows.FRAME_WORK, rows.WORK_FRAME),
 }
-"""Works that change the energy of cage and pocket springs. Balls: what the races take, less what they
-drive."""
+"""Works that change the energy of cage and pocket springs, as a state and as a sum of a look. Balls: what the
+races take, less what they drive."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,72 +78,42 @@ class History:
 
     Numbers without an array are those of the ensemble's run with this disturbance, seed and number; what only
     a cage in space has is None in the plane.
-
-    Attributes
-    ----------
-    time : ndarray
-        Shape (time,) [s]; a run that grows without limit ends early.
-    position, velocity : ndarray
-        Geometric centre of the cage across the axis, and its velocity, shape (time, across) [m], [m/s].
-    rotation, rotation_rate : ndarray
-        Of the cage against the ball set, shape (time,) [rad] and [rad/s].
-    axial_place, axial_speed : ndarray or None
-        Of the centre of mass along the axis, shape (time,) [m], [m/s].
-    lean, lean_rate : ndarray or None
-        Where the geometric axis leans to: the way of a point on it over its height, shape (time, across)
-        [rad], [rad/s].
-    ball_lead, ball_speed : ndarray
-        Lead of each ball [m], and its speed beyond its free orbit [m/s] (0 of a damper), shape (time, ball).
-    ball_axial : ndarray or None
-        Place of each ball along its groove, shape (time, ball) [m].
-    contact_force, contact_angle : ndarray
-        Force of each pocket on its ball [N]; where on the ball it acts: 0 in front of it, 90 deg along the
-        axis, 180 deg behind it, 0 without force, shape (time, ball) [rad].
-    land_force : ndarray
-        Normal force of all lands, shape (time,) [N].
-    kinetic_energy, stored_energy : ndarray
-        Of the cage in the turning frame; of the pockets' springs, shape (time,) [J].
-    work : dict of str to ndarray
-        Work done on cage and pocket springs since the start by each of `SOURCES`, shape (time,) [J].
-    pocket_angle, half_play : ndarray
-        Place of each pocket in the turning frame [rad]; half its clearance along the orbit [m], shape
-        (ball,).
-    outcome, cause : RunOutcome, Cause
-        Where the motion ends, and why the run is unresolved, if it is.
-    judged_from, judged_until : float
-        The last part of the run, by which it was judged [s]; the history may go on.
     """
 
-    time: Annotated[Array, "s", ("time",)]
-    position: Annotated[Array, "m", ("time", "across")]
+    time: Annotated[Array, "s", ("time",)]  # a run that grows without limit ends early
+    position: Annotated[Array, "m", ("time", "across")]  # of the geometric centre, across the axis
     velocity: Annotated[Array, "m/s", ("time", "across")]
-    rotation: Annotated[Array, "rad", ("time",)]
+    rotation: Annotated[Array, "rad", ("time",)]  # of the cage against the ball set
     rotation_rate: Annotated[Array, "rad/s", ("time",)]
-    axial_place: Annotated[Array | None, "m", ("time",)]
+    axial_place: Annotated[Array | None, "m", ("time",)]  # of the centre of mass
     axial_speed: Annotated[Array | None, "m/s", ("time",)]
-    lean: Annotated[Array | None, "rad", ("time", "across")]
+    lean: Annotated[Array | None, "rad", ("time", "across")]  # way of a point on the axis over its height
     lean_rate: Annotated[Array | None, "rad/s", ("time", "across")]
     ball_lead: Annotated[Array, "m", ("time", "ball")]
-    ball_speed: Annotated[Array, "m/s", ("time", "ball")]
-    ball_axial: Annotated[Array | None, "m", ("time", "ball")]
-    contact_force: Annotated[Array, "N", ("time", "ball")]
+    ball_speed: Annotated[Array, "m/s", ("time", "ball")]  # beyond its free orbit; 0 of a damper
+    ball_axial: Annotated[Array | None, "m", ("time", "ball")]  # place along its groove
+    contact_force: Annotated[Array, "N", ("time", "ball")]  # of each pocket on its ball
     contact_angle: Annotated[Array, "rad", ("time", "ball")]
-    land_force: Annotated[Array, "N", ("time",)]
-    kinetic_energy: Annotated[Array, "J", ("time",)]
-    stored_energy: Annotated[Array, "J", ("time",)]
-    work: Annotated[dict[str, Array], "J", ("time",)]
-    pocket_angle: Annotated[Array, "rad", ("ball",)]
-    half_play: Annotated[Array, "m", ("ball",)]
+    """Where on the ball it acts: 0 in front of it, 90 deg along the axis, 180 deg behind it, 0 without."""
+    land_force: Annotated[Array, "N", ("time",)]  # normal force of all lands
+    kinetic_energy: Annotated[Array, "J", ("time",)]  # of the cage in the turning frame
+    stored_energy: Annotated[Array, "J", ("time",)]  # of the pockets' springs
+    work: Annotated[dict[str, Array], "J", ("time",)]  # on cage and pocket springs, by each of `SOURCES`
+    pocket_angle: Annotated[Array, "rad", ("ball",)]  # in the turning frame
+    half_play: Annotated[Array, "m", ("ball",)]  # half the clearance of each pocket along the orbit
     pocket_impacts: Annotated[Array, "-", ("ball",)]
-    pocket_rubbing: Annotated[Array, "J", ("ball",)]
+    pocket_rubbing: Annotated[Array, "J", ("ball",)]  # integral of force times sliding speed
     outcome: RunOutcome
     cause: Cause
-    judged_from: Second
-    judged_until: Second
+    judged_from: Second  # the last part of the run, by which it was judged
+    followed: Second  # its end; the history may go on
     end_energy: Joule
     growth_rate: PerSecond
     drift_rate: PerSecond
     largest_offset: Metre
+    mean_offset: Metre
+    offset_spread: Metre
+    orbit_speed: RadianPerSecond
     whirl_frequency: Hertz
     whirl_direction: int
     pocket_power: Watt
@@ -141,6 +126,10 @@ class History:
     left_ball: int
     left_time: Second
     energy_imbalance: Ratio
+    largest_tilt: Radian | None
+    cone_speed: RadianPerSecond | None
+    axial_low: Metre | None
+    axial_high: Metre | None
 
 
 def simulate(
@@ -156,17 +145,9 @@ def simulate(
 ) -> History:
     """Follow one run of the ensemble; the motion is the same to the last bit, however it is sampled.
 
-    Parameters
-    ----------
-    cage : MovingCage
-        The cage.
-    kick, run, seed, duration, ball_scatter
-        As in the ensemble: speed of the disturbance [m/s], number of the run, seed, length [s], scatter [-].
-    samples : int
-        Largest number of rows, evenly spaced; the memory is bounded by it.
-    until : float, optional
-        Time up to which there are rows, to within one [s]; by default that up to which the run is judged, or
-        50 turns of its whirl.
+    Speed of the disturbance [m/s], number of the run, seed, length [s] and scatter [-] are as in the
+    ensemble. There are at most `samples` rows, evenly spaced, up to `until` [s]: by default the time to which
+    the run is judged, or 50 turns of its whirl.
 
     Raises
     ------
@@ -179,34 +160,6 @@ def simulate(
     forward = turned_forward(cage)
     history = follow_start(forward, kick, random_starts(forward, settings, run, 1), duration, samples, until)
     return history if forward is cage else _mirrored(history)
-
-
-def follow(
-    cage: MovingCage,
-    *,
-    kick: MetrePerSecond,
-    direction: Radian,
-    ball_lead: Array,
-    duration: Second,
-    samples: int = 4000,
-    until: Second | None = None,
-    real: type = np.float64,
-    refine: int = 1,
-) -> History:
-    """Follow the run that starts in this direction [rad] and with these leads, shape (ball,) [m]."""
-    lead = np.asarray(ball_lead, dtype=np.float64)
-    if lead.shape != (cage.ball_count,) or not np.all(np.abs(lead) <= cage.half_play):
-        rule = f"must be {cage.ball_count} numbers within the pocket clearance [m]"
-        raise InputError("ball_lead", rule, f"{lead.tolist()}")
-    starts = Starts(
-        direction=np.array([direction]),
-        tilt_direction=np.zeros(1),
-        axial_sense=np.ones(1),
-        lead=lead[np.newaxis],
-        more=np.zeros((1, cage.ball_count)),
-        angle=np.array([cage.ball_angles]),
-    )
-    return follow_start(cage, kick, starts, duration, samples, until, real=real, refine=refine)
 
 
 def follow_start(
@@ -238,7 +191,7 @@ def follow_start(
     numbers = numbers_of(cage, kick, duration, least=length, refine=refine)
     step = numbers.numbers[of(rows.STEP)]
     every = max(1, math.ceil(length / step / (samples - 1)))
-    columns = 2 + states.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count
+    columns = 4 + states.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count
     record = np.zeros((math.ceil(length / step / every) + 1, columns))  # the last row where a look reaches it
     raw = run_rows(numbers.kind, [numbers], states, places, Stop(), real, record=record, every=every)
     return _history(cage, kick, numbers, starts, places, states, raw)
@@ -254,78 +207,49 @@ def _history(
     raw: Raw,
 ) -> History:
     """Record of the rows that the queue wrote."""
-    record, Z, kind = raw.record, cage.ball_count, numbers.kind
-    filled = int(
-        np.count_nonzero(np.isfinite(record[:, 1 + of(rows.VX)]) & (record[:, 1 + of(rows.RAMP)] > 0.0))
-    )
-    record = record[:filled]
-    state, first = record[:, 1 : 1 + states.shape[1]], rows.cage_states(space=kind.space)
-    one = rows.ball_states(kind.ball, space=kind.space)
-    at = 1 + states.shape[1]
-    pose, force = record[:, at : at + of(rows.GWB - rows.GX) + 1], record[:, -1 - Z : -1]
-    R, speed_row = cage.pitch_radius, 2 if kind.space else 1
-    centre, axis = 0, of(rows.GA - rows.GX)
-    lead = state[:, first::one]
-    along, across = _places_of_pockets(cage, state, pose, lead, starts, one)
-    depth, angle = _touch(cage, along, across, places)
-    stiffness, hertz = (numbers.numbers[of(row)] for row in (rows.STIFFNESS, rows.HERTZ))
+    record, in_space, kind = raw.record, numbers.kind.space, numbers.kind
+    filled = np.isfinite(record[:, 1 + of(rows.VX)]) & (record[:, 1 + of(rows.RAMP)] > 0.0)
+    record = record[: np.count_nonzero(filled)]
+    first, one = rows.cage_states(space=in_space), rows.ball_states(kind.ball, space=in_space)
+    parts = np.cumsum([1, states.shape[1], of(rows.GWB - rows.GX) + 1, cage.ball_count])
+    time, state, pose, force, rest = np.split(record, parts, axis=1)
+    lead, speed = state[:, first::one], first + (2 if in_space else 1)
+    angle = _angles(cage, *_places_of_pockets(cage, state, pose, lead, starts, one), places)
     found = evidence_of([Piece(cage, kick, numbers, states, places)], raw)
-    in_space = kind.space
     return History(
-        time=record[:, 0].copy(),
-        position=pose[:, centre : centre + 2].copy(),
-        velocity=pose[:, centre + 2 : centre + 4].copy(),
-        rotation=state[:, of(rows.S)] / R,
-        rotation_rate=state[:, of(rows.VS)] / R,
+        time=time[:, 0].copy(),
+        position=pose[:, :2].copy(),
+        velocity=pose[:, 2:4].copy(),
+        rotation=state[:, of(rows.S)] / cage.pitch_radius,
+        rotation_rate=state[:, of(rows.VS)] / cage.pitch_radius,
         axial_place=state[:, of(rows.Z)].copy() if in_space else None,
         axial_speed=state[:, of(rows.VZ)].copy() if in_space else None,
-        lean=np.stack([pose[:, axis + 1], -pose[:, axis]], axis=1) if in_space else None,
-        lean_rate=np.stack([pose[:, axis + 3], -pose[:, axis + 2]], axis=1) if in_space else None,
+        lean=np.stack([pose[:, 5], -pose[:, 4]], axis=1) if in_space else None,
+        lean_rate=np.stack([pose[:, 7], -pose[:, 6]], axis=1) if in_space else None,
         ball_lead=lead.copy(),
-        ball_speed=np.zeros_like(lead)
-        if ball_level(cage) == rows.DAMPER
-        else state[:, first + speed_row :: one].copy(),
+        ball_speed=(0.0 * lead if kind.ball == rows.DAMPER else state[:, speed::one]).copy(),
         ball_axial=state[:, first + 1 :: one].copy() if in_space else None,
         contact_force=force.copy(),
         contact_angle=angle * (force > 0.0),
-        land_force=record[:, -1].copy(),
-        kinetic_energy=_kinetic(cage, state, in_space),
-        stored_energy=((0.5 * stiffness + 0.4 * hertz * np.sqrt(depth)) * depth**2).sum(axis=1),
+        land_force=rest[:, 2].copy(),
+        kinetic_energy=rest[:, 0].copy(),
+        stored_energy=rest[:, 1].copy(),
         work=_works(record, state, numbers, raw),
         pocket_angle=starts.angle[0],
         half_play=cage.half_play + starts.more[0],
-        judged_until=float(found["followed"][0]),
         outcome=RunOutcome(int(found["outcome"][0])),
         cause=Cause(int(found["cause"][0])),
         pocket_impacts=found["pocket_impacts"][0].astype(np.float64),
         pocket_rubbing=found["pocket_rubbing"][0],
-        whirl_direction=int(found["whirl_direction"][0]),
-        land_impacts=int(found["land_impacts"][0]),
-        left_ball=int(found["left_ball"][0]),
-        **{name: float(found[name][0]) for name in _NUMBERS},
+        **_numbers_of_the_run(found),
     )
 
 
-_NUMBERS = (
-    *(
-        "judged_from",
-        "end_energy",
-        "growth_rate",
-        "drift_rate",
-        "largest_offset",
-        "whirl_frequency",
-        "pocket_power",
-    ),
-    *(
-        "land_power",
-        "rubbing_force",
-        "rubbing_speed",
-        "largest_contact_force",
-        "largest_land_force",
-        "left_time",
-    ),
-    "energy_imbalance",
-)
+def _numbers_of_the_run(found: dict[str, Array]) -> dict[str, Any]:
+    """Numbers of a history that are those of the ensemble; None of what only space has."""
+    own = {"outcome", "cause", "pocket_impacts", "pocket_rubbing"}
+    both = {one.name for one in fields(History)} & {one.name for one in fields(Ensemble)} - own
+    return {name: found[name][0].item() if name in found else None for name in both}
 
 
 def _places_of_pockets(
@@ -341,24 +265,11 @@ def _places_of_pockets(
     return along, state[:, [of(rows.Z)]] - cage.pitch_radius * (b * c - a * n) - groove
 
 
-def _touch(cage: MovingCage, along: Array, across: Array, places: Array) -> tuple[Array, Array]:
-    """Depth of each pocket in its ball [m], and where on the ball it touches [rad]: see `pocket_force`."""
-    by_ball = places.reshape(cage.ball_count, -1)
-    beside = pocket_rectangle(cage)[1]
-    t = along - np.clip(along, -by_ball[:, of(rows.APART)], by_ball[:, of(rows.APART)])
-    z = across - np.clip(across, -beside, beside)
-    return np.maximum(np.hypot(t, z) - by_ball[:, of(rows.AROUND)], 0.0), np.arctan2(0.0 - z, -t)
-
-
-def _kinetic(cage: MovingCage, state: Array, in_space: bool) -> Array:
-    """Kinetic energy of the cage in the turning frame, shape (time,) [J]."""
-    mass = cage.mass + cage.added_mass
-    twice = mass * (state[:, of(rows.VX)] ** 2 + state[:, of(rows.VY)] ** 2)
-    twice += cage.moment_of_inertia * (state[:, of(rows.VS)] / cage.pitch_radius) ** 2
-    if in_space:
-        twice += cage.mass * state[:, of(rows.VZ)] ** 2
-        twice += cage.transverse * (state[:, of(rows.WX)] ** 2 + state[:, of(rows.WY)] ** 2)
-    return np.asarray(0.5 * twice)
+def _angles(cage: MovingCage, along: Array, across: Array, places: Array) -> Array:
+    """Where on each ball its pocket touches, shape (time, ball) [rad]: see `pocket_force`."""
+    beside, apart = pocket_rectangle(cage)[1], places[0, :, of(rows.APART)]
+    t, z = along - np.clip(along, -apart, apart), across - np.clip(across, -beside, beside)
+    return np.asarray(np.arctan2(0.0 - z, -t))
 
 
 def _works(record: Array, state: Array, numbers: Numbers, raw: Raw) -> dict[str, Array]:
@@ -369,14 +280,10 @@ def _works(record: Array, state: Array, numbers: Numbers, raw: Raw) -> dict[str,
     )
     looks = raw.looks[0].astype(np.float64)
     before = np.concatenate([np.zeros((1, looks.shape[1])), np.cumsum(looks, axis=0)])
-    columns = dict(
-        zip(
-            SOURCES,
-            (rows.WORK_POCKET, rows.WORK_LAND, rows.WORK_PRESS, rows.WORK_BALL, rows.WORK_FRAME),
-            strict=True,
-        )
-    )
-    return {name: before[look, of(columns[name])] + state[:, of(row)] for name, row in SOURCES.items()}
+    works = {}
+    for name, (row, column) in SOURCES.items():
+        works[name] = before[look, of(column)] + state[:, of(row)]
+    return works
 
 
 def _mirrored(history: History) -> History:
@@ -404,3 +311,77 @@ def _mirrored(history: History) -> History:
         pocket_rubbing=other_way_round(history.pocket_rubbing),
         left_ball=history.pocket_angle.size + 2 - left if left > 1 else left,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CourseAnalysis:
+    """What the samples of one run show beside what the engine counts."""
+
+    run_length: Second  # of the samples
+    whirl_speed: MetrePerSecond  # root of the mean square speed of the centre at the end, seen from the balls
+    cage_slip: Ratio | None
+    """By how much the cage turns slower than the ball set at the end, over that; None at rest."""
+    tilt_phase: Radian | None  # from offset to lean at the end; 0: the axis leans outward where the centre is
+    tilt_coherence: Ratio | None  # how far the lean keeps that angle: 1 always, 0 not at all
+    impact_rate: Annotated[Array, "1/s", ("ball",)]  # in each pocket
+    impacts_per_turn: Annotated[Array | None, "-", ("ball",)]  # of the cage; None at rest
+    pocket_rubbing_power: Annotated[Array, "W", ("ball",)]  # heat of friction in each pocket, mean of the run
+    front_share: Ratio | None  # of the impulse of pockets on balls, within 45 deg of the front of the ball
+    rear_share: Ratio | None
+    axial_share: Ratio | None  # near both axial poles
+
+
+def analyse(cage: MovingCage, history: History) -> CourseAnalysis:
+    """Analyse a run of a cage."""
+    time, speed, sense = history.time, ball_set_speed(cage, history.time), cage.rotation_sense
+    judged = (time >= history.judged_from) & (time <= history.followed)
+    part = np.flatnonzero(judged | (judged.sum() < FEWEST))
+    here = slice(int(part[0]), int(part[-1]) + 1)
+    look = look_time(cage)  # of which the engine counts whole ones
+    ended = math.ceil(time[-1] / look - 1e-9) * look or math.inf
+    turns = abs(integral(time, speed + history.rotation_rate)) / (2.0 * math.pi)
+    by_balls = integral(time[here], speed[here])
+    phase, coherence = None, None
+    if history.lean is not None:
+        phase, coherence = phase_of(history.position[here], history.lean[here], time[here])
+    step = np.gradient(time) if time.size > 1 else np.ones(1)
+    impulse, along = history.contact_force * step[:, np.newaxis], sense * np.cos(history.contact_angle)
+    total, pole = float(impulse.sum()), math.cos(math.pi / 4.0)
+
+    def share(near: NDArray[np.bool_]) -> Ratio | None:
+        return float(impulse[near].sum()) / total if total > 0.0 else None
+
+    return CourseAnalysis(
+        run_length=float(time[-1]),
+        whirl_speed=math.sqrt(float(np.mean(np.sum(history.velocity[here] ** 2, axis=1)))),
+        cage_slip=-integral(time[here], history.rotation_rate[here]) / by_balls if by_balls else None,
+        tilt_phase=None if phase is None else sense * phase,
+        tilt_coherence=coherence,
+        impact_rate=history.pocket_impacts / ended,
+        impacts_per_turn=history.pocket_impacts / turns if turns > 0.0 else None,
+        pocket_rubbing_power=cage.ball_cage_friction * history.pocket_rubbing / ended,
+        front_share=share(along >= pole),
+        rear_share=share(along <= -pole),
+        axial_share=share(np.abs(along) < pole),
+    )
+
+
+def ball_set_speed(cage: MovingCage, time: Array) -> Array:
+    """Angular speed of the ball set at times, with its ramp [rad/s]."""
+    missing = 1.0 - cage.ramp_start if cage.ramp_time else 0.0
+    return cage.cage_speed * (1.0 - missing * np.maximum(0.0, 1.0 - time / (cage.ramp_time or 1.0)))
+
+
+def integral(time: Array, values: Array) -> float:
+    """Integral over time by trapezoids."""
+    return float(np.trapezoid(values, time))
+
+
+def phase_of(offset: Array, lean: Array, time: Array) -> tuple[Radian | None, Ratio | None]:
+    """Angle from one vector to another, weighted by both, and how steadily it is that; shape (time, 2)."""
+    along = integral(time, np.sum(offset * lean, axis=1))
+    across = integral(time, offset[:, 0] * lean[:, 1] - offset[:, 1] * lean[:, 0])
+    both = math.sqrt(integral(time, np.sum(offset**2, axis=1)) * integral(time, np.sum(lean**2, axis=1)))
+    if not both > 0.0:
+        return None, None
+    return math.atan2(across, along), min(1.0, math.hypot(along, across) / both)

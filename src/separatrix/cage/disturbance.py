@@ -46,9 +46,6 @@ class Starts(NamedTuple):
     more: Array
     angle: Array
 
-    def __getitem__(self, part: slice) -> Starts:  # type: ignore[override]
-        return Starts(*(values[part] for values in tuple(self)))
-
 
 def settings_for(settings: StabilitySettings, cage: MovingCage) -> StabilitySettings:
     """Return the settings with the disturbances and the reference of this cage; given ones stay."""
@@ -178,11 +175,11 @@ def start_states(cage: MovingCage, kick: MetrePerSecond, starts: Starts) -> Arra
 
 
 def ball_places(cage: MovingCage, starts: Starts) -> Array:
-    """Numbers of every ball with its pocket, shape (run, ball x number): angle and clearance."""
+    """Numbers of every ball with its pocket, shape (run, ball, number): angle and clearance."""
     apart, _, around = pocket_rectangle(cage)
-    places = np.empty((*starts.lead.shape, of(rows.BALL_NUMBERS)))
+    places = np.zeros((*starts.lead.shape, of(rows.BALL_ROWS)))
     places[..., of(rows.COSINE)], places[..., of(rows.SINE)] = np.cos(starts.angle), np.sin(starts.angle)
     is_round = around > 0.0
     places[..., of(rows.AROUND)] = around + (starts.more if is_round else 0.0)
     places[..., of(rows.APART)] = apart + (0.0 if is_round else starts.more)
-    return places.reshape(len(places), -1)
+    return places

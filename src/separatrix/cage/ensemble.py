@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from separatrix.cage import outcome, rows, run
 from separatrix.cage.disturbance import ball_places, chosen, random_starts, settings_for, start_states
@@ -20,8 +21,6 @@ from separatrix.errors import InputError
 from separatrix.units import Array, Second, format_quantity
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from separatrix.cage.moving_cage import MovingCage
     from separatrix.study import StabilitySettings
     from separatrix.units import MetrePerSecond
@@ -33,6 +32,7 @@ FIFTH, LAST = 5, 10
 """A run is described by its last fifth, or its last ten looks if they are more."""
 
 
+Whole = NDArray[np.int64]
 Mean = Callable[[Array, Array], Array]  # means of all columns over looks, by row
 
 
@@ -56,112 +56,56 @@ class Stop:
 class Ensemble:
     """Outcome and evidence of every run; arrays have shape (kick, run) unless stated.
 
-    Attributes
-    ----------
-    kicks : ndarray
-        Speeds of the initial disturbances, shape (kick,) [m/s].
-    outcome : ndarray
-        `RunOutcome` of each run, integer.
-    cause : ndarray
-        `Cause` of each run that is unresolved, or that friction on the land keeps moving, integer; else 0.
-    end_energy : ndarray
-        Mean kinetic energy in the last part of the run: its last fifth, or its last ten looks if they are
-        more [J].
-    growth_rate : ndarray
-        Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the start
-        in a run that ends within five looks [1/s].
-    largest_offset : ndarray
-        Largest offset of the cage centre [m].
-    mean_offset, offset_spread : ndarray
-        Mean and standard deviation of the offset over the last part [m].
-    orbit_speed : ndarray
-        Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the
-        squared offset, over the last part; positive as the ball set turns [rad/s].
-    drift_rate : ndarray
-        Growth rate of the mean offset between the last two fifths, of a cage free to drift that of its mean
-        place [1/s].
-    whirl_frequency, whirl_direction : ndarray
-        Mean turning rate of the velocity at the end in the turning frame, weighted with its square [Hz], and
-        its sense: 1 forward (as the ball set turns), -1 backward, 0 none.
-    largest_contact_force, largest_land_force : ndarray
-        Largest force between a ball and its pocket, and between cage and land [N].
-    pocket_impacts, pocket_rubbing : ndarray
-        How often each pocket met its ball, and the integral of force times sliding speed [J], shape (kick,
-        run, ball).
-    land_impacts, strike_rate : ndarray
-        How often the cage met its land; impacts of all pockets in the last part [1/s].
-    energy_imbalance : ndarray
-        What the ledger of works leaves unexplained, over the work done and the energy at the start [-].
-    pocket_power, land_power : ndarray
-        Mean power that the friction of pockets and of the land feeds into the cage in the last part [W].
-    rubbing_force, rubbing_speed : ndarray
-        Mean normal force on the land over the last part [N], and the sliding speed there weighted with it
-        [m/s].
-    left_ball, left_time : ndarray
-        The first ball, from 1, at which the wall of a pocket ended, and when [s]; 0 where none did.
-    followed, judged_from : ndarray
-        Time up to which the run was judged, and at which its last part begins [s].
-    largest_tilt, mean_tilt : ndarray or None
-        Angle between the axes of cage and bearing: the largest, and its mean over the last part [rad]. This
-        and all that follow are None where the cage moves in the plane.
-    cone_speed, cone_phase : ndarray or None
-        Mean angular speed of the lean of the axis about the bearing's axis in the fixed frame [rad/s]; angle
-        from the offset of the centre to the lean, the same if 0 [rad].
-    axial_low, axial_high, axial_place, axial_spread : ndarray or None
-        Extremes of the axial place, its mean and standard deviation over the last part [m].
-    duration : float
-        Time for which a motion whose end is not plain is followed, if it is longer than 160 looks [s]; below
-        20 ms fewer looks.
+    "At the end": over the last part of the run, its last fifth or its last ten looks if they are more.
     """
 
-    kicks: Array
-    outcome: NDArray[np.int64]
-    cause: NDArray[np.int64]
-    end_energy: Array
+    kicks: Array  # speeds of the initial disturbances, shape (kick,) [m/s]
+    outcome: Whole  # `RunOutcome`
+    cause: Whole  # `Cause` of a run that is unresolved, or that friction on the land keeps moving; else 0
+    end_energy: Array  # mean kinetic energy at the end [J]
     growth_rate: Array
-    largest_offset: Array
-    mean_offset: Array
-    offset_spread: Array
+    """Half the logarithmic rate of the mean kinetic energy from half way to the last fifth; from the start in
+    a run that ends within five looks [1/s]."""
+    largest_offset: Array  # of the cage centre [m]
+    mean_offset: Array  # at the end [m]
+    offset_spread: Array  # its standard deviation [m]
     orbit_speed: Array
-    drift_rate: Array
-    whirl_frequency: Array
-    whirl_direction: NDArray[np.int64]
-    largest_contact_force: Array
-    largest_land_force: Array
-    pocket_impacts: NDArray[np.int64]
-    pocket_rubbing: Array
-    land_impacts: NDArray[np.int64]
-    strike_rate: Array
-    energy_imbalance: Array
-    pocket_power: Array
-    land_power: Array
-    rubbing_force: Array
-    rubbing_speed: Array
-    left_ball: NDArray[np.int64]
-    left_time: Array
-    followed: Array
-    judged_from: Array
-    largest_tilt: Array | None = None
-    mean_tilt: Array | None = None
-    cone_speed: Array | None = None
-    cone_phase: Array | None = None
-    axial_low: Array | None = None
+    """Mean angular speed of the centre about the bearing's axis in the fixed frame, weighted with the squared
+    offset, at the end; positive as the ball set turns [rad/s]."""
+    drift_rate: Array  # of the mean offset over the last two fifths; adrift of the mean place [1/s]
+    whirl_frequency: Array  # mean turning rate of the velocity in the turning frame at the end [Hz]
+    whirl_direction: Whole  # 1 forward (as the ball set turns), -1 backward, 0 none
+    largest_contact_force: Array  # between ball and pocket [N]
+    largest_land_force: Array  # of cage and land [N]
+    pocket_impacts: Whole  # how often each pocket met its ball, shape (kick, run, ball)
+    pocket_rubbing: Array  # integral of force times sliding speed, shape (kick, run, ball) [J]
+    land_impacts: Whole  # how often the cage met its land
+    strike_rate: Array  # impacts of all pockets at the end [1/s]
+    energy_imbalance: Array  # what the works leave open, over the work done and the energy at the start [-]
+    pocket_power: Array  # that pocket friction feeds into the cage at the end [W]
+    land_power: Array  # the same of the land [W]
+    rubbing_force: Array  # mean normal force on the land at the end [N]
+    rubbing_speed: Array  # sliding speed there, weighted with the force [m/s]
+    left_ball: Whole  # the first ball, from 1, at which the wall of a pocket ended; 0: none
+    left_time: Array  # when [s]
+    followed: Array  # time up to which the run was judged [s]
+    judged_from: Array  # time at which its last part begins [s]
+    largest_tilt: Array | None = None  # of its axis [rad]; from here on in space only
+    cone_speed: Array | None = None  # of the lean of the axis in the fixed frame, at the end [rad/s]
+    axial_low: Array | None = None  # extremes of the axial place [m]
     axial_high: Array | None = None
-    axial_place: Array | None = None
-    axial_spread: Array | None = None
     duration: Second
+    """Time for which a motion whose end is not plain is followed, if that is longer than 160 looks; below
+    20 ms fewer looks."""
 
-    def count(self, one: RunOutcome) -> NDArray[np.int64]:
+    def count(self, one: RunOutcome) -> Whole:
         """Runs that ended so at each kick, shape (kick,)."""
         return np.asarray(np.count_nonzero(self.outcome == one, axis=1), dtype=np.int64)
 
 
 WHOLE_NUMBERS = ("outcome", "cause", "whirl_direction", "pocket_impacts", "land_impacts", "left_ball")
 BY_BALL = ("pocket_impacts", "pocket_rubbing")
-SPACE_ONLY = (
-    *("largest_tilt", "mean_tilt", "cone_speed", "cone_phase"),
-    *("axial_low", "axial_high", "axial_place", "axial_spread"),
-)
+SPACE_ONLY = ("largest_tilt", "cone_speed", "axial_low", "axial_high")
 
 
 class Piece(NamedTuple):
@@ -172,15 +116,6 @@ class Piece(NamedTuple):
     numbers: Numbers
     states: Array
     places: Array
-
-
-def piece_of(
-    cage: MovingCage, kick: MetrePerSecond, settings: StabilitySettings, first_run: int, runs: int
-) -> Piece:
-    """Runs of a cage that turns forward, from one disturbance, by their numbers."""
-    starts = random_starts(cage, settings, first_run, runs)
-    numbers = numbers_of(cage, kick, settings.duration)
-    return Piece(cage, kick, numbers, start_states(cage, kick, starts), ball_places(cage, starts))
 
 
 def run_ensemble(
@@ -195,41 +130,61 @@ def run_ensemble(
 ) -> Ensemble:
     """Run the cage from every disturbance and seed; one that turns backward as its mirror image.
 
-    Parameters
-    ----------
-    cage : MovingCage
-        The cage.
-    settings : StabilitySettings
-        Disturbances, runs, duration, scatter and seed.
-    kicks, runs
-        Instead of those of the settings.
-    first_run : int
-        Number of the first run; runs 0 to 11 and then 12 to 63 are the same as 0 to 63 at once.
-    jobs : int
-        Threads. The result is the same to the last bit for any number.
-    stop : Stop, optional
-        Ends the runs at their next look; what is returned then has no meaning.
+    Kicks and runs are those of the settings if not given. Runs 0 to 11 and then, with `first_run`, 12 to 63
+    are the same as 0 to 63 at once, to the last bit, for any number of `jobs` (threads). `stop` ends the runs
+    at their next look; what is returned then has no meaning.
 
     Raises
     ------
     InputError
         No disturbance or no run, or a run would need more steps than can be waited for.
     """
-    forward = cage.rotation_sense > 0
-    cage = turned_forward(cage)
-    speeds, runs = chosen(settings_for(settings, cage), kicks, runs)
-    check_length(settings.duration, cage)
-    pieces = [piece_of(cage, float(kick), settings, first_run, runs) for kick in speeds]
-    found = follow(pieces, jobs=jobs, stop=stop)
-    if not forward:
+    speeds, count = chosen(settings_for(settings, turned_forward(cage)), kicks, runs)
+    asked = [Runs(cage, settings, first_run, count)]
+    return ensemble_of(asked, speeds, follow(pieces_of(asked, speeds), jobs=jobs, stop=stop))
+
+
+class Runs(NamedTuple):
+    """Runs of one cage by their numbers: the first, and how many."""
+
+    cage: MovingCage
+    settings: StabilitySettings
+    first_run: int
+    runs: int
+
+
+def pieces_of(asked: Sequence[Runs], kicks: Sequence[MetrePerSecond] | Array) -> list[Piece]:
+    """What the engine takes of these runs from every kick, kick by kick."""
+    for one in asked:
+        check_length(one.settings.duration, one.cage)
+    each = [one._replace(cage=turned_forward(one.cage)) for one in asked]
+    return [piece_of(one, float(kick)) for kick in kicks for one in each]
+
+
+def piece_of(asked: Runs, kick: MetrePerSecond) -> Piece:
+    """Runs of a cage that turns forward, from one disturbance, by their numbers."""
+    cage, settings = asked.cage, asked.settings
+    starts = random_starts(cage, settings, asked.first_run, asked.runs)
+    numbers = numbers_of(cage, kick, settings.duration)
+    return Piece(cage, kick, numbers, start_states(cage, kick, starts), ball_places(cage, starts))
+
+
+def ensemble_of(
+    asked: Sequence[Runs], kicks: Sequence[MetrePerSecond] | Array, found: dict[str, Array]
+) -> Ensemble:
+    """Ensemble of runs from every kick by their evidence, that of a backward cage from its mirror image."""
+    backward = np.concatenate([np.full(one.runs, one.cage.rotation_sense < 0) for one in asked])
+    columns = np.tile(backward, len(kicks))
+    if backward.any():
         for name in BY_BALL:
-            found[name] = other_way_round(found[name])
-        left = found["left_ball"]
-        found["left_ball"] = np.where(left > 1, cage.ball_count + 2 - left, left)
+            found[name][columns] = other_way_round(found[name][columns])
+        left, balls = found["left_ball"], asked[0].cage.ball_count
+        found["left_ball"] = np.where(columns & (left > 1), balls + 2 - left, left)
     shaped: dict[str, Any] = {
-        name: values.reshape(len(speeds), runs, *values.shape[1:]) for name, values in found.items()
+        name: values.reshape(len(kicks), backward.size, *values.shape[1:]) for name, values in found.items()
     }
-    return Ensemble(kicks=speeds, duration=settings.duration, **shaped)
+    duration = asked[0].settings.duration
+    return Ensemble(kicks=np.array(kicks, dtype=np.float64), duration=duration, **shaped)
 
 
 def other_way_round(by_ball: Array) -> Array:
@@ -343,10 +298,10 @@ def run_rows(
         np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits")
     )
     values, strips, waves, limits = given
-    follow_queue = run.queue(kind.ball, kind.space, kind.level, kind.lobes, real, equations)
+    follow_queue = run.queue(kind.ball, kind.space, kind.level, real, equations)
     follow_queue(
         states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits,
-        raw.heat, raw.record, every, stop.flag,
+        raw.heat, kind.lobes, raw.record, every, stop.flag,
     )  # fmt: skip
     return raw
 
@@ -404,16 +359,11 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
     }
     if not pieces[0].cage.is_in_space:
         return found
-    axial = last[:, of(rows.AXIAL)]
     return found | {
         "largest_tilt": at[:, run.extreme(rows.PEAK_TILT)],
-        "mean_tilt": last[:, of(rows.TILT)],
         "cone_speed": _share(last[:, of(rows.CONE)], last[:, of(rows.TILT_SQUARE)]) + speed,
-        "cone_phase": np.arctan2(last[:, of(rows.LEAN_CROSS)], last[:, of(rows.LEAN_DOT)]),
         "axial_low": at[:, run.extreme(rows.AXIAL_LOW)],
         "axial_high": at[:, run.extreme(rows.AXIAL_HIGH)],
-        "axial_place": axial,
-        "axial_spread": np.sqrt(np.maximum(0.0, last[:, of(rows.AXIAL_SQUARE)] - axial**2)),
     }
 
 

@@ -23,6 +23,8 @@ def land_forces(s, a, p, strips, lobe_number, space):
         a[e] = ZERO
     for i in range(strips.shape[0]):
         strip = strips[i]
+        if lobe_number > 0:
+            lobes(a, strip, lobe_number, space)
         for l in range(LANES):
             height = strip[HEIGHT + l]
             x, y, vx, vy = a[GX + l], a[GY + l], a[GVX + l], a[GVY + l]
@@ -35,10 +37,7 @@ def land_forces(s, a, p, strips, lobe_number, space):
             per = ONE / r
             nx, ny = per * x, per * y
             around, outward = nx * vy - ny * vx, nx * vx + ny * vy
-            cosine, sine = ONE, ZERO
-            if lobe_number > 0:
-                cosine, sine = lobes(nx, ny, a[TURN + l], lobe_number)
-            bump, tilted = p[LOBE + l] * cosine, p[LOBE_SLOPE + l] * sine
+            bump, tilted = p[LOBE + l] * a[LOBES_COSINE + l], p[LOBE_SLOPE + l] * a[LOBES_SINE + l]
             depth = r - p[LAND_GAP + l] + bump
             # d(cos m beta)/dt = -m sin(m beta) (around / r - turning)
             rate = outward - tilted * (per * around - s[VS + l] * p[PER_RADIUS + l])
@@ -70,11 +69,18 @@ def land_forces(s, a, p, strips, lobe_number, space):
 
 
 @inlined
-def lobes(nx, ny, turned, number):
+def lobes(a, strip, number, space):
     """Cosine and sine of the lobes' angle: that of the contact against the cage, times their number."""
-    c, s = turning(turned)
-    one_c, one_s = nx * c + ny * s, ny * c - nx * s
-    cosine, sine = one_c, one_s
+    for l in range(LANES):
+        x, y = a[GX + l], a[GY + l]
+        if space:
+            x, y = x + strip[HEIGHT + l] * a[GB + l], y - strip[HEIGHT + l] * a[GA + l]
+        per = ONE / math.sqrt(x * x + y * y + TINY)
+        c, n = turning(a[TURN + l])
+        a[LOBES_COSINE + l] = a[ONE_COSINE + l] = per * (x * c + y * n)
+        a[LOBES_SINE + l] = a[ONE_SINE + l] = per * (y * c - x * n)
     for _ in range(number - 1):
-        cosine, sine = cosine * one_c - sine * one_s, sine * one_c + cosine * one_s
-    return cosine, sine
+        for l in range(LANES):
+            c, n = a[LOBES_COSINE + l], a[LOBES_SINE + l]
+            a[LOBES_COSINE + l] = c * a[ONE_COSINE + l] - n * a[ONE_SINE + l]
+            a[LOBES_SINE + l] = n * a[ONE_COSINE + l] + c * a[ONE_SINE + l]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix import _check, cage_design, pocket_shape
 from separatrix.ball_traction import BallTraction, FreeBall
+from separatrix.cage_design import CageDesign
 from separatrix.chain.restitution import hertz_coefficient_for
 from separatrix.errors import InputError, ValidityWarning
 from separatrix.study import BallModel, Guidance, MotionModel, PocketContact, PocketShape
@@ -45,80 +46,7 @@ class MovingCage:
     """A cage among balls that the races guide, moving in the bearing plane or in space.
 
     The plane is space with tilt and axial motion held. Axes: x and y in the bearing plane, z along the
-    bearing axis; the frame turns with the ball set. Tilts are small.
-
-    Parameters
-    ----------
-    mass, moment_of_inertia : float
-        M_C [kg] and J about the bearing axis [kg m2]; a thin ring has J = M R^2.
-    transverse_inertia : float or None
-        J_t about a diameter through the centre of mass [kg m2]; None: that of a thin ring, J/2.
-    ball_count : int
-        Z; ball j is at 2 pi j/Z unless `pocket_angles` are given.
-    pitch_radius : float
-        R, where balls and pockets meet [m].
-    cage_speed, inner_speed, outer_speed : float
-        Omega of the ball set and speeds of the rings [rad/s].
-    motion : MotionModel
-        In the plane, or in space.
-    pocket_clearance : float
-        Clearance of a ball in its pocket along the circumference, stop to stop, 2 c_p [m];
-        0 means a pocket that grips its ball from both sides.
-    ball_cage_stiffness, race_damping : float
-        k_BC [N/m] and C_mu [N s/m], in series; an infinite C_mu is a ball gripped by its races.
-    ball_cage_friction : float
-        f_BC [-].
-    ball_spin : tuple of float or None
-        Spin of a ball relative to its orbit: along the axis, outward, and along the orbit [rad/s]. None:
-        about the axis, so fast that it alone decides where friction acts.
-    ball_diameter : float
-        A pocket touches its ball, and friction acts, at half of it from the ball's centre [m]; 0: at the
-        centre.
-    traction, free_ball : BallTraction, FreeBall or None
-        Level of the ball: with neither the paper's damper; with `traction` one state; with `free_ball` its
-        spins too.
-    guidance, land_clearance, land_friction, land_stiffness, land_restitution
-        The land: diametral clearance [m], friction [-], stiffness of each [N/m], restitution [-].
-    land_count, land_spacing, land_width, land_radius
-        One land or two; distance of their middles, width [m]; where friction acts, None: at the pitch radius
-        [m].
-    land_out_of_round, land_lobes
-        Amplitude [m] and number of lobes of the land of the cage.
-    unbalance, dynamic_unbalance : float
-        Mass times eccentricity [kg m]; angle between the axis of the cage and its principal axis [rad].
-    gravity, axial_gravity : float
-        Acceleration across the bearing axis, along azimuth 0, fixed in space; along the axis [m/s2].
-    added_mass : float
-        Of the fluid that moves with the cage across the axis [kg].
-    pocket_shape, pocket_axial_clearance, pocket_axial_offset
-        Shape of the pockets; clearance along the axis, stop to stop, of an elongated one [m], as along the
-        orbit of others; distance of the cage from the plane of the balls, along the bearing axis: held in the
-        plane, at the start in space.
-    hertz_coefficient : float or None
-        K of N = K approach^1.5 [N/m^1.5]; None is linear contact with `ball_cage_stiffness`.
-    pocket_angles : tuple of float
-        Angle of each ball with its pocket, rising within one turn [rad]; empty is even.
-    pocket_spacing_scatter : float
-        Each pocket with its ball is displaced by up to this share of the pitch, uniform, run by run [-].
-    ball_diameter_scatter, pocket_position_scatter : float
-        Standard deviations, normal, cut at 3, run by run [m]; of the position: along the circumference.
-    groove_damping, groove_stiffness : float
-        Of a ball that is pushed along its grooves, in space: c_g [N s/m] and k_g [N/m]. An infinite damping
-        holds it.
-    pivot_speed : float
-        Sliding speed below which pivoting lowers the friction of pockets and of the land [m/s].
-    inner_radius, outer_radius : float or None
-        Of the cage, between which its pockets have walls [m]. None: no edge.
-    orbital_cosines, orbital_sines : tuple of float
-        A_h and B_h, h = 1, 2, ..: a ball at azimuth p runs faster than the ball set by the sum of
-        A_h cos h p + B_h sin h p [m/s]; azimuth is fixed in space, 0 along the radial load.
-    ramp_time, ramp_start : float
-        All speeds rise in proportion to time from this share [-] of their value to it in this time [s]; 0 is
-        no ramp.
-    axial_kick, tilt_kick : float
-        Share of an initial disturbance that is along the axis, and at the rim by tilting, in space [-].
-    is_tilt_held, is_axially_held : bool
-        The cage may not tilt, or not move along the axis.
+    bearing axis; the frame turns with the ball set. Tilts are small. Scatters are drawn run by run.
 
     Raises
     ------
@@ -126,58 +54,62 @@ class MovingCage:
         A size is not finite or has the wrong sign, or sizes contradict each other.
     """
 
-    mass: Kilogram
-    moment_of_inertia: KilogramMetre2
-    transverse_inertia: KilogramMetre2 | None = None
+    mass: Kilogram  # M
+    moment_of_inertia: KilogramMetre2  # J about the bearing axis; a thin ring has M R^2
+    transverse_inertia: KilogramMetre2 | None = None  # about a diameter; None: that of a thin ring, J/2
     ball_count: int
-    pitch_radius: Metre
-    cage_speed: RadianPerSecond
+    pitch_radius: Metre  # R, where balls and pockets meet
+    cage_speed: RadianPerSecond  # Omega of the ball set
     inner_speed: RadianPerSecond
     outer_speed: RadianPerSecond
     motion: MotionModel = MotionModel.PLANE
-    pocket_clearance: Metre
-    ball_cage_stiffness: NewtonPerMetre
-    race_damping: NewtonSecondPerMetre
-    ball_cage_friction: Ratio
+    pocket_clearance: Metre  # along the circumference, stop to stop, 2 c_p; 0: gripped from both sides
+    ball_cage_stiffness: NewtonPerMetre  # k_BC, in series with race_damping
+    race_damping: NewtonSecondPerMetre  # C_mu; infinite: a ball gripped by its races
+    ball_cage_friction: Ratio  # f_BC
     ball_spin: Annotated[tuple[RadianPerSecond, ...], ("axis",)] | None = None
-    ball_diameter: Metre = 0.0
-    traction: BallTraction | None = None
-    free_ball: FreeBall | None = None
+    """Spin of a ball relative to its orbit: along the axis, outward, and along the orbit. None: about the
+    axis, so fast that it alone decides where friction acts."""
+    ball_diameter: Metre = 0.0  # friction acts at half of it from the ball's centre; 0: at the centre
+    traction: BallTraction | None = None  # of a ball of one state; None: the paper's damper
+    free_ball: FreeBall | None = None  # of a ball whose three spins are states too
     guidance: Guidance = Guidance.BALL
-    land_clearance: Metre | None = None
+    land_clearance: Metre | None = None  # diametral
     land_friction: Ratio = 0.1
-    land_stiffness: NewtonPerMetre = 1e7
+    land_stiffness: NewtonPerMetre = 1e7  # of each land
     land_restitution: Ratio = 0.5
     land_count: int = 1
-    land_spacing: Metre | None = None
+    land_spacing: Metre | None = None  # between the middles of two lands
     land_width: Metre = 0.0
-    land_radius: Metre | None = None
-    land_out_of_round: Metre = 0.0
+    land_radius: Metre | None = None  # where friction acts; None: at the pitch radius
+    land_out_of_round: Metre = 0.0  # amplitude of the lobes of the cage's land
     land_lobes: int = 2
-    unbalance: KilogramMetre = 0.0
-    dynamic_unbalance: Radian = 0.0
-    gravity: MetrePerSecond2 = 0.0
+    unbalance: KilogramMetre = 0.0  # mass times eccentricity
+    dynamic_unbalance: Radian = 0.0  # between the axis of the cage and its principal axis
+    gravity: MetrePerSecond2 = 0.0  # across the bearing axis, along azimuth 0, fixed in space
     axial_gravity: MetrePerSecond2 = 0.0
-    added_mass: Kilogram = 0.0
+    added_mass: Kilogram = 0.0  # of the fluid that moves with the cage across the axis
     pocket_shape: PocketShape = PocketShape.SQUARE
-    pocket_axial_clearance: Metre | None = None
-    pocket_axial_offset: Metre = 0.0
-    hertz_coefficient: NewtonPerMetre1_5 | None = None
-    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = ()
-    pocket_spacing_scatter: Ratio = 0.0
-    ball_diameter_scatter: Metre = 0.0
-    pocket_position_scatter: Metre = 0.0
-    groove_damping: NewtonSecondPerMetre = math.inf
+    pocket_axial_clearance: Metre | None = None  # along the axis, stop to stop, of an elongated pocket
+    pocket_axial_offset: Metre = 0.0  # of the cage from the balls' plane; in space at the start
+    hertz_coefficient: NewtonPerMetre1_5 | None = None  # K of N = K approach^1.5; None: linear contact
+    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = ()  # of ball and pocket; empty: even
+    pocket_spacing_scatter: Ratio = 0.0  # of the pitch, uniform, of a pocket with its ball
+    ball_diameter_scatter: Metre = 0.0  # standard deviation, normal, cut at 3
+    pocket_position_scatter: Metre = 0.0  # along the circumference, the same
+    groove_damping: NewtonSecondPerMetre = math.inf  # of a ball pushed along its grooves; infinite: held
     groove_stiffness: NewtonPerMetre = 0.0
-    pivot_speed: MetrePerSecond = 0.0
-    inner_radius: Metre | None = None
+    pivot_speed: MetrePerSecond = 0.0  # sliding below which pivoting lowers the friction of pocket and land
+    inner_radius: Metre | None = None  # of the cage, between which its pockets have walls; None: no edge
     outer_radius: Metre | None = None
     orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
-    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
-    ramp_time: Second = 0.0
-    ramp_start: Ratio = 0.1
-    axial_kick: Ratio = 0.0
-    tilt_kick: Ratio = 0.0
+    """A_h: a free ball at azimuth p, fixed in space and 0 along the radial load, is faster than the ball set
+    by the sum of A_h cos h p + B_h sin h p over h = 1, 2, ..."""
+    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()  # B_h
+    ramp_time: Second = 0.0  # in which all speeds rise in proportion to time; 0: no ramp
+    ramp_start: Ratio = 0.1  # share of the speeds at its start
+    axial_kick: Ratio = 0.0  # share of a disturbance along the axis, in space
+    tilt_kick: Ratio = 0.0  # at the rim by tilting
     is_tilt_held: bool = False
     is_axially_held: bool = False
 
@@ -296,17 +228,9 @@ class MovingCage:
 
 _POSITIVE = ("mass", "moment_of_inertia", "pitch_radius", "ball_cage_stiffness", "land_stiffness")
 _NOT_NEGATIVE = (
-    *(
-        "ball_cage_friction",
-        "land_friction",
-        "unbalance",
-        "gravity",
-        "ball_diameter",
-        "land_width",
-        "added_mass",
-    ),
-    *("groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick"),
-)
+    "ball_cage_friction", "land_friction", "unbalance", "gravity", "ball_diameter", "land_width",
+    "added_mass", "groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick",
+)  # fmt: skip
 _AROUND = 360
 
 
@@ -400,14 +324,7 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
     faster and slower around as the equilibrium says. In the plane among dampers, as in the paper, the balls
     spin about the axis of the bearing; else about their own.
 
-    Parameters
-    ----------
-    solution : Solution
-        Of the chain.
-    friction : float
-        Ball on cage [-].
-    ball : BallModel, optional
-        Instead of the study's; AUTO is one state.
+    `friction` is that of ball on cage [-]; `ball` is used instead of the study's, AUTO is one state.
 
     Raises
     ------
@@ -430,8 +347,7 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
     if free is not None:  # that of the most loaded ball, in the sense of this bearing
         sense = math.copysign(1.0, solution.bearing.cage_speed)
         spin = (sense * free[1][0], sense * free[1][1], free[1][2])
-    in_space = design.motion is MotionModel.SPACE
-    linear = solution.mobility.linear if in_space else None
+    linear = solution.mobility.linear if design.motion is MotionModel.SPACE else None
     outer = design.outer_diameter if design.guidance is Guidance.OUTER else design.inner_diameter
     land = design.land_diameter or outer
     depth = solution.impact_speed * math.sqrt(body.mass / 2.0 / stiffness)
@@ -446,7 +362,6 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
             cage_speed=solution.bearing.cage_speed,
             inner_speed=study.operation.inner_speed,
             outer_speed=study.operation.outer_speed,
-            motion=design.motion,
             ball_cage_stiffness=stiffness,
             race_damping=solution.restitution.race_damping,
             ball_cage_friction=friction,
@@ -482,21 +397,10 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
     return cage
 
 
-_AS_DESIGNED = (
-    *("guidance", "land_clearance", "land_friction", "land_stiffness", "land_restitution", "land_count"),
-    *(
-        "land_spacing",
-        "land_width",
-        "land_out_of_round",
-        "land_lobes",
-        "unbalance",
-        "dynamic_unbalance",
-        "gravity",
-    ),
-    *("axial_gravity", "added_mass", "pocket_shape", "pocket_clearance", "pocket_axial_clearance"),
-    *("pocket_axial_offset", "pocket_angles", "pocket_spacing_scatter", "ball_diameter_scatter"),
-    *("pocket_position_scatter",),
-)
+_OF_THE_CHAIN = {
+    "mass", "moment_of_inertia", "transverse_inertia", "ball_cage_stiffness", "ball_cage_friction",
+}  # fmt: skip
+_AS_DESIGNED = {one.name for one in fields(CageDesign)} & set(MovingCage.__slots__) - _OF_THE_CHAIN
 """Fields that the moving cage has as its design states them."""
 
 

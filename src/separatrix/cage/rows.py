@@ -48,8 +48,7 @@ NUMBERS = OUTER + RACE_ROWS
 # Numbers of a ball with its pocket, of a strip of the land, of a harmonic of the orbital speeds.
 # Beside them what is kept of a pocket from step to step: its force, heat, whether it touches, impacts and
 # heat of a look.
-COSINE, SINE, AROUND, APART, BALL_NUMBERS = _places(5)
-OWN_SPEED, FORCE, HEAT, TOUCHING, HITS, RUBBED, BALL_ROWS = _places(7, 4)
+COSINE, SINE, AROUND, APART, OWN_SPEED, FORCE, HEAT, TOUCHING, HITS, RUBBED, BALL_ROWS = _places(11)
 HEIGHT, STRIP_STIFFNESS, STRIP_DAMPING, STRIP_NUMBERS = _places(4)
 ORBIT_COSINE, ORBIT_SINE, HARMONIC_NUMBERS = _places(3)
 
@@ -67,15 +66,16 @@ LEAD, GROOVE = _places(2)
 # What the forces of a moment add up to.
 (
     FX, FY, FS, FZ, MX, MY, RUB, DRIVE, LX, LY, LS, LZ, LMX, LMY, LAND_RUB, LAND_PRESS, LAND_N, LAND_HEAT,
-    GX, GY, GVX, GVY, GA, GB, GWA, GWB, TURN, PER_RAMP, RAMP_NOW, SUMS,
-) = _places(30)  # fmt: skip
+    GX, GY, GVX, GVY, GA, GB, GWA, GWB, TURN, PER_RAMP, RAMP_NOW,
+    ONE_COSINE, ONE_SINE, LOBES_COSINE, LOBES_SINE, SUMS,
+) = _places(34)  # fmt: skip
 
 # What is watched of a run, as a sum over the steps of a look.
 (
     ENERGY, OFFSET_MEAN, OFFSET_SQUARE, SWEPT, CURL, SPEED_SQUARE, PRESSED, HEATED, STRIKES,
-    TILT, TILT_SQUARE, CONE, LEAN_CROSS, LEAN_DOT, AXIAL, AXIAL_SQUARE, MEAN_X, MEAN_Y,
+    TILT_SQUARE, CONE, MEAN_X, MEAN_Y,
     WORK_POCKET, WORK_LAND, WORK_PRESS, WORK_BALL, WORK_FRAME, LOOK_COLUMNS,
-) = _places(24)  # fmt: skip
+) = _places(19)  # fmt: skip
 WATCHED = WORK_POCKET  # those before are summed up step by step
 
 # What is watched of a run as an extreme or a count over all of it; after the sums, in one array.

@@ -122,16 +122,10 @@ def watch(s, d, a, p, places, w, step, space):
         w[PEAK_OFFSET + l] = max(w[PEAK_OFFSET + l], r)
         if space:
             ta, tb, z = a[GA + l], a[GB + l], s[Z + l]
-            tilt2 = ta * ta + tb * tb
-            tilt = math.sqrt(tilt2)
-            w[TILT + l] += tilt
-            w[TILT_SQUARE + l] += tilt2
+            square = ta * ta + tb * tb
+            w[TILT_SQUARE + l] += square
             w[CONE + l] += ta * a[GWB + l] - tb * a[GWA + l]
-            w[LEAN_CROSS + l] -= x * ta + y * tb
-            w[LEAN_DOT + l] += x * tb - y * ta
-            w[AXIAL + l] += z
-            w[AXIAL_SQUARE + l] += z * z
-            w[PEAK_TILT + l] = max(w[PEAK_TILT + l], tilt)
+            w[PEAK_TILT + l] = max(w[PEAK_TILT + l], math.sqrt(square))
             w[AXIAL_LOW + l] = min(w[AXIAL_LOW + l], z)
             w[AXIAL_HIGH + l] = max(w[AXIAL_HIGH + l], z)
     for j in range(places.shape[0]):
@@ -199,16 +193,6 @@ def take_decay(held, p, l, first, one):
 
 
 @part
-def take_places(numbers, places, l):
-    """Put the numbers of the balls of a run into its lane, and forget what was kept of the last one."""
-    each = BALL_NUMBERS // LANES
-    places[:, l::LANES] = ZERO
-    for j in range(places.shape[0]):
-        for i in range(each):
-            places[j, i * LANES + l] = numbers[j * each + i]
-
-
-@part
 def begin_look(s, limits, time, l):
     """Set the frame's angle and speed from the clock, which single precision would lose; no works yet."""
     angle, share = frame_angle(time, limits)
@@ -248,10 +232,9 @@ def count_impacts(hits, heat, places, step, l):
 
 
 @part
-def end_look(
-    n, look, moments, steps, looks, evidence, hits_of, heat_of, numbers, limits, w, s, places, kept, l
-):  # fmt: skip
+def end_look(n, look, moments, steps, books, w, s, places, kept, l):
     """Write the look of a run, and judge it; whether the run has ended."""
+    looks, evidence, hits_of, heat_of, numbers, limits = books
     found, at, step = looks[n, look], evidence[n], numbers[n, STEP // LANES]
     write_look(found, at, w, s, kept, moments, steps, step, l)
     count_impacts(hits_of[n], heat_of[n], places, step, l)
@@ -267,39 +250,33 @@ def end_look(
 
 
 @part
-def end_grown(
-    i, steps, run, look, had, looks, evidence, hits_of, heat_of, numbers, limits, w, s, of_balls, a, p,
-    places, space,
-):  # fmt: skip
+def end_grown(i, steps, run, look, had, books, w, s, of_balls, a, p, places, space):
     """End within their look the runs that have grown too far; how many leave their lanes."""
-    ended = 0
+    evidence, limits, ended = books[1], books[5], 0
     for l in range(LANES):
         n = run[l]
         if n < 0 or evidence[n, OUTCOME] != UNKNOWN or kinetic_energy(s, p, l, space) <= limits[n, GROWS]:
             continue
         kept = stored_energy(s, of_balls, a, p, places, l, space) - had[l]
-        if end_look(
-            n, look[l], i, steps, looks, evidence, hits_of, heat_of, numbers, limits, w, s, places, kept, l
-        ):
+        if end_look(n, look[l], i, steps, books, w, s, places, kept, l):
             run[l], look[l], ended = -1, -1, ended + 1
     return ended
 
 
 @part
-def write_row(row, time, s, a, places):
-    """Time, state, geometric centre and axis, forces of the pockets and of the land, of the first lane."""
+def write_row(row, time, s, of_balls, a, p, places, space):
+    """Time, state, geometric centre and axis, forces of pockets, energies, force of the land: first lane."""
     row[0] = time
     n = 1
-    for e in range(0, s.size, LANES):
-        row[n] = s[e]
-        n += 1
-    for e in range(GX, GWB + LANES, LANES):
-        row[n] = a[e]
-        n += 1
+    for values in (s, a[GX : GWB + LANES]):
+        for e in range(0, values.size, LANES):
+            row[n] = values[e]
+            n += 1
     for j in range(places.shape[0]):
-        row[n] = places[j, FORCE]
-        n += 1
-    row[n] = a[LAND_N]
+        row[n + j] = places[j, FORCE]
+    row[-3] = kinetic_energy(s, p, 0, space)
+    row[-2] = stored_energy(s, of_balls, a, p, places, 0, space) - row[-3]
+    row[-1] = a[LAND_N]
 
 
 @cache
@@ -307,7 +284,6 @@ def queue(
     ball: int,
     space: bool,
     level: bool = False,
-    lobe_number: int = 0,
     real: type = np.float32,
     equations: Callable[..., None] | None = None,
 ) -> Callable[..., None]:
@@ -323,17 +299,12 @@ def queue(
 
     def run_queue(
         start, numbers, places_of, strips_of, waves_of, limits, steps, looks, evidence, hits_of, heat_of,
-        record, every, stop,
+        lobe_number, record, every, stop,
     ):  # fmt: skip
         balls = hits_of.shape[1]
         size = states + one * balls
-        s, t, d, q, h = (
-            np.zeros(size, real),
-            np.zeros(size, real),
-            np.zeros(size, real),
-            np.zeros(size, real),
-            np.zeros(size, real),
-        )
+        s, t, d = np.zeros(size, real), np.zeros(size, real), np.zeros(size, real)
+        q, h = np.zeros(size, real), np.zeros(size, real)
         a, w, p = np.zeros(SUMS, real), np.zeros(EXTREMES_END, real), np.ones(NUMBERS, real)
         t_balls, d_balls = t[states:].reshape(balls, one), d[states:].reshape(balls, one)
         places = np.zeros((balls, BALL_ROWS), real)
@@ -342,6 +313,7 @@ def queue(
         held = np.zeros((HELD_NUMBERS, size if ball == ONE_STATE else 0), real)
         first = np.zeros(held.shape[1], real)
         run, look, had = np.full(LANES, -1), np.full(LANES, -1), np.zeros(LANES)
+        books = looks, evidence, hits_of, heat_of, numbers, limits
         next_run, live, row, sixth = 0, 0, 0, real(1.0 / 6.0)
         s[RAMP : RAMP + LANES] = ONE
         while stop[0] == 0:
@@ -354,9 +326,11 @@ def queue(
                         next_run, live = next_run + 1, live + 1
                         take(start[n], s, l)
                         take(numbers[n], p, l)
-                        take(strips_of[n].ravel(), strips.ravel(), l)
                         take(waves_of[n], waves, l)
-                        take_places(places_of[n], places, l)
+                        for i in range(strips.shape[0]):
+                            take(strips_of[n, i], strips[i], l)
+                        for j in range(balls):
+                            take(places_of[n, j], places[j], l)
                         h[l::LANES] = p[STEP + l]
                         if ball == ONE_STATE:
                             take_decay(held, p, l, states + speed, one)
@@ -372,10 +346,7 @@ def queue(
             for i in range(steps):
                 if i % GLANCE == GLANCE - 1:
                     place(t, a, p, space)
-                    live -= end_grown(
-                        i, steps, run, look, had, looks, evidence, hits_of, heat_of, numbers, limits, w, t,
-                        t_balls, a, p, places, space,
-                    )  # fmt: skip
+                    live -= end_grown(i, steps, run, look, had, books, w, t, t_balls, a, p, places, space)
                     if run.max() < 0:
                         break
                 speed_up(s, a, p)
@@ -389,13 +360,8 @@ def queue(
                                 had[l] = stored_energy(t, t_balls, a, p, places, l, space)
                         watch(s, d, a, p, places, w, np.float32(i), space)
                         if row < record.shape[0] and (look[0] * steps + i) % every == 0:
-                            write_row(
-                                record[row],
-                                (look[0] * steps + i) * numbers[0, STEP // LANES],
-                                s,
-                                a,
-                                places,
-                            )
+                            time = (look[0] * steps + i) * numbers[0, STEP // LANES]
+                            write_row(record[row], time, t, t_balls, a, p, places, space)
                             row += 1
                     if ball == ONE_STATE:
                         held_stage_end(stage, s, t, d, first, q, held)
@@ -409,10 +375,7 @@ def queue(
                 has_ended = False
                 if evidence[n, JUDGED] <= look[l]:  # else it had grown too far within the look
                     kept = stored_energy(t, t_balls, a, p, places, l, space) - had[l]
-                    has_ended = end_look(
-                        n, look[l], steps, steps, looks, evidence, hits_of, heat_of, numbers, limits, w, s,
-                        places, kept, l,
-                    )  # fmt: skip
+                    has_ended = end_look(n, look[l], steps, steps, books, w, s, places, kept, l)
                 look[l] += 1
                 if has_ended:
                     look[l], live = -1, live - 1

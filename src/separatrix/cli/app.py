@@ -109,7 +109,6 @@ def _application() -> typer.Typer:
             without_bearing.TRIBOMETER,
             without_bearing.TRIBOMETER_EPILOG,
         ),
-        ("contact", without_bearing.contact, without_bearing.CONTACT, without_bearing.CONTACT_EPILOG),
         ("compare", saved_answers.compare, saved_answers.COMPARE, saved_answers.COMPARE_EPILOG),
         ("reproduce", saved_answers.reproduce, saved_answers.REPRODUCE, saved_answers.REPRODUCE_EPILOG),
         ("report", reporting.report, reporting.HELP, reporting.EPILOG),
@@ -130,7 +129,7 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        others = ("tribometer", "contact", "compare", "reproduce", "report", "app", "materials")
+        others = ("tribometer", "compare", "reproduce", "report", "app", "materials")
         verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 

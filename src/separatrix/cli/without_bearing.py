@@ -1,9 +1,8 @@
-"""The commands without a bearing: `contact`, `tribometer`, and those below `materials`."""
+"""The commands without a bearing: `tribometer`, and those below `materials`."""
 
 from __future__ import annotations
 
 import contextlib
-import logging
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,9 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from separatrix.cli.console import answer, answer_json, interruptible, progress_bar
-from separatrix.cli.verbs import Jobs, Json, Quiet, folder, named, threads
+from separatrix.cli.verbs import Jobs, Json, Quiet, named, threads
 from separatrix.errors import InputError
-from separatrix.messages import grouped, harmless, noted_warnings
 from separatrix.staged import refuse_existing, staged, writable_folder
 from separatrix.units import format_quantity, parse, printable, shown
 
@@ -21,61 +19,6 @@ if TYPE_CHECKING:
     from separatrix.friction.tribometer import ReducedLogs
     from separatrix.library.reading import Content
     from separatrix.present.text.materials import Shown
-
-CONTACT = "Tractions and slip of one rolling contact, without a bearing."
-CONTACT_EPILOG = (
-    "FILE is a contact file (TOML), or an input file of CONTACT, module 3, whose name ends in .inp. A case "
-    "that does not converge is a row with its reason."
-)
-CONTACT_FILE_HELP = "A contact file, or an input file of CONTACT (.inp)."
-CONTACT_OUT_HELP = "Folder for figures and data [default: named after FILE; none with --json]."
-
-
-@interruptible("no file was written.")
-def contact(
-    path: Annotated[Path, typer.Argument(metavar="FILE", help=CONTACT_FILE_HELP)],
-    json: Json = False,
-    out: Annotated[str | None, typer.Option(metavar="DIR", help=CONTACT_OUT_HELP)] = None,
-    quiet: Quiet = False,
-) -> int:
-    """Read, solve, print and write one contact; return the exit status."""
-    place = folder(out)
-    from separatrix.contact_file import read_contact
-    from separatrix.contact_file.solving import solve_cases
-    from separatrix.present.contact import document, in_words
-
-    with noted_warnings() as notes, contextlib.ExitStack() as stack:
-        asked = read_contact(path)
-        if place is None and not json:
-            place = Path(path.stem)
-        if place is not None:
-            stack.enter_context(writable_folder(place))
-        with progress_bar(f"contact {path.name}", quiet=quiet) as progress:
-            found = solve_cases(asked, progress)
-        kept = grouped(notes)
-        made, words = document(found, kept), in_words(found, kept)
-        if json:
-            answer_json(made)
-        else:
-            answer(in_words(found, []) if quiet else words)
-        if place is None:
-            return 0
-        from separatrix import figures
-        from separatrix.present import save
-        from separatrix.present.contact import contact_dataset
-        from separatrix.saving import written
-
-        logging.getLogger("matplotlib").setLevel(logging.ERROR)
-        with staged(place) as stage:
-            for name, content in (("contact.json", written(made)), ("contact.txt", words)):
-                (stage / name).write_text(harmless(content), encoding="utf-8")
-            data = contact_dataset(found, kept)
-            save(data, stage / "contact.nc")
-            figures.save_all(figures.draw("contact", data), stage)
-        if not json and not quiet:
-            answer(f"\nFigures and data are in {place}/\n")
-    return 0
-
 
 TRIBOMETER = "Friction with its scatter from raw logs of tests."
 TRIBOMETER_EPILOG = (

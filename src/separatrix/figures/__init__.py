@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from separatrix.errors import InputError
 from separatrix.figures import (
     chain,
-    contact,
     envelope,
     map,
     ranking,
@@ -34,7 +33,6 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Iterator[tuple[str, Figure]]]] = {
     "rank": ranking.figures,
     "sensitivity": sensitivity.figures,
     "sweep": envelope.figures,
-    "contact": contact.figures,
 }
 """Verb -> what yields its pictures, each with the name of its file."""
 

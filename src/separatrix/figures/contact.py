@@ -1,11 +1,10 @@
-"""Figures of one rolling contact: tractions over its area, slip and dissipated power, and curves of cases.
+"""Figures of one rolling contact: tractions over its area, slip and dissipated power.
 
 x points along rolling, and material enters at the right.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,14 +15,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from separatrix.figures.style import BLUE, GREY, PAGE, VERMILION, Look, canvas, colour_bar
+from separatrix.figures.style import PAGE, VERMILION, Look, canvas, colour_bar
 from separatrix.units import Array
-
-MOST_DRAWN = 4
-"""Cases of a file whose areas are drawn, evenly among all."""
 
 ARROWS = 13, 17
 """Arrows along and across at most."""
+
+ALONG = "x along rolling [mm]\nmaterial enters at the right"
 
 LONGEST = 2.5
 """Ratio of the contact's sides above which its axes have different scales."""
@@ -34,35 +32,15 @@ class Area:
     """Fields over one contact, as a `ContactSolution` has them, too.
 
     `along` and `across` are centres of cells [m]; `fraction` is the share of each cell inside the contact;
-    `slip` is per rolling speed, of a shift a distance [m]; shapes ([direction,] row, column).
+    `slip` is per rolling speed; shapes ([direction,] row, column).
     """
 
     along: Array
     across: Array
     fraction: Array
-    pressure: Array
     traction: Array
     slip: Array
     stick: NDArray[np.bool_]
-
-
-def figures(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the pictures of `contact`."""
-    if "pressure" in data:
-        solved = np.flatnonzero(np.isfinite(data["force"].values))
-        drawn = solved[np.unique(np.linspace(0, solved.size - 1, MOST_DRAWN).round().astype(int))]
-        for i in drawn.tolist():
-            area, name = saved_area(data.isel(case=i)), f"case-{int(data['case'][i])}"
-            is_shift = str(data["motion"].values[i]) == "shift"
-            entry = "" if is_shift else "left" if data["turned"].values[i] else "right"
-            if area.across.size > 1:
-                yield f"contact-tractions-{name}", tractions(area, entry=entry)
-                yield f"contact-slip-{name}", slip_and_power(area, entry=entry, is_shift=is_shift)
-            else:
-                yield f"contact-tractions-{name}", in_the_plane(area, entry=entry)
-    numbers, counts = np.unique(data["contact"].values, return_counts=True)
-    if counts.max() > 2:
-        yield "contact-forces", forces(data.isel(case=data["contact"].values == numbers[counts.argmax()]))
 
 
 def saved_area(case: xr.Dataset) -> Area:
@@ -70,8 +48,7 @@ def saved_area(case: xr.Dataset) -> Area:
     columns = np.isfinite(case["along"].values)
     rows = np.isfinite(case["across"].values)
     fields = {
-        name: case[name].values[..., rows, :][..., columns]
-        for name in ("fraction", "pressure", "traction", "slip")
+        name: case[name].values[..., rows, :][..., columns] for name in ("fraction", "traction", "slip")
     }
     stick = case["stick"].values[rows][:, columns] > 0.5
     return Area(
@@ -79,15 +56,14 @@ def saved_area(case: xr.Dataset) -> Area:
     )
 
 
-def tractions(area: Area, *, entry: str = "right", stick_line: Array | None = None) -> Figure:
+def tractions(area: Area, *, stick_line: Array | None = None) -> Figure:
     """Return arrows of the tractions of at least two rows over their size, with the area of stick hatched.
 
-    Material enters at `entry`, right or left; empty where it does not. `stick_line` is the end of stick along
-    x of another theory, shape (row,) [m]; NaN where a row slips.
+    `stick_line` is the end of stick along x of another theory, shape (row,) [m]; NaN where a row slips.
     """
     figure, axes = canvas(3.9, 3.3)
     size = 1e-6 * np.hypot(*area.traction) / _share(area)
-    mesh = _map(axes, area, size, "viridis", entry)
+    mesh = _map(axes, area, size, "viridis")
     colour_bar(mesh, [axes], r"traction $|\tau|$ [MPa]", aspect=30)
     _stick(axes, area)
     _arrows(axes, area, 1e-6 * area.traction)
@@ -97,90 +73,22 @@ def tractions(area: Area, *, entry: str = "right", stick_line: Array | None = No
     return figure
 
 
-def slip_and_power(area: Area, *, entry: str = "right", is_shift: bool = False) -> Figure:
-    """Return maps of the slip and of the power that it dissipates; of a shift of distance and work."""
+def slip_and_power(area: Area) -> Figure:
+    """Return maps of the slip and of the power that it dissipates."""
     figure, (left, right) = canvas(PAGE, 3.1, ncols=2)
     slip = np.hypot(*area.slip)
     lost = -(area.slip * area.traction).sum(axis=0) / _share(area)
-    if is_shift:
-        shown = (1e6 * slip, "slip distance [\N{MICRO SIGN}m]"), (1e-3 * lost, "work per area [kJ/m$^2$]")
-    else:
-        power = "power per area and rolling speed [MPa]"
-        shown = (1e2 * slip, "slip over rolling speed [%]"), (1e-6 * lost, power)
+    power = "power per area and rolling speed [MPa]"
+    shown = (1e2 * slip, "slip over rolling speed [%]"), (1e-6 * lost, power)
     for axes, letter, name, (field, label) in zip(
-        (left, right), "ab", ("Slip", "Work" if is_shift else "Dissipated power"), shown, strict=True
+        (left, right), "ab", ("Slip", "Dissipated power"), shown, strict=True
     ):
-        mesh = _map(axes, area, field, "magma_r" if axes is right else "cividis", entry)
+        mesh = _map(axes, area, field, "magma_r" if axes is right else "cividis")
         _stick(axes, area, "black" if axes is right else "white")
         colour_bar(mesh, [axes], label, aspect=30)
         axes.set_title(f"{letter}  {name}")
     _arrows(left, area, area.slip)
     return figure
-
-
-def in_the_plane(area: Area, *, entry: str = "right") -> Figure:
-    """Return pressure and traction along the one row of a contact in the plane."""
-    figure, (upper, lower) = canvas(3.5, 3.4, nrows=2, sharex=True)
-    x = 1e3 * area.along
-    upper.plot(x, 1e-6 * area.pressure[0], color=GREY)
-    upper.set(ylabel="pressure [MPa]", ylim=(0, None))
-    lower.axhline(0.0, color=GREY, lw=0.5)
-    for i, (colour, name) in enumerate(((BLUE, "along"), (VERMILION, "across"))):
-        if area.traction[i].any():
-            lower.plot(x, 1e-6 * area.traction[i, 0], color=colour, label=f"{name} rolling")
-    half = 0.5 * float(x[1] - x[0])
-    for axes in (upper, lower):
-        for place, sticks in zip(x, area.stick[0], strict=True):
-            if sticks:
-                axes.axvspan(place - half, place + half, color=BLUE, alpha=0.12, lw=0)
-    lower.locator_params(axis="x", nbins=5)
-    lower.set(xlabel=_along(entry), ylabel="traction [MPa]")
-    upper.set_title("stick shaded", fontsize=7.5)
-    return figure
-
-
-def forces(data: xr.Dataset) -> Figure:
-    """Return forces over load and the share of stick against what varies from case to case."""
-    figure, (left, right) = canvas(PAGE, 2.7, ncols=2)
-    name, scale, label = _abscissa(data)
-    x = scale * (np.cumsum(data["distance"].values) if name == "distance" else data[name].values)
-    order = np.argsort(x, kind="stable")
-    left.axhline(0.0, color=GREY, lw=0.5)
-    for key, colour, marker, words in (
-        ("force", BLUE, "o", "along rolling"),
-        ("lateral_force", VERMILION, "s", "across"),
-    ):
-        share = (data[key] / data["load"]).values
-        left.plot(x[order], share[order], color=colour, marker=marker, ms=3, label=words)
-    right.plot(x[order], 100.0 * data["stick_share"].values[order], color=BLUE, marker="o", ms=3)
-    left.set(title="a  Forces on body 1", xlabel=label, ylabel="force over load [-]")
-    right.set(title="b  Stick", xlabel=label, ylabel="area of stick [%]", ylim=(-3, 103))
-    left.legend(loc="best", handlelength=1.8)
-    return figure
-
-
-def _abscissa(data: xr.Dataset) -> tuple[str, float, str]:
-    """Name, scale and label of what varies: rolled distance, or the first input that is not constant."""
-    names = {
-        "longitudinal_creep": (1e2, "longitudinal creep [%]"),
-        "lateral_creep": (1e2, "lateral creep [%]"),
-        "spin": (1e-3, "spin [1/mm]"),
-        "longitudinal_shift": (1e6, "longitudinal shift [\N{MICRO SIGN}m]"),
-        "lateral_shift": (1e6, "lateral shift [\N{MICRO SIGN}m]"),
-        "turn": (1e3, "turn [mrad]"),
-        "curvature": (1e-6, "curvature of the creep [1/mm$^2$]"),
-    }
-    if np.isfinite(data["distance"].values).all():
-        return "distance", 1e3, "distance rolled [mm]"
-    for name, (scale, label) in names.items():
-        values = data[name].values
-        if np.isfinite(values).all() and np.ptp(values) > 0.0:
-            return name, scale, label
-    return "case", 1.0, "case"
-
-
-def _along(entry: str) -> str:
-    return f"x along rolling [mm]\nmaterial enters at the {entry}" if entry else "x [mm]"
 
 
 def _edges(centres: Array) -> Array:
@@ -206,7 +114,7 @@ def outline(area: Area) -> Array:
     return np.array([*first, *right, *last, *left])
 
 
-def _map(axes: Axes, area: Area, field: Array, colours: str, entry: str) -> QuadMesh:
+def _map(axes: Axes, area: Area, field: Array, colours: str) -> QuadMesh:
     """Colours over the contact, its outline, and axes that show it large."""
     around = 1e3 * outline(area)
     patch = Polygon(around, closed=True, fill=False, lw=0.9, ec="black", joinstyle="round")
@@ -222,7 +130,7 @@ def _map(axes: Axes, area: Area, field: Array, colours: str, entry: str) -> Quad
     if ratio <= LONGEST:
         axes.set_aspect("equal", adjustable="datalim")
     note = "" if ratio <= LONGEST else "; x and y to different scales"
-    axes.set(xlabel=_along(entry) + note, ylabel="y across [mm]")
+    axes.set(xlabel=ALONG + note, ylabel="y across [mm]")
     axes.locator_params(axis="x", nbins=6)
     return mesh
 

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look, colour_bar
+from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look
 from separatrix.units import Array, Hertz
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
@@ -28,11 +28,8 @@ LAND: Look = {"color": VERMILION, "lw": 3.5, "alpha": 0.45, "zorder": 1.5}
 POCKETS: Look = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 1.5)), "zorder": 1.5}
 """Boundaries are below the path, the land wide and light: neither hides the other or a path along it."""
 
-FAINTEST, SEEN = -50.0, -30.0
-"""Weakest whirl of the picture against time, and weakest for which it goes on, under the strongest [dB]."""
-
-SHORTEST, BANDS = 8, 12.0
-"""Least samples of a piece of the run with its own spectrum; least frequencies from 0 to the highest."""
+SHORTEST = 8
+"""Least samples of a spectrum."""
 
 STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
@@ -199,7 +196,7 @@ def draw_path(
 
 def shade_judged(axes: Axes, data: xr.Dataset) -> None:
     """Shade the part by which the run is judged."""
-    first, last = (1e3 * float(data[f"judged_{end}"]) for end in ("from", "until"))
+    first, last = (1e3 * float(data[name]) for name in ("judged_from", "followed"))
     if last > first:
         axes.axvspan(first, last, color=GREY, alpha=0.2, lw=0, zorder=0)
 
@@ -224,24 +221,6 @@ def whirl_spectrum(data: xr.Dataset) -> tuple[Array, Array]:
     return np.fft.fftshift(np.fft.fftfreq(v.size, step)), amplitude / (amplitude.max() or 1.0)
 
 
-def spectrum_against_time(data: xr.Dataset, reach: Hertz = 0.0) -> tuple[Array, Array, Array]:
-    """Spectra of pieces of the run, each with Hann's window and three quarters over the one before.
-
-    Returns the middles of the pieces [s], frequency [Hz] and amplitude over the largest, shape
-    (piece, frequency). Pieces are long enough for a picture that reaches to `reach`, unless that is 0.
-    """
-    step, v = complex_velocity(data)
-    fine = BANDS / (reach * step) if reach > 0.0 else 1.0
-    wanted = max(2.0 ** round(np.log2(3.0 * np.sqrt(v.size))), 2.0 ** np.ceil(np.log2(fine)))
-    length = int(min(max(v.size // 4, SHORTEST), max(SHORTEST, wanted)))
-    starts = np.arange(0, v.size - length + 1, max(1, length // 4))
-    pieces = v[starts[:, np.newaxis] + np.arange(length)] * np.hanning(length)
-    amplitude = np.abs(np.fft.fftshift(np.fft.fft(pieces, axis=1), axes=1))
-    frequency = np.fft.fftshift(np.fft.fftfreq(length, step))
-    middles = step * (starts + 0.5 * (length - 1))
-    return middles.astype(np.float64), frequency, amplitude / (amplitude.max() or 1.0)
-
-
 def spectrum_reach(data: xr.Dataset) -> Hertz:
     """Return the frequency up to which a picture of the spectrum must go [Hz]."""
     frequency, share = whirl_spectrum(data)
@@ -264,25 +243,6 @@ def draw_spectrum(axes: Axes, *runs: xr.Dataset, looks: tuple[Look, ...] = ({"co
     most = 1e-3 * max(map(spectrum_reach, runs))
     axes.set(xlim=(-most, most), xlabel="frequency [kHz]; backward < 0 < forward")
     axes.set(ylim=(0, 1.1), ylabel="share of the largest [-]")
-
-
-def draw_against_time(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the spectrum against linear time while there is a whirl to see, darker for a stronger one."""
-    most, whole = spectrum_reach(data), 1e3 * float(data["time"].values[-1]) or 1.0
-    middles, frequency, share = spectrum_against_time(data, most)
-    shown = np.abs(frequency) <= max(1.1 * most, 2.1 * (frequency[1] - frequency[0]))
-    level = 20.0 * np.log10(np.maximum(share[:, shown], 10.0 ** (FAINTEST / 20.0)))
-    step = frequency[1] - frequency[0]
-    rows = 1e-3 * np.append(frequency[shown] - 0.5 * step, frequency[shown][-1] + 0.5 * step)
-    # the first and the last piece reach to the ends of the run
-    columns = 1e3 * np.concatenate([[0.0], 0.5 * (middles[1:] + middles[:-1]), [1e-3 * whole]])
-    look: Look = {"cmap": "Greys", "vmin": FAINTEST, "vmax": 0.0, "rasterized": True}
-    mesh = axes.pcolormesh(columns, rows, level.T, **look)
-    axes.axhline(0.0, color=BLUE, lw=0.5)
-    last = 1.5 * columns[1:][(level > SEEN).any(axis=1)].max(initial=0.0)
-    axes.set(xlim=(0.0, min(whole, last or whole)), xlabel="time [ms]")
-    axes.set(ylim=(-1e-3 * most, 1e-3 * most), ylabel="frequency [kHz]")
-    colour_bar(mesh, [axes], "level under the largest [dB]", pad=0.02, aspect=20)
 
 
 def frame_moments(data: xr.Dataset, most: int = MOST_FRAMES) -> Array:

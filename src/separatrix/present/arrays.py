@@ -14,11 +14,10 @@ import xarray as xr
 from separatrix.answers import MapAnswer, SensitivityAnswer, TractionAnswer
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
-from separatrix.present.contact import padded
 from separatrix.present.container import DAMAGE, check_container, damaged
 from separatrix.present.nodes import Group, Leaf, Node, Table, plain
 from separatrix.present.shapes import all_notes, shape
-from separatrix.units import Rows
+from separatrix.units import Array, Rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -253,9 +252,17 @@ def _(found: TractionAnswer) -> Node:
             continue
         for name, (unit, axes) in AREA.items():
             value = area.stick_line if name == "stick_line" else getattr(area.solution, name)
-            shown = padded(value, tuple(size.get(axis, 2) for axis in axes))
+            shown = _padded(value, tuple(size.get(axis, 2) for axis in axes))
             group.fields[f"area_{name}"] = Leaf(shown, unit, axes)
     return node
+
+
+def _padded(values: Array | NDArray[np.bool_] | None, shape: tuple[int, ...]) -> Array:
+    """Return values in the first places of an array of this shape, NaN in the others."""
+    full = np.full(shape, np.nan)
+    if values is not None:
+        full[tuple(slice(n) for n in values.shape)] = values
+    return full
 
 
 @arranged.register

@@ -214,8 +214,8 @@ def outcome_sentence(found: SimulationAnswer) -> str:
         pace = f"{history.whirl_frequency:.3g} Hz, fed {quantity(history.pocket_power, 'W', 3)}"
         largest = pocket_force(history.largest_contact_force, found.force_limit)
         said += f" It whirls at {pace}; the largest force in a pocket is {largest}."
-    if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and found.analysis.mean_offset > 0.0:
-        said += f" Its centre is {quantity(found.analysis.mean_offset, 'm', 3)} from the axis on average"
+    if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and found.history.mean_offset > 0.0:
+        said += f" Its centre is {quantity(found.history.mean_offset, 'm', 3)} from the axis on average"
         force, power = quantity(history.rubbing_force, "N", 3), quantity(rubbing_power(found), "W", 3)
         said += f", and it rubs on its land with {force}, {power}." if history.rubbing_force > 0.0 else "."
     return said
@@ -228,8 +228,7 @@ def rubbing_power(found: SimulationAnswer) -> Watt:
 
 @shape.register
 def _(found: SimulationAnswer) -> Node:
-    analysis, pace = shape(found.analysis), found.history.whirl_frequency if found.whirls else None
-    first = {name: analysis.pop(name) for name in ("whirl_speed", "largest_axial", "largest_tilt")}
+    pace = found.history.whirl_frequency if found.whirls else None
     node: Node = {
         "kick": Leaf(found.kick, "m/s"),
         "run": Leaf(found.run),
@@ -239,10 +238,10 @@ def _(found: SimulationAnswer) -> Node:
         "drift_rate_law": Leaf(drift_rate_law(found.cage), "1/s"),
         "rubbing_power": Leaf(rubbing_power(found), "W"),
     }
-    node |= shape(found.history) | first | {"whirl_frequency": Leaf(pace, "Hz")}
+    node |= shape(found.history) | shape(found.analysis) | {"whirl_frequency": Leaf(pace, "Hz")}
     if not found.whirls:
         node |= {"whirl_speed": Leaf(None, "m/s"), "whirl_direction": Leaf(0)}
-    return node | {"analysis": Group(analysis)} | _cage(found)
+    return node | _cage(found)
 
 
 # Rankings. Every row has the keys of a ranked one, None where it has no value.

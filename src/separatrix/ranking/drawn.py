@@ -14,14 +14,13 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.cage.disturbance import settings_for
-from separatrix.cage.ensemble import Ensemble
+from separatrix.cage.ensemble import Ensemble, Runs
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution, solve
 from separatrix.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction.fit import TestedFriction
 from separatrix.runner import Runner
-from separatrix.side_by_side import Runs
 from separatrix.study import BallModel, Friction, Study
 from separatrix.study_numbers import study_numbers
 from separatrix.units import Array, MetrePerSecond, Ratio

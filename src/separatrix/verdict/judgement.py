@@ -54,20 +54,7 @@ NORMAL_95 = 1.959963984540054
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KickCount:
-    """Where the runs from one kick end.
-
-    Attributes
-    ----------
-    kick : float
-        Speed [m/s].
-    settles, rolls, whirls, drifts, unresolved : int
-        Runs of each outcome.
-    kept_by_land : int
-        Runs of those that settle in which friction on the land, not in the pockets, keeps up more motion than
-        frame and loads can give.
-    probability_stable, probability_low, probability_high : float
-        Share of the runs that settle or roll, and its 95 % Wilson interval [-].
-    """
+    """Where the runs from one kick end."""
 
     kick: MetrePerSecond
     settles: int
@@ -76,8 +63,9 @@ class KickCount:
     drifts: int
     unresolved: int
     kept_by_land: int
-    probability_stable: Ratio
-    probability_low: Ratio
+    """Of those that settle: friction on the land keeps up more motion than frame and loads can give."""
+    probability_stable: Ratio  # share of the runs that settle or roll
+    probability_low: Ratio  # of its 95 % Wilson interval
     probability_high: Ratio
 
     @property
@@ -95,126 +83,61 @@ class KickCount:
 class Judgement:
     """Verdict on a cage with its evidence: that of the worst kick, but for what says "any run".
 
-    Attributes
-    ----------
-    verdict : Verdict
-        STABLE, UNSTABLE or UNDECIDED.
-    probability_stable, probability_low, probability_high : float
-        Share of the runs from the worst kick that settle or roll, and its 95 % Wilson interval [-].
-    worst_kick : float
-        Of the kicks from which most runs whirl, if any, the one from which fewest settle or roll [m/s].
-    by_kick : tuple of KickCount
-        Where the runs from every kick end.
-    reason : str
-        One sentence.
-    ball : str
-        The ball that decided: "damper", "one state" or "free".
-    ball_reason : str or None
-        Why that ball decided; None where the study forces it.
-    cage_motion : CageMotion or None
-        What most runs from the worst kick end in; None if most are unresolved.
-    growth_rate : float
-        Mean over all runs from the worst kick of half the logarithmic rate of the kinetic energy in their
-        second half [1/s].
-    growth_rate_low, growth_rate_high : float or None
-        Student's 95 % interval of that mean; None with fewer than two runs [1/s].
-    largest_offset : float
-        Largest offset of the cage centre in any run [m].
-    mean_offset : float
-        Median of the mean offset in the last part of the runs that end in `cage_motion`, or of all if that
-        is None [m].
-    orbit_evenness : float
-        Median of the offset's spread over its mean there, in the same runs: 0 on a circle about the axis,
-        0.52 in a motion without any preferred radius [-].
-    drift_rate, drift_rate_law : float
-        Median growth rate of the mean offset of the runs that do not whirl, and the linear law's for a
-        cage without a land; 0 with one [1/s].
-    largest_contact_force, largest_land_force : float
-        Largest force between a ball and its pocket, and of the land, in any run [N].
-    force_limit : float or None
-        Force of a pocket whose friction is all that the races hold, beyond which this ball has no meaning;
-        None without one [N].
-    force_exceeds_races : bool
-        Whether `largest_contact_force` is beyond that.
-    left_pocket : int
-        Runs, of all, in which a ball reached the edge of its pocket's wall.
-    pocket_impact_shares : tuple of float
-        Share of each pocket in the impacts of balls, all runs, for each ball; zeros if there was none [-].
-    land_impact_share : float
-        Share of the land in all impacts [-].
-    whirl_frequency, whirl_direction
-        Medians over the same runs [Hz]; 1 forward, -1 backward, 0 none.
-    whirl_ratio : float or None
-        Speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's; median
-        over the same runs. 1 goes round with the balls. None if the ball set is at rest [-].
-    drive_energy, end_energy : float
-        Kinetic energy that frame and loads can give the cage without friction, and the median of what the
-        cage has in the last part of the same runs [J].
-    pocket_power, land_power : float
-        Median power that the friction of pockets and of the land feeds into the cage there; below 0 it
-        takes from it [W].
-    rubbing_force, rubbing_speed, rubbing_power : float
-        Medians over the same runs: mean force on the land [N], sliding speed there [m/s], and the power
-        that rubbing turns to heat [W]; 0 if none rubs.
-    energy_imbalance : float
-        The worst of all runs [-].
-    duration, longest_run : float
-        Asked for, and of the longest run [s].
-    runs : int
-        Runs at each kick.
-    impact_rate : float
-        Impacts of all pockets, the same median as of the whirl [1/s].
-    largest_tilt, axial_travel : float or None
-        Of a cage in space: the largest tilt [rad] and way between the ends of its axial motion [m], any run;
-        None in the plane.
-    cone_ratio : float or None
-        The same median, in space: speed at which the lean of the axis goes round, in the fixed frame, over
-        the ball set's [-]; None in the plane.
+    Medians are over the last part of the runs that end in `cage_motion`, or of all if that is None.
     """
 
     verdict: Verdict
-    probability_stable: Ratio
-    probability_low: Ratio
+    probability_stable: Ratio  # share of the runs that settle or roll
+    probability_low: Ratio  # of its 95 % Wilson interval
     probability_high: Ratio
     worst_kick: MetrePerSecond
+    """Of the kicks from which most runs whirl, if any, the one from which fewest settle or roll."""
     by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]
-    reason: str
-    ball: str
-    ball_reason: str | None = None
-    cage_motion: CageMotion | None
+    reason: str  # one sentence
+    ball: str  # that decided: "damper", "one state" or "free"
+    ball_reason: str | None = None  # why that ball decided; null where the study forces it
+    cage_motion: CageMotion | None  # what most runs from the worst kick end in; null if most are unresolved
     growth_rate: PerSecond
-    growth_rate_low: PerSecond | None
+    """Mean over all runs of half the logarithmic rate of the kinetic energy in their second half."""
+    growth_rate_low: PerSecond | None  # of Student's 95 % interval; null with fewer than two runs
     growth_rate_high: PerSecond | None
-    largest_offset: Metre
-    mean_offset: Metre
+    largest_offset: Metre  # of the cage centre, any run
+    mean_offset: Metre  # median
     orbit_evenness: Ratio
-    drift_rate: PerSecond
-    drift_rate_law: PerSecond
-    largest_contact_force: Newton
-    largest_land_force: Newton
+    """Median of the offset's spread over its mean: 0 on a circle about the axis, 0.52 in a motion without any
+    preferred radius."""
+    drift_rate: PerSecond  # median growth rate of the mean offset of the runs that do not whirl
+    drift_rate_law: PerSecond  # of the linear law for a cage without a land; 0 with one
+    largest_contact_force: Newton  # between a ball and its pocket, any run
+    largest_land_force: Newton  # any run
     force_limit: Newton | None
-    force_exceeds_races: bool
-    left_pocket: int
-    pocket_impact_shares: Annotated[tuple[Ratio, ...], ("ball",)]
-    land_impact_share: Ratio
-    whirl_frequency: Hertz
-    whirl_direction: int
+    """Pocket force whose friction is all that the races hold, beyond which this ball has no meaning; null
+    without one."""
+    force_exceeds_races: bool  # whether the largest contact force is beyond that
+    left_pocket: int  # runs, of all, in which a ball reached the edge of its pocket's wall
+    pocket_impact_shares: Annotated[tuple[Ratio, ...], ("ball",)]  # of each pocket in all, any run; or zeros
+    land_impact_share: Ratio  # of the land in all impacts
+    whirl_frequency: Hertz  # median
+    whirl_direction: int  # 1 forward, -1 backward, 0 none
     whirl_ratio: Ratio | None
-    drive_energy: Joule
-    end_energy: Joule
-    pocket_power: Watt
-    land_power: Watt
-    rubbing_force: Newton
-    rubbing_speed: MetrePerSecond
-    rubbing_power: Watt
-    energy_imbalance: Ratio
-    duration: Second
+    """Median speed at which the centre orbits the bearing axis, in the fixed frame, over the ball set's: 1
+    goes round with the balls; null if the ball set is at rest."""
+    drive_energy: Joule  # kinetic energy that frame and loads can give the cage without friction
+    end_energy: Joule  # median of what it has
+    pocket_power: Watt  # median that pocket friction feeds into the cage; below 0 it takes from it
+    land_power: Watt  # the same of the land
+    rubbing_force: Newton  # median of the mean force on the land; 0 if none rubs
+    rubbing_speed: MetrePerSecond  # median sliding speed there
+    rubbing_power: Watt  # median that rubbing on the land turns to heat
+    energy_imbalance: Ratio  # the worst of all runs
+    duration: Second  # asked for
     longest_run: Second
-    runs: int
-    impact_rate: PerSecond
-    largest_tilt: Radian | None = None
-    axial_travel: Metre | None = None
+    runs: int  # at each kick
+    impact_rate: PerSecond  # of all pockets, median
+    largest_tilt: Radian | None = None  # any run; null in the plane, as what follows
+    axial_travel: Metre | None = None  # between the ends of the axial motion, any run
     cone_ratio: Ratio | None = None
+    """Median speed at which the lean of the axis goes round, in the fixed frame, over the ball set's."""
 
 
 def is_calm(outcome: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -53,7 +53,7 @@ STEADY = 0.5
 def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
     """How one run ended, how its cage moved, its largest forces, and the work that drove it."""
     history, found = answer.history, answer.analysis
-    span = " to ".join(stated(history, f"judged_{at}") for at in ("from", "until"))
+    span = f"{stated(history, 'judged_from')} to {stated(history, 'followed')}"
     ended = [
         ("Outcome", f"{history.outcome.name}. {outcome_sentence(answer)}"),
         ("Judged", f"from {span}; the run has {stated(found, 'run_length')}"),
@@ -61,11 +61,10 @@ def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
         ("Drift rate", _drift_text(history.drift_rate, drift_rate_law(answer.cage))),
         ("Energy balance", f"closes to {history.energy_imbalance:.0e} of the work done"),
     ]
-    part = "of the whole run" if found.whole_run else "of the judged part"
     running = running_clearances(answer.solution.clearances)
     return [
         section("The run", facts(ended)),
-        section(f"Motion: means {part}", facts([*_motion(answer), clearance_fact(answer.cage)])),
+        section("Motion: means of the judged part", facts([*_motion(answer), clearance_fact(answer.cage)])),
         section("Forces, rubbing and work", facts(_forces(answer))),
         section("Basis of this answer", facts([*basis(study, answer)[:BASIS], *running])),
         SINGLE,
@@ -197,22 +196,23 @@ def _whirl_text(found: Judgement) -> str:
 
 
 def _motion(answer: SimulationAnswer) -> list[tuple[str, str]]:
-    history, found, whirl = answer.history, answer.analysis, answer.analysis.whirl
-    spread = number(found.offset_spread / found.mean_offset, 2) if found.mean_offset > 0.0 else "0"
-    most = f"{stated(history, 'largest_offset')} at most, mean {stated(found, 'mean_offset')}"
+    history, found, turning = answer.history, answer.analysis, abs(answer.cage.cage_speed)
+    spread = number(history.offset_spread / history.mean_offset, 2) if history.mean_offset > 0.0 else "0"
+    most = f"{stated(history, 'largest_offset')} at most, mean {stated(history, 'mean_offset')}"
     rows = [("Offset", f"{most}, relative spread {spread} (0: a circle about the axis)")]
-    if found.mean_tilt is not None:
+    if history.largest_tilt is not None:
         cone = "without a steady phase to the offset"
-        if whirl.tilt_phase is not None and (whirl.tilt_coherence or 0.0) >= STEADY:
-            cone = f"{math.degrees(whirl.tilt_phase):.0f} deg ahead of the offset (0: a forward cone)"
-        axial = " to ".join(stated(found, f"axial_{end}") for end in ("low", "high"))
-        tilt = f"{_mrad(found.largest_tilt)} at most, mean {_mrad(found.mean_tilt)}; {cone}"
-        rows += [("Tilt", tilt), ("Axial place", f"{stated(found, 'largest_axial')} at most; {axial}")]
+        if found.tilt_phase is not None and (found.tilt_coherence or 0.0) >= STEADY:
+            cone = f"{math.degrees(found.tilt_phase):.0f} deg ahead of the offset (0: a forward cone)"
+        axial = " to ".join(stated(history, f"axial_{end}") for end in ("low", "high"))
+        tilt = f"{significant(1e3 * history.largest_tilt, 3)} mrad at most; {cone}"
+        rows += [("Tilt", tilt), ("Axial place", axial)]
     pace = f"{stated(history, 'whirl_frequency')} {DIRECTIONS[history.whirl_direction]}"
     seen = f"{pace}, seen from the balls; the centre moves at {stated(found, 'whirl_speed')}"
-    both = (("offset", whirl.offset_ratio), ("tilt", whirl.tilt_ratio))
-    ratios = ", ".join(f"{name} {number(ratio, 2)}" for name, ratio in both if ratio is not None)
-    words = f"{ratios} of the cage's speed (1: turns with it; below 0: backward)"
+    speeds = (("centre", history.orbit_speed), ("tilt", history.cone_speed))
+    ratios = [
+        f"{name} {number(speed / turning, 2)}" for name, speed in speeds if speed is not None and turning
+    ]
     slip = "the ball set is at rest"
     if found.cage_slip is not None:
         share = round(100.0 * found.cage_slip, 2) + 0.0  # never -0
@@ -220,35 +220,31 @@ def _motion(answer: SimulationAnswer) -> list[tuple[str, str]]:
     return [
         *rows,
         ("Whirl", seen if answer.whirls else "none: the motion does not last"),
-        ("Whirl ratio", words if ratios else "none: the cage does not turn, or rests at the centre"),
+        ("Orbit", f"{', '.join(ratios)} of the ball set's speed (below 0: backward)" if ratios else slip),
         ("Cage slip", slip),
     ]
 
 
-def _mrad(angle: float | None) -> str:
-    return f"{significant(None if angle is None else 1e3 * angle, 3)} mrad"
-
-
 def _forces(answer: SimulationAnswer) -> list[tuple[str, str]]:
-    history, impacts = answer.history, answer.analysis.impacts
+    history, found = answer.history, answer.analysis
     pocket = pocket_force(history.largest_contact_force, answer.force_limit)
     if answer.force_exceeds_races:
         pocket += ": beyond it this model of a ball has no meaning (`--ball free` has)"
     is_landless = answer.cage.guidance is Guidance.BALL
     land = "the cage has no land" if is_landless else stated(history, "largest_land_force")
     count = f"{history.pocket_impacts.sum():.0f} in pockets, {history.land_impacts} at the land"
-    if impacts.rate_per_turn is not None:
-        count += f"; {number(float(impacts.rate_per_turn.mean()), 2)} in each pocket per cage turn"
+    if found.impacts_per_turn is not None:
+        count += f"; {number(float(found.impacts_per_turn.mean()), 2)} in each pocket per cage turn"
     rows = [("Pocket, largest", pocket), ("Land, largest", land), ("Impacts", count)]
-    if impacts.front_share is not None:
+    if found.front_share is not None:
         shares = (
-            (impacts.front_share, "in front of the ball"),
-            (impacts.rear_share, "behind it"),
-            (impacts.axial_share, "at its axial sides"),
+            (found.front_share, "in front of the ball"),
+            (found.rear_share, "behind it"),
+            (found.axial_share, "at its axial sides"),
         )
         each = (f"{100.0 * share:.0f} % {where}" for share, where in shares if share)
         rows.append(("Impulse", ", ".join(each)))
-    heat = f"{quantity(float(answer.analysis.rubbing.pocket_power.sum()), 'W')} of heat, mean of the run"
+    heat = f"{quantity(float(found.pocket_rubbing_power.sum()), 'W')} of heat, mean of the run"
     rows += [*_power_facts(history, rubbing_power(answer)), ("Rubbing in the pockets", heat)]
     done = {name.replace("_", " "): float(work[-1]) for name, work in history.work.items() if work.any()}
     left = float(history.kinetic_energy[-1] + history.stored_energy[-1])

@@ -1,4 +1,4 @@
-"""CONTACT's public examples through the reader of its input files, end to end (validation).
+"""CONTACT's public examples, read from its input files (validation).
 
 Source: eve70a/CONTACT (E. Vollebregt), examples/*.inp and *.ref_out. That program prints what its grid and
 its first-order stencil make, 1 to 3 % off in steady rolling; the numbers below are closed forms or converged
@@ -9,34 +9,18 @@ import math
 
 import numpy as np
 import pytest
+from contact_inp import solved_inp as solved
 from contact_inputs import (
     BENTALL,
     CARTER,
     CATTANEO,
-    MATERIALS,
     TRACTION_CURVE,
-    case,
-    end,
     fastsim,
     from_cattaneo_to_carter,
 )
 
-import separatrix
 
-
-@pytest.fixture
-def solved(tmp_path):
-    """Solve the text of an input file; return its rows as plain data."""
-
-    def solve(text):
-        path = tmp_path / "example.inp"
-        path.write_text(text)
-        return separatrix.solve_contact(path).document()["cases"]
-
-    return solve
-
-
-def test_cattaneo(solved):
+def test_cattaneo():
     """Sphere shifted by 7/8 of sliding: 8.156e-3 mm converged, CONTACT prints 8.155e-3; stick radius 1/2.
 
     15 cells a side: 0.1 %, as the fine and the converged number differ. Stick: to half a cell of its radius.
@@ -52,7 +36,7 @@ def test_cattaneo(solved):
 
 
 @pytest.mark.parametrize("area", ["-3\n19 19 1. 1. 1.26667", "-1\n19 19 0.01 0.01 1.26667"])
-def test_an_approach_in_place_of_the_load(solved, area):
+def test_an_approach_in_place_of_the_load(area):
     """An approach a^2/R of 0.02 mm has the load 9.1954 N, to half a digit; CONTACT's 15 cells: 1.998e-2."""
     text = CATTANEO.partition(" 3 MODULE\n201120")[0] + " 0 MODULE\n"
     text = text.replace("200100", "200000").replace("9.1954", "0.02").replace("-3\n19 19 1. 1. 1.26667", area)
@@ -60,14 +44,14 @@ def test_an_approach_in_place_of_the_load(solved, area):
     assert one["load"] == pytest.approx(9.1954, abs=5e-5)
 
 
-def test_carter(solved):
+def test_carter():
     """0.64 mu N exactly at this creep; 50 columns and a length of 200 half widths: 0.5 %."""
     (one,) = solved(CARTER)
     assert one["force_share"] == pytest.approx(0.64, rel=5e-3)
     assert one["stick_share"] == pytest.approx(0.6, abs=1 / 50)  # to half a cell at either end
 
 
-def test_bentall(solved):
+def test_bentall():
     """Free rolling of unlike rollers: 0.91476 (2 beta p0/E*) = 5.259e-4 with little friction; CONTACT: 5.260.
 
     The line without slip, x0 = 0.404 a, is in one of 200 cells; over a cell the creep changes by
@@ -82,7 +66,7 @@ def test_bentall(solved):
     assert pulled["longitudinal_creep"] < more["longitudinal_creep"] < braked["longitudinal_creep"]
 
 
-def test_traction_curve(solved):
+def test_traction_curve():
     """Converged: 243.8 N at 1e-5, 0.255 ... 0.774 mu N, with a film 63.6 N. 44 x 40 cells: 0.5 %."""
     rows = solved(TRACTION_CURVE)
     assert [rows[0]["force"], rows[-1]["force"]] == pytest.approx([-243.8, -63.6], rel=5e-3)
@@ -90,7 +74,7 @@ def test_traction_curve(solved):
     assert shares == pytest.approx([-0.255, -0.468, -0.640, -0.774], rel=5e-3)
 
 
-def test_fastsim(solved):
+def test_fastsim():
     """Fy -0.625 +- 0.001 mu N, Mz -47 440 N mm, extrapolated from 30 and 60 cells.
 
     Half the step between the two, 0.002 mu N and 0.2 %, and the reference's own: 0.003 and 0.4 %.
@@ -104,7 +88,7 @@ def test_fastsim(solved):
     assert moment == pytest.approx(-47440.0, rel=4e-3)
 
 
-def test_from_cattaneo_to_carter(solved):
+def test_from_cattaneo_to_carter():
     """The onset of rolling under a constant force, against what CONTACT prints; the last case is steady.
 
     In transient rolling both have the same cells and the same stencil, and differ by the cut cells at the
@@ -119,36 +103,8 @@ def test_from_cattaneo_to_carter(solved):
     assert [row["force_share"] for row in rows] == pytest.approx([-0.657] * 57, abs=1e-5)  # the search
 
 
-def test_rolling_the_other_way_is_the_mirror_image(solved):
+def test_rolling_the_other_way_is_the_mirror_image():
     """CHI = 180 degrees and the opposite force: the opposite creep; it is searched to 1e-6 of saturation."""
     ahead, behind = (solved(from_cattaneo_to_carter(3, turned=turned))[1:] for turned in (False, True))
     creeps = [row["longitudinal_creep"] for row in ahead]
     assert [-row["longitudinal_creep"] for row in behind] == pytest.approx(creeps, rel=1e-5)
-
-
-def extra(slip, *, chi="0.0", creeps="0. 0. 0."):
-    """A rolling ellipse of 12 x 10 elements with a rigid slip of each, given at its centre [mm]."""
-    x, y = (side * (2.0 * (np.arange(n) + 0.5) / n - 1.0) for side, n in ((8.0, 12), (4.0, 10)))
-    lines = [f"{u:.12g} {v:.12g}" for b in y for u, v in (slip(a, b) for a in x)]
-    given = f"82000. {creeps}", "0.3 0.3", f"{chi} 0.4 3.", MATERIALS, "-3", "12 10 8. 4. 1."
-    return end(case("203100 022029 0000341", *given, *lines))
-
-
-@pytest.mark.parametrize("chi", ["0.0", "180d"])
-def test_extra_slip_adds_to_that_of_the_creeps(solved, chi):
-    """E = 9: slip of each element that makes up creeps and spin is as good as these; 1e-7: Newton's end."""
-    xi, eta, phi = 4e-4, -6.25e-4, 6.25e-4
-    (plain,) = solved(
-        end(
-            case(
-                "203100 022020 0000341",
-                f"82000. {xi} {eta} {phi}",
-                *("0.3 0.3", f"{chi} 0.4 3.", MATERIALS, "-3", "12 10 8. 4. 1."),
-            )
-        )
-    )
-    (alone,) = solved(extra(lambda x, y: (xi - phi * y, eta + phi * x), chi=chi))
-    (half,) = solved(extra(lambda x, y: (-phi * y, phi * x), chi=chi, creeps=f"{xi} {eta} 0."))
-    for name in ("force", "lateral_force", "spin_moment"):
-        assert alone[name] == pytest.approx(plain[name], rel=1e-7)
-        assert half[name] == pytest.approx(plain[name], rel=1e-7)
