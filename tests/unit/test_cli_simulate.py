@@ -1,4 +1,4 @@
-"""One run by the verb: its document, text, dataset, pictures, film and page; two of them side by side."""
+"""One run by the verb: its document, text, dataset, pictures, GIF and page; two of them side by side."""
 
 from __future__ import annotations
 
@@ -257,7 +257,7 @@ def test_wrong_options_are_refused_in_one_line(options, said, capsys):
 
 @pytest.mark.usefixtures("undrawn")
 def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
-    """Files of an answer come all or none, its film among them."""
+    """Files of an answer come all or none, its GIF among them."""
 
     def stop(*_):
         raise KeyboardInterrupt
@@ -280,8 +280,8 @@ def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch)
     names = {path.name for path in Path("moving").iterdir()}
     assert {"simulate.json", "simulate.nc", "simulation.gif", "simulation.png"} <= names
     assert not [name for name in names if name.startswith(".")]
-    with Image.open("moving/simulation.gif") as film:
-        assert film.n_frames > 1
+    with Image.open("moving/simulation.gif") as found:
+        assert found.n_frames > 1
     animate(present.load("moving/simulate.nc"), Path("again.gif"))  # from what was saved, to the byte
     assert Path("again.gif").read_bytes() == Path("moving/simulation.gif").read_bytes()
 

@@ -51,12 +51,12 @@ def test_a_gif_is_written_for_any_run(data, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.gif"]
     count = data.sizes["time"]
     assert reported == [(i + 1, count) for i in range(count)]
-    with Image.open(tmp_path / "a.gif") as film:
-        assert (film.n_frames, film.format) == (count, "GIF")
+    with Image.open(tmp_path / "a.gif") as found:
+        assert (found.n_frames, found.format) == (count, "GIF")
 
 
 def test_an_interrupt_leaves_no_half_file_and_the_older_one(tmp_path):
-    """Ctrl-C at the second frame: the older film is there to the last byte, and nothing else."""
+    """Ctrl-C at the second frame: the older one is there to the last byte, and nothing else."""
     (tmp_path / "a.gif").write_bytes(b"older")
 
     def stop(done, total):
@@ -107,7 +107,7 @@ def test_frames_are_few_and_run_from_start_to_end(data):
 
 
 def test_a_picture_says_how_many_times_too_large_movements_are():
-    """Number for number, and how time runs; a film of few moments has the force between them."""
+    """Number for number, and how time runs; one of few moments has the force between them."""
     moments = np.array([0, 3])
     seen = view.scene(SMALL, moments)
     key = "0 to 20 N in the pocket (balls: white to red), 0 to 7 N on the land (grey to red); root scale"
