@@ -89,7 +89,7 @@ VERBS: tuple[Verb, ...] = (
         help="Follow one run of the cage, in the plane or in space.",
         needs=("cage",),
         moves_a_cage=True,
-        epilog="An unresolved run states its reason. --animate mp4 needs the extra animation.",
+        epilog="An unresolved run states its reason.",
         question=("kick", "run", "restitution_factor", "animate"),
     ),
     Verb(

@@ -32,7 +32,7 @@ def save_answer(
     found: Document,
     *,
     pictures: bool = True,
-    animation: str | None = None,
+    animation: bool = False,
     progress: Progress | None = None,
 ) -> None:
     """Write the files of an answer into a folder, all or none; of an interrupted one its document and text.
@@ -47,8 +47,8 @@ def save_answer(
         The answer as `present.document` makes it.
     pictures : bool
         Whether the figures are written, too.
-    animation : str, optional
-        ``"gif"`` or ``"mp4"``: also the film of a simulation; `progress` receives how far it is.
+    animation : bool
+        Whether a GIF of a simulation is written, too; `progress` receives how far it is.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def save_answer(
         # what follows takes seconds to load
         from separatrix import figures
         from separatrix.figures.animation import animate
-        from separatrix.figures.cage_page import write_page
+        from separatrix.figures.view import write_page
         from separatrix.present import dataset, save
 
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
@@ -79,8 +79,8 @@ def save_answer(
             _write_sweep(data, stage)
         if verb == "simulate":
             write_page(data, stage / "simulation.html")
-        if animation is not None:
-            animate(data, stage / f"simulation.{animation}", kind=animation, progress=progress)
+        if animation:
+            animate(data, stage / "simulation.gif", progress=progress)
 
 
 def written(found: Document) -> str:

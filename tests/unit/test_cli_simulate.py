@@ -1,4 +1,4 @@
-"""One run by the verb: its document, text, dataset, pictures, film and page; two of them side by side."""
+"""One run by the verb: its document, text, dataset, pictures, GIF and page; two of them side by side."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import html
 import itertools
 import json
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +20,7 @@ from separatrix.cli import main
 from separatrix.comparing.saved import read_file
 from separatrix.comparing.shown import pictures
 from separatrix.figures.animation import animate
-from separatrix.figures.cage_page import page, view
+from separatrix.figures.view import page, view
 
 SMALL = """
 extends = "cryogenic-turbopump"
@@ -247,7 +246,7 @@ def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
         (["--kick", "0 m/s"], "must be >"),
         (["--kick", "-1 m/s"], "must be >"),
         (["--run", "-1"], "--run must lie between"),
-        (["--animate", "avi"], "must be gif or mp4"),
+        (["--animate", "mp4"], "must be gif"),
         (["--animate", "gif", "--json"], "--out DIR"),
     ],
 )
@@ -256,22 +255,14 @@ def test_wrong_options_are_refused_in_one_line(options, said, capsys):
     assert said in refused(capsys, "simulate", "cryogenic-turbopump", *options)
 
 
-def test_an_mp4_without_its_extra_is_refused_before_the_run(capsys, monkeypatch):
-    """One line that says what to install; the run is not made and nothing is written."""
-    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    monkeypatch.setattr("separatrix.verbs.simulate", lambda *_, **__: pytest.fail("it was made"))
-    line = refused(capsys, "simulate", "cryogenic-turbopump", "--animate", "mp4")
-    assert "pip install 'separatrix[animation]'" in line
-
-
 @pytest.mark.usefixtures("undrawn")
 def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
-    """Files of an answer come all or none, its film among them."""
+    """Files of an answer come all or none, its GIF among them."""
 
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("separatrix.figures.scene.Scene.faces", stop)
+    monkeypatch.setattr("separatrix.figures.animation.draw_cage", stop)
     assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
     assert "no file was written" in capsys.readouterr().err
     assert not list(Path().iterdir())
@@ -289,8 +280,8 @@ def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch)
     names = {path.name for path in Path("moving").iterdir()}
     assert {"simulate.json", "simulate.nc", "simulation.gif", "simulation.png"} <= names
     assert not [name for name in names if name.startswith(".")]
-    with Image.open("moving/simulation.gif") as film:
-        assert film.n_frames > 1
+    with Image.open("moving/simulation.gif") as found:
+        assert found.n_frames > 1
     animate(present.load("moving/simulate.nc"), Path("again.gif"))  # from what was saved, to the byte
     assert Path("again.gif").read_bytes() == Path("moving/simulation.gif").read_bytes()
 

@@ -36,7 +36,7 @@ Content = TypeVar("Content")
 
 STUDY_SUFFIXES = (".toml", ".xlsx", ".xlsm", ".ods")
 ANSWER_SUFFIXES = (
-    *(".json", ".txt", ".nc", ".png", ".svg", ".pdf", ".html", ".csv", ".xlsx", ".gif", ".mp4"),
+    *(".json", ".txt", ".nc", ".png", ".svg", ".pdf", ".html", ".csv", ".xlsx", ".gif"),
     ".toml",
 )
 TABLE_SUFFIX = ".csv"

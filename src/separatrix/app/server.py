@@ -26,7 +26,7 @@ from separatrix.app.jobs import Jobs
 from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.worker import Task
 from separatrix.errors import InputError, SeparatrixError
-from separatrix.figures.cage_page import PARTS
+from separatrix.figures.view import PARTS
 from separatrix.units import printable, shown
 
 HOST = "127.0.0.1"

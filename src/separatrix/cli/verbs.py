@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 ANSWERED = 0
 MOST_JOBS = 1024
-ANIMATIONS = ("gif", "mp4")
 AXIS = "LOW..HIGH[unit][:N][:log]"
 
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
@@ -77,7 +76,7 @@ OPTIONS: dict[str, tuple[object, object]] = {
     "ball": (Annotated[str | None, typer.Option(metavar="damper|traction|free|auto", help=BALL_HELP)], None),
     "run": (Annotated[int, whole_number("Which run of the ensemble.")], 0),
     "restitution_factor": (Annotated[str | None, typer.Option(metavar="ETA", help=ETA_HELP)], None),
-    "animate": (Annotated[str | None, typer.Option(metavar="gif|mp4", help=ANIMATE_HELP)], None),
+    "animate": (Annotated[str | None, typer.Option(metavar="gif", help=ANIMATE_HELP)], None),
     "samples": (Annotated[int, whole_number("Bearings drawn, a power of two.")], 512),
     "vary": (Annotated[list[str] | None, typer.Option("--vary", metavar="AXIS", help=VARY_HELP)], None),
     "cases": (Annotated[str | None, typer.Option(metavar="FILE", help=CASES_HELP)], None),
@@ -224,19 +223,15 @@ def _deliver(
     from separatrix.saving import save_answer
 
     with progress_bar("animation", quiet=quiet or animate is None) as progress:
-        save_answer(folder, found.record, found.study, made, animation=animate, progress=progress)
+        save_answer(folder, found.record, found.study, made, animation=animate is not None, progress=progress)
     if not json and not quiet:
         overview = verb.name == "rank" and bool(made["complete"])
         answer("\n" + whereabouts(verb.name, str(folder), overview=overview))
 
 
 def _check_animation(kind: str, *, writes: bool) -> None:
-    """Refuse an animation of another kind, or without a folder or an encoder for it."""
-    if kind not in ANIMATIONS:
-        raise InputError("--animate", f"must be {' or '.join(ANIMATIONS)}", got=f'"{kind}"')
+    """Refuse an animation of another kind, or without a folder."""
+    if kind != "gif":
+        raise InputError("--animate", "must be gif", got=f'"{kind}"')
     if not writes:
         raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
-    if kind == "mp4":
-        from separatrix.figures.animation import video_encoder
-
-        video_encoder()

@@ -1,4 +1,4 @@
-"""What figures and films of a run share: time, boundaries, paths, whirl spectrum, moments of a film."""
+"""What figures, animations and the view of a run share: time, boundaries, paths, whirl spectrum, frames."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ SHORTEST = 8
 STRONG, PRESENT = 0.3, 0.05
 """Shares of the largest amplitude from which a whirl is strong, and is shown."""
 
-MOST_FRAMES, A_TURN = 360, 6
-"""Most frames of a film; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
+MOST_FRAMES, A_TURN = 240, 6
+"""Most frames of a GIF; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
 
 GAP = 1.5
 """Steps over the usual one from which frames have a gap."""

@@ -1,15 +1,38 @@
-"""The cage among its balls as films and pages draw it: true shapes, small movements enlarged."""
+"""One run of the cage as a page to turn and play: true shapes, small movements enlarged."""
 
 from __future__ import annotations
 
+import html
+import json
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from separatrix.figures.motion import axial_play, is_in_space, land_boundary, land_heights, ring
-from separatrix.figures.style import stated, study_of
-from separatrix.units import Array
+from separatrix.figures.motion import (
+    axial_play,
+    frame_moments,
+    is_in_space,
+    land_boundary,
+    land_heights,
+    shown_parts,
+)
+from separatrix.figures.style import WIDTH, cut, heading, stated, study_of
+from separatrix.units import Array, format_number
+
+MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
+"""Most frames of a page, and most numbers in all: they keep it under 1 MB."""
+
+PARTS = Path(__file__).with_name("cage_view")
+"""Folder of style, script and templates of pages that show a run."""
+
+WHERE = ("in the pocket (balls: white to red)", "on the land (grey to red)")
+
+NANO = 1e9
+"""Movements are whole nanometres and nanoradians; forces 1/255 of the largest."""
 
 BAR_SHARE, FARTHEST = 0.4, 0.25
 """Least share of the bar in the room between two balls; largest movement drawn over the pitch radius."""
@@ -51,66 +74,11 @@ class Scene:
     force: Array  # largest of each ball since the moment before, shape (time, ball) [N]
     land_force: Array  # the same of the lands, shape (time,) [N]
     largest: tuple[float, float]  # forces of a pocket and of the lands, of all samples of the run [N]
-    frame: Array  # angle by which the ball set has turned; 0 where the picture turns with it [rad]
     enlarged: float  # factor by which movements and clearances are drawn too large at first
 
-    @property
-    def view(self) -> tuple[float, float]:
-        """Height of the eye, and the angle around the axis [rad]."""
-        return VIEWS[self.in_space]
 
-    @property
-    def land_radius(self) -> float:
-        """Radius of the land in the picture, its clearance enlarged [m]."""
-        return self.land + self.side * self.enlarged * self.gap
-
-    def moved(self, points: Array, moment: int) -> Array:
-        """Return points of the cage, shape (..., 3), where it is at a moment, movements enlarged."""
-        x, y, z = points[..., 0], points[..., 1], points[..., 2]
-        (cx, cy), (lx, ly), turn = self.centre[moment], self.lean[moment], self.rotation[moment]
-        step = [cx + lx * z - turn * y, cy + ly * z + turn * x, self.axial[moment] - lx * x - ly * y]
-        return np.asarray(points + self.enlarged * np.stack(step, axis=-1))
-
-    def ball_places(self, moment: int) -> Array:
-        """Return the centre of each ball, shape (ball, 3)."""
-        angle = self.angles + self.enlarged * self.lead[moment] / self.radius
-        return np.column_stack([ring(self.radius, angle), self.enlarged * self.ball_axial[moment]])
-
-    def reaches(self) -> Array:
-        """Return half the angle of each enlarged pocket, where a radial wall touches its ball [rad]."""
-        return np.arcsin(np.clip((self.ball + self.enlarged * self.plays) / self.radius, 0.0, 1.0))
-
-    def faces(self) -> Array:
-        """Return the faces of the cage at rest, shape (face, 4, 3).
-
-        Both surfaces around the pockets come first, then the bars between them in the plane of the balls.
-        """
-        around = 2.0 * np.pi * (np.arange(POCKET_POINTS) + 0.5) / POCKET_POINTS
-        c, s = np.cos(around), np.sin(around)
-        square = np.maximum(np.abs(c), np.abs(s))
-        corner = square if self.is_square else 1.0
-        across = min(self.ball + self.enlarged * self.axial_play, RIM * self.half_width)
-        ends, reach = np.append(self.angles, self.angles[0] + 2.0 * np.pi), self.reaches()
-        middles = 0.5 * (ends[:-1] + ends[1:])
-        lows, radii = np.roll(middles, 1), self.radius + self.half_thickness * np.array([-1.0, 1.0])
-        lows[0] -= 2.0 * np.pi
-        found = []
-        for angle, along, low, high in zip(self.angles, reach, lows, middles, strict=True):
-            hole = angle + along * c / corner, across * s / corner
-            share = 0.5 * (high + low) + 0.5 * (high - low) * c / square, self.half_width * s / square
-            for r in radii:
-                inner, outer = (np.column_stack([ring(r, at), height]) for at, height in (hole, share))
-                quads = [inner, np.roll(inner, -1, axis=0), np.roll(outer, -1, axis=0), outer]
-                found.append(np.stack(quads, axis=1))
-        for start, end in zip(self.angles + reach, ends[1:] - np.roll(reach, -1), strict=True):
-            at = np.linspace(start, max(start, end), BAR_POINTS + 1)
-            low, high = (np.column_stack([ring(r, at), np.zeros(at.size)]) for r in radii)
-            found.append(np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1))
-        return np.concatenate(found)
-
-
-def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
-    """Return sizes and movements of a run at some samples, in the frame of the balls or a fixed one.
+def scene(data: xr.Dataset, moments: Array) -> Scene:
+    """Return sizes and movements of a run at some samples.
 
     Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
     two pockets, the pockets within the cage, and the cage in the picture.
@@ -128,7 +96,7 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
     half_width = max(0.5 * float(wide) if wide else 0.0, WIDE * ball)
     centre, lean = data["position"].values, data["lean"].values if in_space else np.zeros((count, 2))
     axial = data["axial_place"].values if in_space else np.zeros(count)
-    across, land, turned = axial_play(data) if in_space else 0.0, land_boundary(data), turned_by(data)
+    across, land = axial_play(data) if in_space else 0.0, land_boundary(data)
     side = 0 if land is None else (-1 if str(data["cage_guidance"].values) == "inner" else 1)
     far = max(
         float(np.abs(one).max(initial=0.0))
@@ -163,7 +131,6 @@ def scene(data: xr.Dataset, moments: Array, *, fixed: bool = False) -> Scene:
         force=force,
         land_force=land_force,
         largest=(float(peaks[0].max()), float(peaks[1].max())),
-        frame=turned if fixed else np.zeros(count),
         enlarged=float(f"{max(1.0, min(most, default=1.0)):.2g}"),
     )
 
@@ -178,7 +145,97 @@ def turned_by(data: xr.Dataset) -> Array:
     return np.asarray(speed * (time - (1 - start) * within + (1 - start) * within**2 / (2 * ramp)))
 
 
-def turned(points: Array, angle: float) -> Array:
-    """Return points, shape (..., 2), turned by an angle about the origin."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.asarray(points @ np.array([[c, s], [-s, c]]), dtype=float)
+def force_key(at: Scene) -> str:
+    """Return which colours the forces have."""
+    forces = [f"0 to {format_number(one, 3)} N {where}" for one, where in zip(at.largest, WHERE, strict=True)]
+    shown = ", ".join(forces[: 1 + (at.largest[1] > 0.0)])
+    return f"{shown}; root scale, the largest since the frame before"
+
+
+def span_key(data: xr.Dataset, moments: Array) -> str:
+    """Return which times the frames show."""
+    spans = " and ".join(f"{first:.4g} to {last:.4g} ms" for first, last in shown_parts(data, moments))
+    return f"Frames show {spans}."
+
+
+def write_page(data: xr.Dataset, path: Path) -> None:
+    """Write a saved run as an HTML page that plays it."""
+    path.write_text(page(data), encoding="utf-8")
+
+
+def page(data: xr.Dataset) -> str:
+    """Return the page as text; words of the study are escaped."""
+    parts = {
+        "TITLE": html.escape(str(data.attrs.get("title", "")) or "The moving cage"),
+        "STYLE": _text(PARTS / "view.css"),
+        "VIEW": view(data),
+        "SCRIPT": _text(PARTS / "view.js"),
+    }
+    return _filled(_text(PARTS / "page.html"), parts)
+
+
+def view(data: xr.Dataset) -> str:
+    """Return the part of a page that shows the run, with its data; it needs style and script of the page."""
+    most = int(min(MOST_FRAMES, MOST_NUMBERS // (9 + 3 * data.sizes["ball"])))
+    moments = frame_moments(data, max(2, most))
+    at = scene(data, moments)
+    title = cut(str(data.attrs.get("title", "")), WIDTH)
+    # a text of the study may hold any mark: the JSON is inside a script
+    found = json.dumps(run_for_page(data, moments, at), allow_nan=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        found = found.replace(sign, f"\\u{ord(sign):04x}")
+    parts = {
+        "ABOUT": html.escape("\n".join(heading(data)[len(title) :])),
+        "MOST": force_key(at),
+        "SHOWN": span_key(data, moments),
+        "DATA": found,
+    }
+    return _filled(_text(PARTS / "view.html"), parts)
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _filled(template: str, parts: Mapping[str, str]) -> str:
+    """Return a template with its marks replaced; the replacements are not searched again."""
+    return re.sub("@([A-Z]+)@", lambda mark: parts[mark[1]], template)
+
+
+def run_for_page(data: xr.Dataset, moments: Array, at: Scene) -> dict[str, object]:
+    """Return what the page draws as plain data; what only a cage in space has is null in the plane."""
+    most = [one or 1.0 for one in at.largest]
+    return {
+        "radius": at.radius,
+        "ball": at.ball,
+        "halfWidth": at.half_width,
+        "halfThickness": at.half_thickness,
+        "angles": at.angles.tolist(),
+        "plays": at.plays.tolist(),
+        "axialPlay": at.axial_play,
+        "square": at.is_square,
+        "land": at.land,
+        "side": at.side,
+        "heights": list(at.heights),
+        "gap": at.gap,
+        "view": list(VIEWS[at.in_space]),
+        "enlarged": at.enlarged,
+        "around": POCKET_POINTS,
+        "barPoints": BAR_POINTS,
+        "rim": RIM,
+        "most": most,
+        "time": [float(f"{one:.7g}") for one in data["time"].values[moments]],
+        "turned": [round(float(one), 4) for one in np.mod(turned_by(data)[moments], 2.0 * np.pi)],
+        "centre": _whole(NANO * at.centre),
+        "lean": _whole(NANO * at.lean) if at.in_space else None,
+        "axial": _whole(NANO * at.axial) if at.in_space else None,
+        "rotation": _whole(NANO * at.rotation),
+        "lead": _whole(NANO * at.lead),
+        "ballAxial": _whole(NANO * at.ball_axial) if at.in_space else None,
+        "force": _whole(255.0 * at.force / most[0]),
+        "landForce": _whole(255.0 * at.land_force / most[1]),
+    }
+
+
+def _whole(values: Array) -> list[int]:
+    return [int(one) for one in np.rint(values).ravel()]
