@@ -82,14 +82,14 @@ class History:
 
     time: Annotated[Array, "s", ("time",)]  # a run that grows without limit ends early
     position: Annotated[Array, "m", ("time", "across")]  # of the geometric centre, across the axis
-    velocity: Annotated[Array, "m/s", ("time", "across")]
+    velocity: Annotated[Array, "m/s", ("time", "across")]  # of the same
     rotation: Annotated[Array, "rad", ("time",)]  # of the cage against the ball set
-    rotation_rate: Annotated[Array, "rad/s", ("time",)]
+    rotation_rate: Annotated[Array, "rad/s", ("time",)]  # of the same
     axial_place: Annotated[Array | None, "m", ("time",)]  # of the centre of mass
-    axial_speed: Annotated[Array | None, "m/s", ("time",)]
+    axial_speed: Annotated[Array | None, "m/s", ("time",)]  # of the same
     lean: Annotated[Array | None, "rad", ("time", "across")]  # way of a point on the axis over its height
-    lean_rate: Annotated[Array | None, "rad/s", ("time", "across")]
-    ball_lead: Annotated[Array, "m", ("time", "ball")]
+    lean_rate: Annotated[Array | None, "rad/s", ("time", "across")]  # of the lean
+    ball_lead: Annotated[Array, "m", ("time", "ball")]  # beyond its place in the ball set
     ball_speed: Annotated[Array, "m/s", ("time", "ball")]  # beyond its free orbit; 0 of a damper
     ball_axial: Annotated[Array | None, "m", ("time", "ball")]  # place along its groove
     contact_force: Annotated[Array, "N", ("time", "ball")]  # of each pocket on its ball
@@ -104,7 +104,7 @@ class History:
     pocket_impacts: Annotated[Array, "-", ("ball",)]
     pocket_rubbing: Annotated[Array, "J", ("ball",)]  # integral of force times sliding speed
     outcome: RunOutcome
-    cause: Cause
+    cause: Cause  # why the run is unresolved, or that friction on the land keeps it moving
     judged_from: Second  # the last part of the run, by which it was judged
     followed: Second  # its end; the history may go on
     end_energy: Joule
@@ -112,8 +112,8 @@ class History:
     drift_rate: PerSecond
     largest_offset: Metre
     mean_offset: Metre
-    offset_spread: Metre
-    orbit_speed: RadianPerSecond
+    offset_spread: Metre  # standard deviation of the offset at the end
+    orbit_speed: RadianPerSecond  # of the centre about the axis in the fixed frame, at the end
     whirl_frequency: Hertz
     whirl_direction: int
     pocket_power: Watt
@@ -126,10 +126,10 @@ class History:
     left_ball: int
     left_time: Second
     energy_imbalance: Ratio
-    largest_tilt: Radian | None
+    largest_tilt: Radian | None  # between the axes of cage and bearing
     cone_speed: RadianPerSecond | None
-    axial_low: Metre | None
-    axial_high: Metre | None
+    axial_low: Metre | None  # extremes of the axial place
+    axial_high: Metre | None  # of the axial place
 
 
 def simulate(
@@ -327,7 +327,7 @@ class CourseAnalysis:
     impacts_per_turn: Annotated[Array | None, "-", ("ball",)]  # of the cage; None at rest
     pocket_rubbing_power: Annotated[Array, "W", ("ball",)]  # heat of friction in each pocket, mean of the run
     front_share: Ratio | None  # of the impulse of pockets on balls, within 45 deg of the front of the ball
-    rear_share: Ratio | None
+    rear_share: Ratio | None  # the same of its rear
     axial_share: Ratio | None  # near both axial poles
 
 

@@ -110,8 +110,8 @@ class MovingCage:
     ramp_start: Ratio = 0.1  # share of the speeds at its start
     axial_kick: Ratio = 0.0  # share of a disturbance along the axis, in space
     tilt_kick: Ratio = 0.0  # at the rim by tilting
-    is_tilt_held: bool = False
-    is_axially_held: bool = False
+    is_tilt_held: bool = False  # the cage may not tilt
+    is_axially_held: bool = False  # it may not move along the axis
 
     def __post_init__(self) -> None:
         _check.settle(

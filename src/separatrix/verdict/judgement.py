@@ -57,11 +57,11 @@ class KickCount:
     """Where the runs from one kick end."""
 
     kick: MetrePerSecond
-    settles: int
-    rolls: int
-    whirls: int
-    drifts: int
-    unresolved: int
+    settles: int  # runs of this outcome, as those that follow
+    rolls: int  # runs of this outcome
+    whirls: int  # runs of this outcome
+    drifts: int  # runs of this outcome
+    unresolved: int  # runs of this outcome
     kept_by_land: int
     """Of those that settle: friction on the land keeps up more motion than frame and loads can give."""
     probability_stable: Ratio  # share of the runs that settle or roll
@@ -92,7 +92,7 @@ class Judgement:
     probability_high: Ratio
     worst_kick: MetrePerSecond
     """Of the kicks from which most runs whirl, if any, the one from which fewest settle or roll."""
-    by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]
+    by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]  # where all runs end
     reason: str  # one sentence
     ball: str  # that decided: "damper", "one state" or "free"
     ball_reason: str | None = None  # why that ball decided; null where the study forces it
@@ -100,7 +100,7 @@ class Judgement:
     growth_rate: PerSecond
     """Mean over all runs of half the logarithmic rate of the kinetic energy in their second half."""
     growth_rate_low: PerSecond | None  # of Student's 95 % interval; null with fewer than two runs
-    growth_rate_high: PerSecond | None
+    growth_rate_high: PerSecond | None  # the other end
     largest_offset: Metre  # of the cage centre, any run
     mean_offset: Metre  # median
     orbit_evenness: Ratio
@@ -131,7 +131,7 @@ class Judgement:
     rubbing_power: Watt  # median that rubbing on the land turns to heat
     energy_imbalance: Ratio  # the worst of all runs
     duration: Second  # asked for
-    longest_run: Second
+    longest_run: Second  # of all
     runs: int  # at each kick
     impact_rate: PerSecond  # of all pockets, median
     largest_tilt: Radian | None = None  # any run; null in the plane, as what follows
