@@ -41,7 +41,7 @@ def settled(cage: MovingCage, settings: StabilitySettings, runs: int, longer: fl
     for kick in settings_for(settings, cage).kicks:
         numbers = numbers_of(cage, kick, longer * settings.duration, refine=refine)
         pieces.append(piece_of(Runs(cage, settings, 0, runs), kick)._replace(numbers=numbers))
-    outcome = follow(pieces, jobs=2)["outcome"]
+    outcome = follow(pieces)["outcome"]
     return int(np.isin(outcome, (int(RunOutcome.SETTLES), int(RunOutcome.ROLLS))).sum())
 
 

@@ -69,7 +69,7 @@ def main() -> None:
             state = solve(sane_study(seed, Path(folder)))
             pieces, begun = random_pieces(state, asked.runs, seed), time.perf_counter()
             usual, ten = (
-                follow(some, jobs=2)
+                follow(some)
                 for some in (pieces, [longer(one, LONGER * state.study.stability.duration) for one in pieces])
             )
             ends = [[RunOutcome(int(one)).name for one in found["outcome"]] for found in (usual, ten)]

@@ -100,7 +100,7 @@ class Gathered:
             self._waiting = [one for one in self._waiting if id(one) not in taken]
         found: Evidence | None = None
         try:
-            found = follow_alike(kind, [piece for piece, _ in batch], 1, self._stop)
+            found = follow_alike(kind, [piece for piece, _ in batch], self._stop)
         finally:
             if found is None:  # the error is raised here; those that wait for these runs must not wait on
                 for _, future in batch:

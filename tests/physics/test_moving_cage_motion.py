@@ -64,7 +64,7 @@ def test_one_half_of_the_runs_whirl_at_the_known_friction(eta, friction):
     shares = []
     for f in frictions:
         cage = replace(AT_REST, race_damping=damping_of(eta), ball_cage_friction=f)
-        shares.append(np.mean(run_ensemble(cage, SETTINGS, jobs=2).end_energy > energy))
+        shares.append(np.mean(run_ensemble(cage, SETTINGS).end_energy > energy))
     slope, offset = np.polyfit(frictions, shares, 1)
     assert (0.5 - offset) / slope == pytest.approx(friction, rel=0.10)
 
@@ -94,10 +94,10 @@ def test_a_brief_duration_asks_for_fewer_looks(duration, looks):
     assert numbers_of(TURNING, 0.5, 10.0).limits[outcome.MOST] == math.ceil(10.0 / look_time(TURNING))
 
 
-def test_same_bits_for_any_number_of_threads_and_any_neighbours():
-    """Runs 0 to 11 and 12 to 39, one thread or two, beside other disturbances: not one bit differs."""
+def test_same_bits_beside_any_neighbours():
+    """Runs 0 to 11 and 12 to 39, beside other disturbances: not one bit differs."""
     cage = replace(ON_A_LAND, **SPIN, traction=LAW, ball_cage_friction=0.3)
-    whole = run_ensemble(cage, SETTINGS, kicks=[0.5, 2.0], runs=40, jobs=2)
+    whole = run_ensemble(cage, SETTINGS, kicks=[0.5, 2.0], runs=40)
     parts = [
         run_ensemble(cage, SETTINGS, kicks=[2.0], runs=12),
         run_ensemble(cage, SETTINGS, kicks=[2.0], runs=28, first_run=12),

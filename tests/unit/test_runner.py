@@ -181,9 +181,9 @@ def test_runs_of_many_places_go_side_by_side_with_the_same_bits(monkeypatch):
     """Twelve cages that turn this way or that, 3 runs each: few calls of the engine, the same runs."""
     batches = []
 
-    def follow(kind, pieces, jobs, stop):
+    def follow(kind, pieces, stop):
         batches.append(len(pieces))
-        return follow_alike(kind, pieces, jobs, stop)
+        return follow_alike(kind, pieces, stop)
 
     monkeypatch.setattr("separatrix.side_by_side.follow_alike", follow)
     cages = [replace(CAGE, ball_cage_friction=0.05 * i) for i in range(6)]

@@ -9,14 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from separatrix.cage import rows
-from separatrix.cage.disturbance import (
-    Starts,
-    ball_places,
-    chosen,
-    random_starts,
-    settings_for,
-    start_states,
-)
+from separatrix.cage.disturbance import Starts, ball_places, chosen, random_starts, start_states
 from separatrix.cage.ensemble import (
     Ensemble,
     Piece,
@@ -176,15 +169,13 @@ def follow_start(
     """Follow one run of a cage that turns forward: once to its end, once more to sample it."""
     if not 2 <= samples <= MOST_SAMPLES:
         raise InputError("samples", f"must lie between 2 and {MOST_SAMPLES} [-]", str(samples))
-    settings = StabilitySettings(kicks=(kick,), runs=1, duration=duration)
-    chosen(settings_for(settings, cage), None, None)
+    chosen(StabilitySettings(kicks=(kick,), runs=1, duration=duration), None, None)
     check_length(max(duration, until or 0.0), cage)
     states, places = start_states(cage, kick, starts), ball_places(cage, starts)
-    numbers = numbers_of(cage, kick, duration, refine=refine)
-    length = until
+    piece, length = Piece(cage, kick, numbers_of(cage, kick, duration, refine=refine), states, places), until
     if length is None:
-        piece = Piece(cage, kick, numbers, states, places)
-        found = evidence_of([piece], run_rows(numbers.kind, [numbers], states, places, Stop(), real))
+        kind = piece.numbers.kind
+        found = evidence_of([piece], run_rows(kind, [piece.numbers], states, places, Stop(), real))
         length = float(found["followed"][0])
         if found["outcome"][0] == RunOutcome.WHIRLS and found["whirl_frequency"][0] > 0.0:
             length = max(length, WHIRL_TURNS / float(found["whirl_frequency"][0]))
@@ -194,28 +185,21 @@ def follow_start(
     columns = 4 + states.shape[1] + of(rows.GWB - rows.GX) + 1 + cage.ball_count
     record = np.zeros((math.ceil(length / step / every) + 1, columns))  # the last row where a look reaches it
     raw = run_rows(numbers.kind, [numbers], states, places, Stop(), real, record=record, every=every)
-    return _history(cage, kick, numbers, starts, places, states, raw)
+    return _history(piece._replace(numbers=numbers), starts, raw)
 
 
-def _history(
-    cage: MovingCage,
-    kick: MetrePerSecond,
-    numbers: Numbers,
-    starts: Starts,
-    places: Array,
-    states: Array,
-    raw: Raw,
-) -> History:
+def _history(piece: Piece, starts: Starts, raw: Raw) -> History:
     """Record of the rows that the queue wrote."""
-    record, in_space, kind = raw.record, numbers.kind.space, numbers.kind
+    cage, numbers, record = piece.cage, piece.numbers, raw.record
+    kind, in_space = numbers.kind, numbers.kind.space
     filled = np.isfinite(record[:, 1 + of(rows.VX)]) & (record[:, 1 + of(rows.RAMP)] > 0.0)
     record = record[: np.count_nonzero(filled)]
     first, one = rows.cage_states(space=in_space), rows.ball_states(kind.ball, space=in_space)
-    parts = np.cumsum([1, states.shape[1], of(rows.GWB - rows.GX) + 1, cage.ball_count])
+    parts = np.cumsum([1, piece.states.shape[1], of(rows.GWB - rows.GX) + 1, cage.ball_count])
     time, state, pose, force, rest = np.split(record, parts, axis=1)
     lead, speed = state[:, first::one], first + (2 if in_space else 1)
-    angle = _angles(cage, *_places_of_pockets(cage, state, pose, lead, starts, one), places)
-    found = evidence_of([Piece(cage, kick, numbers, states, places)], raw)
+    angle = _angles(cage, *_places_of_pockets(cage, state, pose, lead, starts, one), piece.places)
+    found = evidence_of([piece], raw)
     return History(
         time=time[:, 0].copy(),
         position=pose[:, :2].copy(),

@@ -149,27 +149,19 @@ def _cut_normal(stream: Generator, count: int) -> Array:
 
 def start_states(cage: MovingCage, kick: MetrePerSecond, starts: Starts) -> Array:
     """State of every run at its start, shape (run, state): see `rows`."""
-    one, first = (
-        rows.ball_states(ball_level(cage), space=cage.is_in_space),
-        rows.cage_states(space=cage.is_in_space),
-    )
+    in_space = cage.is_in_space
+    one, first = rows.ball_states(ball_level(cage), space=in_space), rows.cage_states(space=in_space)
     state = np.zeros((starts.direction.size, first + one * cage.ball_count))
     state[:, of(rows.X)] = cage.unbalance / (cage.mass + cage.added_mass)
-    state[:, of(rows.VX)], state[:, of(rows.VY)] = (
-        kick * np.cos(starts.direction),
-        kick * np.sin(starts.direction),
-    )
-    if cage.is_in_space:
-        rim = cage.tilt_kick * kick / cage.pitch_radius * (0.0 if cage.is_tilt_held else 1.0)
-        state[:, of(rows.Z)] = cage.pocket_axial_offset
-        state[:, of(rows.TY)] = cage.dynamic_unbalance
-        state[:, of(rows.VZ)] = (
-            cage.axial_kick * kick * starts.axial_sense * (0.0 if cage.is_axially_held else 1.0)
-        )
-        state[:, of(rows.WX)], state[:, of(rows.WY)] = (
-            rim * np.cos(starts.tilt_direction),
-            rim * np.sin(starts.tilt_direction),
-        )
+    state[:, of(rows.VX)] = kick * np.cos(starts.direction)
+    state[:, of(rows.VY)] = kick * np.sin(starts.direction)
+    if in_space:
+        rim = 0.0 if cage.is_tilt_held else cage.tilt_kick * kick / cage.pitch_radius
+        along = 0.0 if cage.is_axially_held else cage.axial_kick * kick
+        state[:, of(rows.Z)], state[:, of(rows.TY)] = cage.pocket_axial_offset, cage.dynamic_unbalance
+        state[:, of(rows.VZ)] = along * starts.axial_sense
+        state[:, of(rows.WX)] = rim * np.cos(starts.tilt_direction)
+        state[:, of(rows.WY)] = rim * np.sin(starts.tilt_direction)
     state[:, first::one] = starts.lead
     return state
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.cage import outcome, rows, run
+from separatrix.cage.closed_forms import moving_mass
 from separatrix.cage.disturbance import ball_places, chosen, random_starts, settings_for, start_states
 from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import Kind, Numbers, look_time, numbers_of
@@ -125,14 +125,13 @@ def run_ensemble(
     kicks: Sequence[MetrePerSecond] | None = None,
     runs: int | None = None,
     first_run: int = 0,
-    jobs: int = 1,
     stop: Stop | None = None,
 ) -> Ensemble:
     """Run the cage from every disturbance and seed; one that turns backward as its mirror image.
 
     Kicks and runs are those of the settings if not given. Runs 0 to 11 and then, with `first_run`, 12 to 63
-    are the same as 0 to 63 at once, to the last bit, for any number of `jobs` (threads). `stop` ends the runs
-    at their next look; what is returned then has no meaning.
+    are the same as 0 to 63 at once, to the last bit. `stop` ends the runs at their next look; what is then
+    returned has no meaning.
 
     Raises
     ------
@@ -141,7 +140,7 @@ def run_ensemble(
     """
     speeds, count = chosen(settings_for(settings, turned_forward(cage)), kicks, runs)
     asked = [Runs(cage, settings, first_run, count)]
-    return ensemble_of(asked, speeds, follow(pieces_of(asked, speeds), jobs=jobs, stop=stop))
+    return ensemble_of(asked, speeds, follow(pieces_of(asked, speeds), stop=stop))
 
 
 class Runs(NamedTuple):
@@ -212,9 +211,7 @@ def check_length(duration: Second, cage: MovingCage) -> None:
         raise InputError("[stability] duration", rule, format_quantity(duration, "s"), cure)
 
 
-def follow(
-    pieces: Sequence[Piece], *, jobs: int = 1, stop: Stop | None = None, real: type = np.float32
-) -> dict[str, Array]:
+def follow(pieces: Sequence[Piece], *, stop: Stop | None = None, real: type = np.float32) -> dict[str, Array]:
     """Evidence of the runs of all pieces, one after the other, by name; each array has shape (run, ...)."""
     sizes = [len(piece.states) for piece in pieces]
     at = np.concatenate([[0], np.cumsum(sizes)])
@@ -223,7 +220,7 @@ def follow(
         groups.setdefault(piece.numbers.kind, []).append(i)
     whole: dict[str, Array] = {}
     for kind, members in groups.items():
-        found = follow_alike(kind, [pieces[i] for i in members], jobs, stop or Stop(), real)
+        found = follow_alike(kind, [pieces[i] for i in members], stop or Stop(), real)
         rows_of = np.concatenate([np.arange(at[i], at[i + 1]) for i in members])
         for name, values in found.items():
             whole.setdefault(name, np.zeros((at[-1], *values.shape[1:]), values.dtype))[rows_of] = values
@@ -231,31 +228,21 @@ def follow(
 
 
 CHUNK = 512
-"""Runs that one thread takes at a time, at most: their looks fit into its memory."""
+"""Runs that are followed at a time, at most: their looks fit into the memory of a thread."""
 
 
 def follow_alike(
-    kind: Kind, pieces: Sequence[Piece], jobs: int, stop: Stop, real: type = np.float32
+    kind: Kind, pieces: Sequence[Piece], stop: Stop, real: type = np.float32
 ) -> dict[str, Array]:
     """Evidence of the runs of pieces of one kind."""
     of = np.repeat(np.arange(len(pieces)), [len(piece.states) for piece in pieces])
-    states, places = (
-        np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("states", "places")
-    )
-    count = len(of)
-    size = min(CHUNK, max(rows.LANES, math.ceil(count / jobs / rows.LANES) * rows.LANES))
-    parts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
-
-    def work(part: slice) -> dict[str, Array]:
+    states, places = np.concatenate([p.states for p in pieces]), np.concatenate([p.places for p in pieces])
+    found = []
+    for first in range(0, len(of), CHUNK):
+        part = slice(first, first + CHUNK)
         mine = [pieces[i] for i in of[part]]
         raw = run_rows(kind, [piece.numbers for piece in mine], states[part], places[part], stop, real)
-        return evidence_of(mine, raw)
-
-    if jobs == 1 or len(parts) == 1:
-        found = [work(part) for part in parts]
-    else:
-        with ThreadPoolExecutor(max_workers=jobs) as pool:
-            found = list(pool.map(work, parts))
+        found.append(evidence_of(mine, raw))
     return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
 
 
@@ -282,10 +269,8 @@ def run_rows(
     equations: Callable[..., None] | None = None,
 ) -> Raw:
     """Put runs of one kind through the queue; by other `equations` than those of `motion` if given."""
-    count, most = (
-        len(numbers),
-        int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers)),
-    )
+    count = len(numbers)
+    most = int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers))
     raw = Raw(
         looks=np.zeros((count, most, of(rows.LOOK_COLUMNS)), np.float32),
         evidence=np.zeros((count, run.EVIDENCE_COLUMNS)),
@@ -294,10 +279,7 @@ def run_rows(
         record=np.zeros((0, 1)) if record is None else record,
     )
     raw.evidence[:, run.OUTCOME] = outcome.UNKNOWN
-    given = (
-        np.stack([getattr(one, name) for one in numbers]) for name in ("numbers", "strips", "waves", "limits")
-    )
-    values, strips, waves, limits = given
+    values, strips, waves, limits = (np.stack(each) for each in list(zip(*numbers, strict=True))[1:])
     follow_queue = run.queue(kind.ball, kind.space, kind.level, real, equations)
     follow_queue(
         states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits,
@@ -321,59 +303,56 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
 
     length = np.array([piece.numbers.numbers[of(rows.STEP)] * piece.numbers.kind.steps for piece in pieces])
     speed = np.array([piece.cage.cage_speed for piece in pieces])
+    start = np.array([0.5 * moving_mass(piece.cage) * piece.kick**2 for piece in pieces])
     fifth = np.maximum(1, end // FIFTH)
     part = np.maximum(fifth, np.minimum(end, LAST))
-    last = mean(end - part, end)
-    curl = _share(last[:, of(rows.CURL)], last[:, of(rows.SPEED_SQUARE)])
-    left = at[:, run.extreme(rows.LEFT_BALL)]
-    start = np.array([_energy(piece.cage, piece.kick) for piece in pieces])
+    whole_part = mean(end - part, end)
+
+    def last(row: int) -> Array:
+        return np.asarray(whole_part[:, of(row)])
+
+    def most(row: int) -> Array:
+        return np.asarray(at[:, run.extreme(row)])
+
+    curl = _share(last(rows.CURL), last(rows.SPEED_SQUARE))
     found = {
         "outcome": at[:, run.OUTCOME].astype(np.int64),
         "cause": at[:, run.CAUSE].astype(np.int64),
-        "end_energy": last[:, of(rows.ENERGY)],
+        "end_energy": last(rows.ENERGY),
         "growth_rate": _growth(mean, end, fifth, start) / length,
-        "largest_offset": at[:, run.extreme(rows.PEAK_OFFSET)],
-        "mean_offset": last[:, of(rows.OFFSET_MEAN)],
-        "offset_spread": np.sqrt(
-            np.maximum(0.0, last[:, of(rows.OFFSET_SQUARE)] - last[:, of(rows.OFFSET_MEAN)] ** 2)
-        ),
-        "orbit_speed": _share(last[:, of(rows.SWEPT)], last[:, of(rows.OFFSET_SQUARE)]) + speed,
+        "largest_offset": most(rows.PEAK_OFFSET),
+        "mean_offset": last(rows.OFFSET_MEAN),
+        "offset_spread": np.sqrt(np.maximum(0.0, last(rows.OFFSET_SQUARE) - last(rows.OFFSET_MEAN) ** 2)),
+        "orbit_speed": _share(last(rows.SWEPT), last(rows.OFFSET_SQUARE)) + speed,
         "drift_rate": _drift(pieces, mean, end, fifth) / length,
         "whirl_frequency": np.abs(curl) / (2.0 * math.pi),
         "whirl_direction": np.sign(curl).astype(np.int64),
-        "largest_contact_force": at[:, run.extreme(rows.PEAK_FORCE)],
-        "largest_land_force": at[:, run.extreme(rows.PEAK_LAND)],
+        "largest_contact_force": most(rows.PEAK_FORCE),
+        "largest_land_force": most(rows.PEAK_LAND),
         "pocket_impacts": raw.hits.astype(np.int64),
         "pocket_rubbing": raw.heat,
-        "land_impacts": at[:, run.extreme(rows.LAND_STRIKES)].astype(np.int64),
-        "strike_rate": last[:, of(rows.STRIKES)],
+        "land_impacts": most(rows.LAND_STRIKES).astype(np.int64),
+        "strike_rate": last(rows.STRIKES),
         "energy_imbalance": at[:, run.OPEN] / np.maximum(at[:, run.DONE] + start, 1e-300),
-        "pocket_power": last[:, of(rows.WORK_POCKET)] / length,
-        "land_power": last[:, of(rows.WORK_LAND)] / length,
-        "rubbing_force": last[:, of(rows.PRESSED)],
-        "rubbing_speed": _share(last[:, of(rows.HEATED)], last[:, of(rows.PRESSED)]),
-        "left_ball": left.astype(np.int64),
+        "pocket_power": last(rows.WORK_POCKET) / length,
+        "land_power": last(rows.WORK_LAND) / length,
+        "rubbing_force": last(rows.PRESSED),
+        "rubbing_speed": _share(last(rows.HEATED), last(rows.PRESSED)),
+        "left_ball": most(rows.LEFT_BALL).astype(np.int64),
         "left_time": at[:, run.LEFT_AT],
         "followed": at[:, run.JUDGED] * length,
         "judged_from": (end - part) * length,
     }
-    if not pieces[0].cage.is_in_space:
-        return found
-    return found | {
-        "largest_tilt": at[:, run.extreme(rows.PEAK_TILT)],
-        "cone_speed": _share(last[:, of(rows.CONE)], last[:, of(rows.TILT_SQUARE)]) + speed,
-        "axial_low": at[:, run.extreme(rows.AXIAL_LOW)],
-        "axial_high": at[:, run.extreme(rows.AXIAL_HIGH)],
-    }
+    if pieces[0].cage.is_in_space:
+        found["largest_tilt"] = most(rows.PEAK_TILT)
+        found["cone_speed"] = _share(last(rows.CONE), last(rows.TILT_SQUARE)) + speed
+        found["axial_low"], found["axial_high"] = most(rows.AXIAL_LOW), most(rows.AXIAL_HIGH)
+    return found
 
 
 def _share(part: Array, whole: Array) -> Array:
     """Part over whole, 0 where there is none."""
     return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
-
-
-def _energy(cage: MovingCage, kick: MetrePerSecond) -> float:
-    return 0.5 * (cage.mass + cage.added_mass) * kick**2
 
 
 LEAST_SHARE = 2.0**-104
@@ -397,13 +376,9 @@ def _drift(pieces: Sequence[Piece], mean: Mean, end: Array, fifth: Array) -> Arr
     adrift = np.array([piece.numbers.limits[outcome.IS_ADRIFT] > 0.0 for piece in pieces])
 
     def size(part: Array) -> Array:
-        return np.where(
-            adrift,
-            np.hypot(part[:, of(rows.MEAN_X)], part[:, of(rows.MEAN_Y)]),
-            part[:, of(rows.OFFSET_MEAN)],
-        )
+        place = np.hypot(part[:, of(rows.MEAN_X)], part[:, of(rows.MEAN_Y)])
+        return np.where(adrift, place, part[:, of(rows.OFFSET_MEAN)])
 
-    ratio = np.divide(
-        size(late), size(early), out=np.ones(len(end)), where=(size(early) > 0.0) & (size(late) > 0.0)
-    )
+    is_moved = (size(early) > 0.0) & (size(late) > 0.0)
+    ratio = np.divide(size(late), size(early), out=np.ones(len(end)), where=is_moved)
     return np.where(end > 1, np.log(ratio) / fifth, 0.0)

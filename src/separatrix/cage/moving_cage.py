@@ -8,8 +8,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
+
 from separatrix import _check, cage_design, pocket_shape
 from separatrix.ball_traction import BallTraction, FreeBall
+from separatrix.cage.disturbance import free_leads
 from separatrix.cage_design import CageDesign
 from separatrix.chain.restitution import hertz_coefficient_for
 from separatrix.errors import InputError, ValidityWarning
@@ -183,10 +186,7 @@ class MovingCage:
     @property
     def lead_amplitude(self) -> Metre:
         """Largest lead or lag of a free ball, from its uneven orbital speed [m]."""
-        waves = enumerate(zip(self.orbital_cosines, self.orbital_sines, strict=True), 1)
-        parts = [(h, a / (h * self.cage_speed), b / (h * self.cage_speed)) for h, (a, b) in waves]
-        turn = (2.0 * math.pi * i / _AROUND for i in range(_AROUND))
-        return max(abs(sum(a * math.sin(h * p) - b * math.cos(h * p) for h, a, b in parts)) for p in turn)
+        return float(np.abs(free_leads(self, np.linspace(0.0, 2.0 * math.pi, 361))).max())
 
     @property
     def land_gap(self) -> Metre:
@@ -231,7 +231,6 @@ _NOT_NEGATIVE = (
     "ball_cage_friction", "land_friction", "unbalance", "gravity", "ball_diameter", "land_width",
     "added_mass", "groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick",
 )  # fmt: skip
-_AROUND = 360
 
 
 def turned_forward(cage: MovingCage) -> MovingCage:

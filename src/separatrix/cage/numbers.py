@@ -15,6 +15,7 @@ from separatrix.cage.closed_forms import (
     drive_energy,
     moving_mass,
     rebound_damping,
+    room,
     time_unit,
 )
 from separatrix.cage.rows import of
@@ -103,23 +104,14 @@ def land_strips(cage: MovingCage) -> Array:
     """Height, stiffness and damping of the strips of all lands, shape (strip, 3)."""
     if cage.guidance is Guidance.BALL:
         return np.zeros((0, of(rows.STRIP_NUMBERS)))
-    spacing = (cage.land_spacing or 0.0) if cage.land_count == 2 else 0.0
-    middles, share = np.array((-0.5 * spacing, 0.5 * spacing))[: cage.land_count], np.ones(1)
-    at = np.zeros(1)
+    zeta, K, n = rebound_damping(cage.land_restitution), cage.land_stiffness, cage.land_count
     if not cage.is_in_space:
-        middles, share = np.zeros(1), np.array([float(cage.land_count)])
-    elif cage.land_width > 0.0:
-        at, weight = np.polynomial.legendre.leggauss(GAUSS)
-        at, share = 0.5 * cage.land_width * at, 0.5 * weight
-    whole = float(cage.land_count) if not cage.is_in_space else 1.0
-    damping = (
-        2.0
-        * rebound_damping(cage.land_restitution)
-        * math.sqrt(cage.land_stiffness * whole * moving_mass(cage))
-    )
-    heights = (middles[:, None] + at).ravel()
-    shares = np.tile(share, middles.size)
-    return np.stack([heights, cage.land_stiffness * shares, damping * shares / whole], axis=1)
+        return np.array([[0.0, n * K, 2.0 * zeta * math.sqrt(n * K * moving_mass(cage))]])
+    spacing = (cage.land_spacing or 0.0) if n == 2 else 0.0
+    middles = np.array((-0.5 * spacing, 0.5 * spacing))[:n]
+    at, weight = np.polynomial.legendre.leggauss(GAUSS if cage.land_width > 0.0 else 1)
+    heights, share = (middles[:, None] + 0.5 * cage.land_width * at).ravel(), np.tile(0.5 * weight, n)
+    return np.stack([heights, K * share, 2.0 * zeta * math.sqrt(K * moving_mass(cage)) * share], axis=1)
 
 
 def numbers_of(
@@ -134,9 +126,8 @@ def numbers_of(
     fewest = look / step_length(cage, kick)
     steps = refine * math.ceil(LADDER ** math.ceil(math.log(fewest, LADDER)))
     step = look / steps
-    n = np.zeros(of(rows.NUMBERS))
-    _enter_cage(n, cage, kick, step)
-    _enter_ball(n, cage, step)
+    n, given = np.zeros(of(rows.NUMBERS)), _of_cage(cage, kick, step) | _of_ball(cage, step)
+    n[[of(row) for row in given]] = list(given.values())
     strips, waves = land_strips(cage), np.array([cage.orbital_cosines, cage.orbital_sines]).T.ravel()
     kind = Kind(
         ball=ball_level(cage),
@@ -151,7 +142,7 @@ def numbers_of(
     return Numbers(kind, n, strips, waves, _limits(cage, kick, duration, least, look))
 
 
-def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) -> None:
+def _of_cage(cage: MovingCage, kick: MetrePerSecond, step: Second) -> dict[int, float]:
     M, R = moving_mass(cage), cage.pitch_radius
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     reach = R if cage.land_radius is None else cage.land_radius
@@ -162,7 +153,7 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         stopped += (reach * reach + land_reach(cage) ** 2) / cage.transverse
     # an inner land is touched opposite to the cage's offset, where an odd number of lobes has turned its sign
     lobe = cage.land_out_of_round * (side if cage.land_lobes % 2 else 1.0)
-    given = {
+    return {
         rows.STEP: step,
         rows.PER_MASS: 1.0 / M,
         rows.PER_AXIAL_MASS: 0.0 if cage.is_axially_held else 1.0 / cage.mass,
@@ -200,27 +191,25 @@ def _enter_cage(n: Array, cage: MovingCage, kick: MetrePerSecond, step: Second) 
         rows.LAND_LEVER: side * reach / R,
         rows.RING_SLIDE: side * (cage.guiding_ring_speed - cage.cage_speed) * reach,
     }
-    n[[of(row) for row in given]] = list(given.values())
 
 
-def _enter_ball(n: Array, cage: MovingCage, step: Second) -> None:
-    n[of(rows.PER_DAMPING)], n[of(rows.PER_GROOVE)] = 1.0 / cage.race_damping, 1.0 / cage.groove_damping
-    n[of(rows.GROOVE_STIFFNESS)] = cage.groove_stiffness
-    law, ball = cage.traction, cage.free_ball
+def _of_ball(cage: MovingCage, step: Second) -> dict[int, float]:
+    law, ball, found = cage.traction, cage.free_ball, {rows.GROOVE_STIFFNESS: cage.groove_stiffness}
+    found[rows.PER_DAMPING], found[rows.PER_GROOVE] = 1.0 / cage.race_damping, 1.0 / cage.groove_damping
     if law is not None:
         rate = law.slope / law.mass
-        n[of(rows.SLOPE)], n[of(rows.PER_KNEE)], n[of(rows.PER_BALL_MASS)] = (
-            law.slope,
-            1.0 / law.speed,
-            1.0 / law.mass,
-        )
-        n[of(rows.HELD_RATE)] = rate
-        n[of(rows.DECAY_HALF) : of(rows.GAIN_LAST) + 1] = exact_decay(rate, step)
+        found |= {rows.SLOPE: law.slope, rows.PER_KNEE: 1.0 / law.speed, rows.PER_BALL_MASS: 1.0 / law.mass}
+        found |= {rows.HELD_RATE: rate} | _in_rows(rows.DECAY_HALF, exact_decay(rate, step))
     if ball is not None:
-        n[of(rows.PER_OWN_MASS)], n[of(rows.PER_OWN_INERTIA)] = 1.0 / ball.mass, 1.0 / ball.inertia
         side = cage.lever * cage.spin[2]
-        n[of(rows.INNER) : of(rows.OUTER)] = _race_numbers(ball.inner, side)
-        n[of(rows.OUTER) : of(rows.NUMBERS)] = _race_numbers(ball.outer, side)
+        found |= {rows.PER_OWN_MASS: 1.0 / ball.mass, rows.PER_OWN_INERTIA: 1.0 / ball.inertia}
+        found |= _in_rows(rows.INNER, _race_numbers(ball.inner, side))
+        found |= _in_rows(rows.OUTER, _race_numbers(ball.outer, side))
+    return found
+
+
+def _in_rows(first: int, values: tuple[float, ...]) -> dict[int, float]:
+    return dict(zip(range(first, first + rows.LANES * len(values), rows.LANES), values, strict=True))
 
 
 def _race_numbers(race: SlipField, side: MetrePerSecond) -> tuple[float, ...]:
@@ -228,30 +217,21 @@ def _race_numbers(race: SlipField, side: MetrePerSecond) -> tuple[float, ...]:
     field = race.slip, race.pivoting, race.heathcote, race.axis_ratio**2 / 4.0, race.elastic_slip**2
     slip, pivoting, heathcote, wide, creep = (np.float64(x) for x in field)
     strips = slip_field.py_func  # type: ignore[attr-defined]
-    at_rest = strips(slip, pivoting, np.float64(side), heathcote, wide, creep)
-    return (
-        race.normal_axial,
-        race.normal_radial,
-        race.limit,
-        race.semi_major,
-        *field,
-        *(float(x) for x in at_rest),
-    )
+    at_rest = (float(x) for x in strips(slip, pivoting, np.float64(side), heathcote, wide, creep))
+    return race.normal_axial, race.normal_radial, race.limit, race.semi_major, *field, *at_rest
 
 
 def _limits(cage: MovingCage, kick: MetrePerSecond, duration: Second, least: Second, look: Second) -> Array:
     """Limits of a run: see `outcome`."""
-    drive, kicked = drive_energy(cage), 0.5 * moving_mass(cage) * kick**2
+    drive, M = drive_energy(cage), moving_mass(cage)
+    kicked, turning = 0.5 * M * kick**2, 0.5 * M * (cage.cage_speed * room(cage)) ** 2
     pressed = 0.5 * cage.ball_cage_stiffness * cage.half_play**2
     still = outcome.STILL * min(kicked, pressed or kicked)
-    wide = cage.half_play if math.isinf(cage.land_gap) else cage.land_gap
     found = np.zeros(outcome.LIMITS)
     ramp = math.ceil(cage.ramp_time / look)
     found[outcome.DRIVE] = drive
     found[outcome.RESTING] = max(outcome.REST * drive, still)
-    found[outcome.GROWS] = outcome.GROWN * (
-        kicked + drive + 0.5 * moving_mass(cage) * (cage.cage_speed * wide) ** 2
-    )
+    found[outcome.GROWS] = outcome.GROWN * (kicked + drive + turning)
     fewest = max(2 * outcome.TEN, math.ceil(FOLLOWED * min(1.0, duration / BRIEF)))
     found[outcome.MOST] = ramp + max(fewest, math.ceil(duration / look))
     found[outcome.LEAST] = math.ceil(least / look)

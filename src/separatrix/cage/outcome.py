@@ -8,12 +8,11 @@ unless they say another:
 2. more energy at any moment than `GROWN` times that of the initial disturbance and E together: WHIRLS;
 3. at rest for two looks: SETTLES;
 4. above `HIGH` E in ten looks, no lower in the later five, and turned over by friction: WHIRLS; but what
-   friction on the
-   land maintains while the pockets take energy from it counts as settled, and is counted apart;
+   land friction maintains while the pockets take energy from it counts as settled, and is counted apart;
 5. driven: below E for twenty looks, no higher in the later ten, and pockets give less than half: SETTLES;
 6. at the end, by the last fifth: below `WEAK` E a motion that the pockets feed ROLLS in them, any other
-   SETTLES;
-   above, it WHIRLS if the pockets feed it and it does not fall, and is UNRESOLVED if it still falls.
+   SETTLES; above, it WHIRLS if the pockets feed it and it does not fall, and is UNRESOLVED if it still
+   falls.
 """
 
 from __future__ import annotations
@@ -73,17 +72,9 @@ UNKNOWN = -1
 BY_NOTHING, BY_WALL, NO_CONTACT, FALLING, NOT_FINITE, BY_LAND = (int(one) for one in Cause)
 
 # Columns of a look.
-ENERGY, OFFSET, POCKET, LAND, BALL, FRAME = (
-    rows.of(row)
-    for row in (
-        rows.ENERGY,
-        rows.OFFSET_MEAN,
-        rows.WORK_POCKET,
-        rows.WORK_LAND,
-        rows.WORK_BALL,
-        rows.WORK_FRAME,
-    )
-)
+ENERGY, OFFSET = rows.of(rows.ENERGY), rows.of(rows.OFFSET_MEAN)
+POCKET, LAND = rows.of(rows.WORK_POCKET), rows.of(rows.WORK_LAND)
+BALL, FRAME = rows.of(rows.WORK_BALL), rows.of(rows.WORK_FRAME)
 
 # Limits of a run.
 DRIVE, RESTING, GROWS, MOST, LEAST, FROM, IS_ADRIFT, FAR, RAMP_TIME, RAMP_START, TURNS_AT, LIMITS = range(12)
@@ -139,11 +130,8 @@ def end_of_motion(looks, i, touched, has_grown, limits):
         for j in range(end - TEN, end):
             above = above and looks[j, ENERGY] > max(HIGH * drive, limits[RESTING])
         over = TURNED_OVER * mean(looks, ENERGY, end - TEN, end)
-        if (
-            above
-            and stays(looks, end - TEN, end)
-            and max(0.0, pocket) + max(0.0, land) > max(over, 0.5 * put_in)
-        ):
+        is_fed = max(0.0, pocket) + max(0.0, land) > max(over, 0.5 * put_in)
+        if above and is_fed and stays(looks, end - TEN, end):
             return (settled, BY_LAND) if by_land else (WHIRLS, BY_NOTHING)
     if touched and seen >= 2 * TEN and drive > 0.0 and limits[IS_ADRIFT] == 0.0:
         below = True
@@ -151,13 +139,9 @@ def end_of_motion(looks, i, touched, has_grown, limits):
             below = below and looks[j, ENERGY] < drive
         pocket, land, put_in = fed(looks, end - 2 * TEN, end)
         late, early = mean(looks, ENERGY, end - TEN, end), mean(looks, ENERGY, end - 2 * TEN, end - TEN)
-        moved = abs(mean(looks, OFFSET, end - TEN, end) - mean(looks, OFFSET, end - 2 * TEN, end - TEN))
-        if (
-            below
-            and pocket < 0.5 * put_in
-            and FALLS * late <= early
-            and moved < 0.05 * mean(looks, OFFSET, end - TEN, end)
-        ):
+        place = mean(looks, OFFSET, end - TEN, end)
+        moved = abs(place - mean(looks, OFFSET, end - 2 * TEN, end - TEN))
+        if below and pocket < 0.5 * put_in and FALLS * late <= early and moved < 0.05 * place:
             return settled, BY_NOTHING
     if end < limits[MOST]:
         return UNKNOWN, BY_NOTHING
