@@ -24,13 +24,13 @@ from scipy.special import expit
 
 from separatrix.cage import Ensemble, RunOutcome, moving_cage
 from separatrix.explore.drivers import FEWEST, fitted
+from separatrix.ground.units import Array
 from separatrix.limits.point import critical_friction
 from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
-from separatrix.runner import Runner, joined
-from separatrix.study import Study
-from separatrix.study_file import read_study
-from separatrix.units import Array
+from separatrix.study.reading import read_study
+from separatrix.study.study import Study
 from separatrix.verdict.judgement import Verdict, judge, wilson_interval
+from separatrix.verdict.long_jobs import Runner, joined
 
 STUDIES = {
     "momentum-wheel": ("3.5 g", "0.3 mm", "0.3 mm", "1 um", "40 N"),

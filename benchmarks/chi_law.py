@@ -41,10 +41,10 @@ from separatrix.figures.style import (
     save,
     settled,
 )
+from separatrix.ground.units import Array
 from separatrix.limits.point import critical_friction, linear_limit
 from separatrix.limits.response import LADDER, Crossing, GrowthCounter
-from separatrix.study import StabilitySettings
-from separatrix.units import Array
+from separatrix.study.study import StabilitySettings
 
 MASS, RADIUS, HALF_PLAY, STIFFNESS = 0.05, 0.03, 0.3e-3, 3e6
 CAGE = MovingCage(

@@ -14,11 +14,11 @@ import distributed
 
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.cluster import cluster
-from separatrix.errors import ValidityWarning
+from separatrix.ground.errors import ValidityWarning
 from separatrix.limits.curve import stability_curve
-from separatrix.runner import Runner
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.verdict.cluster import cluster
+from separatrix.verdict.long_jobs import Runner
 
 
 def main() -> None:

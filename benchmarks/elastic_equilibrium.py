@@ -21,9 +21,9 @@ from separatrix.chain.race_curve import contact_problem, exact_slope
 from separatrix.chain.restitution import contact_damping
 from separatrix.chain.solution import solve
 from separatrix.chain.traction import exact
-from separatrix.errors import ValidityWarning
-from separatrix.study import Film, Race, Study, TractionModel, TractionSettings
-from separatrix.study_file import read_study
+from separatrix.ground.errors import ValidityWarning
+from separatrix.study.reading import read_study
+from separatrix.study.study import Film, Race, Study, TractionModel, TractionSettings
 
 EXACT = TractionSettings(model=TractionModel.EXACT)
 COLUMNS, ROWS = 24, 48

@@ -16,7 +16,7 @@ import numpy as np
 from separatrix.cage import moving_cage, simulate
 from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.solution import solve
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt

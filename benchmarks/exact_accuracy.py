@@ -32,7 +32,7 @@ from separatrix.chain.traction.exact.flexibility import Layer, solid
 from separatrix.chain.traction.exact.slope import traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.chain.traction.profile import worn_band
-from separatrix.errors import ValidityWarning
+from separatrix.ground.errors import ValidityWarning
 
 
 def say(*values):

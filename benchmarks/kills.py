@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.ledger import NAME
+from separatrix.verdict.ledger import NAME
 
 STUDY = """
 extends = "momentum-wheel"

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from separatrix.cage import run_ensemble
-from separatrix.study import StabilitySettings
+from separatrix.study.study import StabilitySettings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "physics"))
 from random_cages import random_cage

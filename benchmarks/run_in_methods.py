@@ -29,7 +29,7 @@ sys.path[:0] = [str(ROOT / "tests" / "physics")]
 from synthetic_friction import RUN_INS, Made, made, recipes
 
 from separatrix.friction.reduction.steady import half_width, run_in, steady_mean
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 SPANS = 256
 

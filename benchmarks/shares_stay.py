@@ -24,7 +24,7 @@ from separatrix.cage.ensemble import Runs, follow, piece_of
 from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import numbers_of
 from separatrix.chain.solution import solve
-from separatrix.study import StabilitySettings
+from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import wilson_interval
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "properties"))

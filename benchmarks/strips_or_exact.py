@@ -13,8 +13,9 @@ from separatrix.chain.race_curve import RaceTrack, exact_slope, strips
 from separatrix.chain.restitution import restitution
 from separatrix.chain.solution import Solution, solve
 from separatrix.chain.traction import bonded_layer, traction_slope
-from separatrix.errors import SeparatrixError, ValidityWarning
-from separatrix.study import (
+from separatrix.ground.errors import SeparatrixError, ValidityWarning
+from separatrix.study.reading import read_study
+from separatrix.study.study import (
     ContactPressure,
     Film,
     KinematicModel,
@@ -23,7 +24,6 @@ from separatrix.study import (
     TractionSettings,
     Wear,
 )
-from separatrix.study_file import read_study
 
 FILMS = (
     *((0.5e9, 0.46, h) for h in (2e-7, 1e-6, 3e-6, 1e-5)),

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage, moving_cage, run_ensemble
+from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.solution import solve
-from separatrix.pocket_shape import PocketShape
-from separatrix.study import BallModel, Guidance, MotionModel, StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.pocket_shape import PocketShape
+from separatrix.study.reading import read_study
+from separatrix.study.study import BallModel, Guidance, MotionModel, StabilitySettings
 
 SETTINGS = StabilitySettings(kicks=(0.5,), runs=64, duration=0.3)
 SHIPPED = MovingCage(

@@ -6,7 +6,7 @@ import pytest
 
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.study import BallBearing, KinematicModel, Material, Operation
+from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
 STEEL = Material(name="440C", elastic_modulus=199.948e9, poisson_ratio=0.25, density=7750.37)
 BEARING = BallBearing(

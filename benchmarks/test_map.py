@@ -8,8 +8,8 @@ import pytest
 
 from separatrix.limits.map import stability_map
 from separatrix.limits.map_records import MapAxis, MapQuestion
-from separatrix.runner import Runner
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.verdict.long_jobs import Runner
 
 JOBS = 2
 

@@ -8,8 +8,8 @@ from separatrix.chain.solution import solve
 from separatrix.limits.point import critical_friction
 from separatrix.limits.response import GrowthCounter
 from separatrix.ranking.rank import rank
-from separatrix.runner import Runner
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.verdict.long_jobs import Runner
 
 
 @pytest.fixture(scope="module")

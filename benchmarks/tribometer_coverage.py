@@ -28,11 +28,11 @@ sys.path[:0] = [str(ROOT / "tests" / "physics"), str(ROOT / "tests" / "unit")]
 import raw_logs
 from synthetic_friction import CORRELATIONS, RUN_INS, Made, Recipe, made, recipes
 
-from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log
+from separatrix.ground.errors import InputError
 from separatrix.verdict.judgement import wilson_interval
 
 SEED = 20260

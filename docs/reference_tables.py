@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 from reference_meanings import Line, lines_of
 
-from separatrix import answers, study
+from separatrix import answers
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.restitution import Restitution
@@ -20,10 +20,11 @@ from separatrix.comparing.records import Comparison
 from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
-from separatrix.study_file import document
-from separatrix.study_file.templates import quantity_of, section_remarks, template_keys, units_like
-from separatrix.study_file.values import READERS, required_fields
-from separatrix.units import format_quantity, unit_of
+from separatrix.ground.units import format_quantity, unit_of
+from separatrix.study import study
+from separatrix.study.reading import document
+from separatrix.study.reading.templates import quantity_of, section_remarks, template_keys, units_like
+from separatrix.study.reading.values import READERS, required_fields
 
 KEYS = """# Keys of a study
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 import separatrix
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage, moving_cage, run_ensemble
-from separatrix.study import BallModel, MotionModel, StabilitySettings
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.study.study import BallModel, MotionModel, StabilitySettings
 
 MOMENT = StabilitySettings(kicks=(0.1,), runs=1, duration=1e-3)
 

@@ -12,7 +12,7 @@ from typing import Any
 _PUBLIC = {
     "api": "Answer bearing check compare map mobility rank report restitution "
     "sensitivity simulate stability sweep traction",
-    "ball_traction": "BallTraction",
+    "chain.ball_traction": "BallTraction",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
     "chain.contacts": "BearingState RaceContact RaceTraction",
@@ -31,23 +31,23 @@ _PUBLIC = {
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "comparing.records": "Comparison",
     "data_answers": "Materials TribometerAnswer materials tribometer",
-    "errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
+    "ground.errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
     "friction.logs": "read_log",
     "friction.reduction": "reduce_log",
     "friction.tribometer": "ReducedLogs",
-    "ledger": "Ledger",
+    "verdict.ledger": "Ledger",
     "reporting.record": "Report",
-    "runner": "Interrupted Runner",
+    "verdict.long_jobs": "Interrupted Runner",
     "ranking": "Ranking",
     "present": "dataset document load save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
-    "study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
+    "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
     "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn",
     "verdict.judgement": "Judgement Verdict judge wilson_interval",
     "verdict.reasons": "CageMotion",
-    "study_file": "read_study resolved shipped_studies template",
+    "study.reading": "read_study resolved shipped_studies template",
 }
 """Module -> the public names it holds."""
 

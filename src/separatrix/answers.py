@@ -18,10 +18,10 @@ from separatrix.chain.shown_traction import ExactArea
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy
+from separatrix.ground.units import Metre, MetrePerSecond, Newton, Ratio
 from separatrix.limits.curve import StabilityCurve
 from separatrix.limits.map_records import StabilityMap
 from separatrix.ranking.records import Ranking
-from separatrix.units import Metre, MetrePerSecond, Newton, Ratio
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

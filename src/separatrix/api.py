@@ -21,15 +21,15 @@ from separatrix.answers import (
     TractionAnswer,
 )
 from separatrix.chain.contacts import BearingState
-from separatrix.errors import ValidityWarning
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case
 from separatrix.explore.sweep import Sweep
-from separatrix.messages import grouped, noted_warnings
+from separatrix.ground.errors import ValidityWarning
+from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.questions import computed, verb_named
-from separatrix.runner import Interrupted, Progress
-from separatrix.study import Study
-from separatrix.study_file import read_study, require
-from separatrix.units import MetrePerSecond, Ratio
+from separatrix.study.reading import read_study, require
+from separatrix.study.study import Study
+from separatrix.verdict.long_jobs import Interrupted, Progress
 
 if TYPE_CHECKING:
     import pandas as pd

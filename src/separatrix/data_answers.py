@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.errors import InputError
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.friction.tribometer import tribometer as reduced
-from separatrix.library import Library, as_material, beside, library_files, with_files
-from separatrix.library.records import KINDS, Record, contradictions
-from separatrix.toml_files import nearest
-from separatrix.units import Kelvin, shown
+from separatrix.ground.errors import InputError
+from separatrix.ground.toml import nearest
+from separatrix.ground.units import Kelvin, shown
+from separatrix.study.library import Library, as_material, beside, library_files, with_files
+from separatrix.study.library.records import KINDS, Record, contradictions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.friction.reduction import Reduction
-    from separatrix.library.records import FrictionTable
     from separatrix.present.nodes import Document
     from separatrix.present.text.materials import Shown
-    from separatrix.runner import Progress
+    from separatrix.study.library.records import FrictionTable
+    from separatrix.verdict.long_jobs import Progress
 
 # Path of a library file or of a folder of them.
 Libraries = Sequence[str | Path]

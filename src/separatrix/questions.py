@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from separatrix.errors import InputError
-from separatrix.units import shown
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import shown
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from separatrix.runner import Progress
-    from separatrix.study import Study
+    from separatrix.study.study import Study
+    from separatrix.verdict.long_jobs import Progress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,7 +139,7 @@ def asked_study(verb: Verb, study: str | Path, models: Mapping[str, str]) -> Stu
     InputError
         The file is wrong, lacks a section that the verb needs, or cannot have these models.
     """
-    from separatrix.study_file import read_study, require
+    from separatrix.study.reading import read_study, require
 
     found = read_study(study, models)
     require(found, verb.name, *verb.needs)
@@ -189,11 +189,11 @@ def computed(
         Before anything was finished.
     """
     from separatrix import verbs
-    from separatrix.cluster import cluster as connected
-    from separatrix.input_files import noting
-    from separatrix.ledger import NAME, Ledger
-    from separatrix.runner import Interrupted, Runner
-    from separatrix.study_file import asked_by
+    from separatrix.ground.input_files import noting
+    from separatrix.study.reading import asked_by
+    from separatrix.verdict.cluster import cluster as connected
+    from separatrix.verdict.ledger import NAME, Ledger
+    from separatrix.verdict.long_jobs import Interrupted, Runner
 
     function, threads, is_complete = getattr(verbs, verb.name), jobs or processors(), True
     ledger: Ledger | None = None

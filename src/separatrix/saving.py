@@ -10,16 +10,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.messages import harmless
+from separatrix.ground.messages import harmless
+from separatrix.ground.staged import staged
 from separatrix.present import in_words
-from separatrix.staged import staged
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from separatrix.present.nodes import Document
-    from separatrix.runner import Progress
-    from separatrix.study import Study
+    from separatrix.study.study import Study
+    from separatrix.verdict.long_jobs import Progress
 
 WITHOUT_DATA = ("check",)
 """Verbs whose answer is its document and text alone."""
@@ -90,7 +90,7 @@ def written(found: Document) -> str:
 
 def write_ranking(found: Document, data: xr.Dataset, path: Path) -> None:
     """Write the tables of a ranking as sheets: its document's rows and values, its dataset's units."""
-    from separatrix.workbook_files import add_table, new_workbook, workbook_bytes
+    from separatrix.ground.sheet import add_table, new_workbook, workbook_bytes
 
     stability = found["stability"] or {}
     places = [{"environment": one["name"]} | row for one in found["environments"] for row in one["materials"]]
@@ -157,7 +157,7 @@ def _heading(name: str, unit: str | None) -> str:
 
 def _write_sweep(data: xr.Dataset, folder: Path) -> None:
     """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
-    from separatrix.workbook_files import add_table, new_workbook, text_for_cell, workbook_bytes
+    from separatrix.ground.sheet import add_table, new_workbook, text_for_cell, workbook_bytes
 
     names = [str(name) for name in data.variables if data[name].dims == ("case",)]
     heads = [_heading(name, _unit(data, name)) for name in names]

@@ -13,14 +13,6 @@ from pathlib import Path
 from separatrix import answers
 from separatrix.cage import MovingCage, analyse, moving_cage, settings_for
 from separatrix.cage import simulate as follow
-from separatrix.cage_choice import (
-    cage_candidate,
-    environment_of,
-    ranking_question,
-    reference_candidate,
-    require_friction,
-    required_environment,
-)
 from separatrix.chain.contacts import BearingState, race_tracks
 from separatrix.chain.film_curves import exact_films, wear_curve
 from separatrix.chain.mobility import SlipLaw, linear_mobility
@@ -28,14 +20,14 @@ from separatrix.chain.models import compare_models
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, exact_area, shear
 from separatrix.chain.solution import Solution, solve
-from separatrix.draws import uncertain_inputs
-from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case, asked_cases, checked_points, read_axis
 from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
 from separatrix.explore.sweep import Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
 from separatrix.friction.fit import TestedFriction
+from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.units import NUMBER, MetrePerSecond, Ratio, format_quantity, parse, printable
 from separatrix.limits.curve import stability_curve
 from separatrix.limits.map import stability_map, value_here
 from separatrix.limits.map_records import KICK, MapQuestion
@@ -43,9 +35,17 @@ from separatrix.limits.response import cage_at
 from separatrix.ranking.drawn import frictions_to_draw
 from separatrix.ranking.rank import rank as rank_materials
 from separatrix.ranking.reason import Moved, beyond_motion
-from separatrix.runner import Runner, made_into
-from separatrix.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
-from separatrix.units import NUMBER, MetrePerSecond, Ratio, format_quantity, parse, printable
+from separatrix.study.candidates import (
+    cage_candidate,
+    environment_of,
+    ranking_question,
+    reference_candidate,
+    require_friction,
+    required_environment,
+)
+from separatrix.study.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
+from separatrix.verdict.draws import uncertain_inputs
+from separatrix.verdict.long_jobs import Runner, made_into
 from separatrix.verdict.reasons import force_limit
 from separatrix.verdict.which_ball import transmitted_force
 

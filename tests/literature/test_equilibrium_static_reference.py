@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from separatrix.chain.equilibrium import Equilibrium, equilibrium
-from separatrix.study import BallBearing, KinematicModel, Material, Operation
+from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
 SOURCE = Path(__file__).parent / "sources" / "static_load_distribution.csv"
 TOLERANCE = {"ref_delta_r_um": 1e-4, "ref_delta_a_um": 1e-4, "ref_psi_mrad": 1.5e-4}

@@ -15,10 +15,10 @@ import pytest
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.ranking.rank import rank
 from separatrix.ranking.records import NotMeasured, Ranked
-from separatrix.runner import Runner
-from separatrix.study import StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import Verdict
+from separatrix.verdict.long_jobs import Runner
 
 SETTINGS = StabilitySettings(
     kicks=(0.5,), runs=24, duration=0.1, restitution_factors=(0.1, 0.3, 0.5, 0.7, 0.9), seed=1

@@ -10,7 +10,7 @@ import separatrix
 from separatrix.chain.mobility import SlipLaw, held_ball
 from separatrix.chain.mobility.field import HeldBall, friction_slopes
 from separatrix.chain.mobility.modes import Modes, modes
-from separatrix.study import BallBearing, Film, KinematicModel, Material, Operation, Study
+from separatrix.study.study import BallBearing, Film, KinematicModel, Material, Operation, Study
 
 RPM = math.pi / 30.0
 STEEL = Material(name="steel", elastic_modulus=207e9, poisson_ratio=0.30, density=7810.0)

@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 
 from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import rebound_damping
-from separatrix.study import Guidance, PocketShape
-from separatrix.units import Array
+from separatrix.ground.units import Array
+from separatrix.study.study import Guidance, PocketShape
 
 
 class Course(NamedTuple):

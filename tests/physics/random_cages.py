@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage
-from separatrix.study import Guidance, MotionModel, PocketShape
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.study.study import Guidance, MotionModel, PocketShape
 
 LAW = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)
 

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from separatrix.cage import MovingCage
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 
 def ring_axes(angle: float) -> tuple[Array, Array]:

@@ -14,10 +14,10 @@ from cages import AT_REST, ON_A_LAND, damping_of, followed, impact_restitution, 
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import rebound, rebound_damping
-from separatrix.study import Guidance
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.study.study import Guidance
 
 M, R = AT_REST.mass, AT_REST.pitch_radius
 CRYO = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from cages import AT_REST, TURNING, damping_of, followed, linear_roots
 
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import (
     MovingCage,
     linear_critical_friction,
@@ -16,7 +15,8 @@ from separatrix.cage import (
     run_ensemble,
 )
 from separatrix.cage.closed_forms import drift_rate_law, whirl_rate
-from separatrix.study import MotionModel, StabilitySettings
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.study.study import MotionModel, StabilitySettings
 
 M, K, Z, R = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count, AT_REST.pitch_radius
 LAW = BallTraction(mass=6.567e-3, slope=900.0, speed=math.inf)

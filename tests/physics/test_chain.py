@@ -9,8 +9,8 @@ from separatrix.cage.moving_cage import moving_cage, turned_forward
 from separatrix.chain.lubrication import lubrication_curve
 from separatrix.chain.orbit import orbital_waves
 from separatrix.chain.solution import solve
-from separatrix.study import KinematicModel
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import KinematicModel
 
 SHIPPED = read_study("cryogenic-turbopump")
 STUDY = replace(SHIPPED, kinematics=KinematicModel.OUTER_RACE_CONTROL)  # quick, and free of the race friction

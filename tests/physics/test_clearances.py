@@ -9,17 +9,17 @@ import pytest
 from cages import with_distributions
 from scipy.integrate import solve_bvp
 
-from separatrix.bearing_design import Expansion
 from separatrix.cage import moving_cage
 from separatrix.chain.clearances import mean_expansion, ring_growth, running_clearances
 from separatrix.chain.solution import solve
-from separatrix.distribution import Uniform
-from separatrix.draws import sample
-from separatrix.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.ranking.reason import pocket_of
-from separatrix.study import CageDesign, ClearanceState, Guidance, Material
-from separatrix.study_file import read_study
-from separatrix.study_numbers import with_values
+from separatrix.study.ball_bearing import Expansion
+from separatrix.study.distribution import Uniform
+from separatrix.study.keys import with_values
+from separatrix.study.reading import read_study
+from separatrix.study.study import CageDesign, ClearanceState, Guidance, Material
+from separatrix.verdict.draws import sample
 
 STUDY = read_study("cryogenic-turbopump")
 BEARING = STUDY.bearing

@@ -7,7 +7,7 @@ import pytest
 from cages import BEARING
 
 from separatrix.chain.creep import Creep, contact_creep, deformed_radius
-from separatrix.study import Race
+from separatrix.study.study import Race
 
 ANGLE = radians(30.0)
 

@@ -9,16 +9,16 @@ from cages import with_distributions
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.disturbance import settings_for
 from separatrix.chain.solution import solve
-from separatrix.distribution import Normal, Samples, Uniform
-from separatrix.draws import sample
 from separatrix.ranking.drawn import Case, drawn_bearings
 from separatrix.ranking.rank import rank
-from separatrix.runner import Runner
-from separatrix.study import Candidate, Friction
-from separatrix.study_file import read_study
+from separatrix.study.distribution import Normal, Samples, Uniform
+from separatrix.study.reading import read_study
+from separatrix.study.study import Candidate, Friction
+from separatrix.verdict.draws import sample
 from separatrix.verdict.judgement import Verdict, judge
+from separatrix.verdict.long_jobs import Runner
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 
 PLACE = "liquid nitrogen, 440C"
 CASE = Case("A", PLACE)

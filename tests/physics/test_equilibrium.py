@@ -10,8 +10,8 @@ from scipy.optimize import root
 
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.hertz import contact_ellipse, contact_modulus, race_curvatures
-from separatrix.study import BallBearing, KinematicModel, Material, Operation, Race
-from separatrix.units import Array
+from separatrix.ground.units import Array
+from separatrix.study.study import BallBearing, KinematicModel, Material, Operation, Race
 
 OUTER, INNER, FREE = (
     KinematicModel.OUTER_RACE_CONTROL,

@@ -11,8 +11,8 @@ from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
 from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
 from separatrix.chain.equilibrium.problem import problem
-from separatrix.study import KinematicModel, Operation, Race
-from separatrix.units import Array
+from separatrix.ground.units import Array
+from separatrix.study.study import KinematicModel, Operation, Race
 
 RPM = 2.0 * math.pi / 60.0
 

@@ -21,7 +21,7 @@ from separatrix.chain.traction.exact.images import (
     pair_images,
 )
 from separatrix.chain.traction.layer import BondedLayer, surface_compliance
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 
 SOFT = body(0.3, (0.01, 0.46, 0.1))
 PLAIN = ((0, 1.0),)

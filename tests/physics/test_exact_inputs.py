@@ -27,7 +27,7 @@ from separatrix.chain.traction.exact import (
 )
 from separatrix.chain.traction.exact.cases import rolling_cases
 from separatrix.chain.traction.exact.grid import cell_counts
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 
 STEEL = Body(base=solid(200e9, 0.3))
 ELLIPSE = contact_ellipse(100.0, 180.0, 15.0, 110e9)
@@ -202,7 +202,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # 0 x inf where a spin of inf meets y = 0
 @pytest.mark.parametrize(("wrong", "says"), REFUSED, ids=map(str, range(len(REFUSED))))
 def test_refused(wrong, says):

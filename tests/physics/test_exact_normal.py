@@ -14,7 +14,7 @@ from separatrix.chain.traction.exact.flexibility import flexibility, half_space_
 from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure, pressed_grid, row_ends
 from separatrix.chain.traction.exact.images import pair_images
 from separatrix.chain.traction.exact.normal import film_strain, press, pressed_box, pressed_contact
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 
 RIGID = body(0.3, G=1e9)
 

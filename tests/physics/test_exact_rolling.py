@@ -24,7 +24,7 @@ from separatrix.chain.traction.exact.contact import (
 from separatrix.chain.traction.exact.grid import elliptic_grid, end_normals
 from separatrix.chain.traction.exact.newton import settle
 from separatrix.chain.traction.exact.operator import ROLLING
-from separatrix.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
 
 BARE = (body(0.25), body(0.25))
 

@@ -9,7 +9,7 @@ from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.traction.exact import ContactProblem, FrictionLaw, rolling_contact, solve_two_way
 from separatrix.chain.traction.exact import two_way as module
 from separatrix.chain.traction.exact.flexibility import half_space_flexibility
-from separatrix.errors import ConvergenceError, InputError
+from separatrix.ground.errors import ConvergenceError, InputError
 
 BALL, TRACK = body(0.1), body(0.1, G=20.0)
 SUM = (half_space_flexibility(BALL.base) + half_space_flexibility(TRACK.base))[1]  # 2/E*

@@ -18,8 +18,8 @@ from separatrix.cage.motion import ball_rates
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import LANES, RACE_ROWS
 from separatrix.chain.solution import solve
-from separatrix.study import BallModel
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import BallModel
 
 M, RADIUS, ORBIT, SPEED, Q, MU = 2.029805e-3, 3.969e-3, 19.25e-3, 50_000 * math.pi / 30.0, 600.0, 0.1
 V, J = SPEED * (ORBIT - RADIUS), 0.4 * M * RADIUS**2
@@ -81,7 +81,7 @@ def field_slopes(race, side):
     return np.stack([(forces(*(at + d)) - forces(*(at - d))) / 2e-5 for d in 1e-5 * np.eye(3)], axis=1)
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize(
     ("study", "error"), [("cryogenic-turbopump", 0.02), ("lox-turbopump", 0.07), ("momentum-wheel", 0.13)]
 )

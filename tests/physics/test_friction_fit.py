@@ -16,7 +16,7 @@ from separatrix.friction.law import StatedFriction
 from separatrix.friction.scatter import LinearModel, conditional, variance_components
 from separatrix.ranking.records import lowest_among, lowest_of, may_be_lower
 from separatrix.ranking.records import measured as measured_mean
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
 
 ENVIRONMENT = "liquid nitrogen, 440C"
 

@@ -18,8 +18,8 @@ from separatrix.chain.hertz import (
     elliptic_integrals,
     race_curvatures,
 )
-from separatrix.errors import InputError
-from separatrix.study import Material, Race
+from separatrix.ground.errors import InputError
+from separatrix.study.study import Material, Race
 
 NITRIDE = Material(name="nitride", elastic_modulus=310e9, poisson_ratio=0.27, density=3210.0)
 ROUNDING = 1e-12  # some thousand operations in double precision

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
-from separatrix.ball_traction import BallTraction
+from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.contacts import bearing_state, race_tracks
 from separatrix.chain.mobility import Impacts, SlipLaw, closure, held_ball, impacts, mobility
 from separatrix.chain.mobility.field import balanced, groove, pitch_angle, pocket_friction_effect
@@ -24,9 +24,9 @@ from separatrix.chain.mobility.law import fitted_law
 from separatrix.chain.mobility.modes import mobility_at, modes, step_damping
 from separatrix.chain.mobility.push import pushed
 from separatrix.chain.race_curve import race_slope
-from separatrix.errors import InputError
-from separatrix.study import KinematicModel, TractionModel, TractionSettings
-from separatrix.units import Array
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array
+from separatrix.study.study import KinematicModel, TractionModel, TractionSettings
 
 
 @pytest.mark.parametrize(
@@ -321,7 +321,7 @@ def test_impacts_are_a_record_of_the_same():
 # The slip law, and which ball.
 
 
-@pytest.mark.filterwarnings("ignore:the film is compressed:separatrix.errors.ValidityWarning")
+@pytest.mark.filterwarnings("ignore:the film is compressed:separatrix.ground.errors.ValidityWarning")
 def test_elastic_creep_meets_the_spin_moment_of_the_exact_contact():
     """At the same spin the outer pivoting moment is met within 1 % by elastic creep; rigid, it is 4 % off."""
     asked = study_of("cryo")

@@ -9,15 +9,15 @@ from cages import AT_REST, ON_A_LAND, TURNING, damping_of, follow
 from random_cages import random_cage
 from space_program import SmallSteps
 
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage, RunOutcome, outcome, run_ensemble, simulate
 from separatrix.cage.disturbance import ball_places, random_starts, start_states
 from separatrix.cage.ensemble import Stop, run_rows
 from separatrix.cage.motion import rates
 from separatrix.cage.numbers import look_time, numbers_of
 from separatrix.cage.rows import LANES, VX, VY
-from separatrix.compiled import inlined
-from separatrix.study import Guidance, MotionModel, PocketShape, StabilitySettings
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.ground.compiled import inlined
+from separatrix.study.study import Guidance, MotionModel, PocketShape, StabilitySettings
 
 LAW = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)
 SPIN = {"ball_spin": (-4083.2, 1942.6, -3.5), "ball_diameter": 11.1125e-3}

@@ -19,8 +19,8 @@ from separatrix.chain.race_curve import (
 )
 from separatrix.chain.solution import solve
 from separatrix.chain.traction import exact
-from separatrix.errors import InputError
-from separatrix.study import (
+from separatrix.ground.errors import InputError
+from separatrix.study.study import (
     CageDesign,
     ContactPressure,
     Film,
@@ -34,7 +34,7 @@ from separatrix.study import (
     Wear,
 )
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 
 POINT = Operation(inner_speed=1570.8, axial_load=3000.0)
 PTFE = Material(name="PTFE", elastic_modulus=4e9, poisson_ratio=0.38)

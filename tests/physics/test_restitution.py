@@ -21,8 +21,8 @@ from separatrix.chain.restitution import (
     race_damping_free_spin,
     restitution_factor,
 )
-from separatrix.errors import InputError
-from separatrix.study import Material
+from separatrix.ground.errors import InputError
+from separatrix.study.study import Material
 
 MASS, STIFFNESS = 0.05, 3e6
 DIAMETER = BEARING.ball_diameter

@@ -13,9 +13,9 @@ from separatrix.limits.curve import curve_of_points, restitution_threshold, stab
 from separatrix.limits.point import critical_friction, linear_limit
 from separatrix.limits.response import GrowthCounter, cage_at
 from separatrix.present.text.sentences import drift_sentence
-from separatrix.runner import PART, Interrupted, Runner
-from separatrix.study import Guidance, StabilitySettings
+from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.judgement import judge, wilson_interval
+from separatrix.verdict.long_jobs import PART, Interrupted, Runner
 
 SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration=0.1, seed=3)
 

@@ -13,12 +13,12 @@ from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.chain.solution import solve
 from separatrix.limits.response import cage_at
-from separatrix.study import Guidance, StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 
 RUNS, DURATION = 8, 0.1
 KICKS = (0.1, 0.5, 2.0, 4.0)

@@ -18,8 +18,8 @@ from separatrix.chain.traction import (
     traction_slope,
     worn_band,
 )
-from separatrix.errors import InputError
-from separatrix.study import Film, Material, Race, Wear, Worn
+from separatrix.ground.errors import InputError
+from separatrix.study.study import Film, Material, Race, Wear, Worn
 
 SOFT = Material(name="soft film", elastic_modulus=1.5e9, poisson_ratio=0.4)
 FILM = Film(race_friction=0.1, material=SOFT, thickness=3e-6)

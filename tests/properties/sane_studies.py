@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.study import Study
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import Study
 
 LOADS = ("axial", "radial", "combined", "moment")
 MOST_SPEED = 60_000.0

@@ -9,10 +9,10 @@ import pytest
 from sane_studies import bearing_study
 
 from separatrix.chain.equilibrium import Equilibrium, equilibrium
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import BallBearing, KinematicModel, Material, Operation
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 
 
 def solved(seed: int, folder: Path) -> Equilibrium:

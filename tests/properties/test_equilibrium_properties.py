@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from separatrix.chain.equilibrium import Equilibrium, equilibrium
-from separatrix.study import BallBearing, KinematicModel, Operation
+from separatrix.study.study import BallBearing, KinematicModel, Operation
 
 bearings = st.builds(
     BallBearing,

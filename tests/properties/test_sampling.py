@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
 
-from separatrix.distribution import Normal, Samples, Uniform
-from separatrix.draws import next_cage_deviation, sample, sobol_points, uncertain_inputs
-from separatrix.errors import InputError
 from separatrix.friction.fit import TestedFriction
-from separatrix.study import Candidate, Friction, RankingQuestion
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.distribution import Normal, Samples, Uniform
+from separatrix.study.reading import read_study
+from separatrix.study.study import Candidate, Friction, RankingQuestion
+from separatrix.verdict.draws import next_cage_deviation, sample, sobol_points, uncertain_inputs
 
 BASE = read_study("cryogenic-turbopump")
 LAWS = {

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from separatrix.errors import InputError
-from separatrix.study_file import read_study, resolved, shipped_studies
-from separatrix.units import UNITS, format_quantity, parse
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import UNITS, format_quantity, parse
+from separatrix.study.reading import read_study, resolved, shipped_studies
 
 seeded = settings(derandomize=True, deadline=None, max_examples=60)
 in_a_folder = settings(seeded, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -12,7 +12,7 @@ import pytest
 
 from separatrix.app.worker import work
 from separatrix.cli import main
-from separatrix.ledger import NAME
+from separatrix.verdict.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 """The real command, as a process is started with."""

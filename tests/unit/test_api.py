@@ -12,10 +12,10 @@ import pytest
 import separatrix
 from separatrix import api
 from separatrix.cli import main
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.runner import Interrupted
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.verdict.long_jobs import Interrupted
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 
 SMALL = """
 extends = "momentum-wheel"

@@ -11,10 +11,10 @@ from separatrix.app import draft
 from separatrix.app.editing import edited_by
 from separatrix.app.form import form
 from separatrix.app.server import application
-from separatrix.errors import InputError
-from separatrix.study_file import read_study, shipped_studies, template
-from separatrix.study_file.templates import template_keys
-from separatrix.study_file.values import READERS
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study, shipped_studies, template
+from separatrix.study.reading.templates import template_keys
+from separatrix.study.reading.values import READERS
 
 COMMENTED = """# a study
 title = "One"   # its name

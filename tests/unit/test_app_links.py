@@ -9,8 +9,8 @@ from test_cli_answers import SMALL
 
 from separatrix.app.server import application
 from separatrix.app.worker import Task, _answered
-from separatrix.errors import InputError
-from separatrix.ledger import NAME
+from separatrix.ground.errors import InputError
+from separatrix.verdict.ledger import NAME
 
 NEIGHBOUR = "the study of a neighbour"
 ANSWER = {

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from commands import document, refused
 
-from separatrix.ball_traction import BallTraction
 from separatrix.cage import MovingCage, RunOutcome, moving_cage, run_ensemble, settings_for
-from separatrix.cage_body import cage_inertia, ring_body
+from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.solution import solve
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 from separatrix.limits.response import cage_at
-from separatrix.runner import Runner
-from separatrix.study import (
+from separatrix.study.cage_body import cage_inertia, ring_body
+from separatrix.study.reading import read_study
+from separatrix.study.study import (
     BallModel,
     MotionModel,
     PocketContact,
@@ -22,7 +22,7 @@ from separatrix.study import (
     StabilitySettings,
     with_models,
 )
-from separatrix.study_file import read_study
+from separatrix.verdict.long_jobs import Runner
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
 
@@ -180,7 +180,7 @@ def test_forces_of_a_law():
 
 def test_runs_in_space_are_kept_and_joined(tmp_path):
     """An ensemble in space goes through the ledger unchanged."""
-    from separatrix.ledger import Ledger
+    from separatrix.verdict.ledger import Ledger
 
     solution = solve(shipped(motion=MotionModel.SPACE))
     cage = moving_cage(solution, 0.1)

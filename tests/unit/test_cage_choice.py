@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.cage_choice import other_than_candidates, require_friction, required_environment
 from separatrix.chain.solution import solve
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.study.candidates import other_than_candidates, require_friction, required_environment
+from separatrix.study.reading import read_study
 
 OTHERS = """extends = "cryogenic-turbopump"
 [cage]

@@ -6,14 +6,15 @@ import pytest
 
 from separatrix.answers import OfCage
 from separatrix.cage import MovingCage, moving_cage, settings_for
-from separatrix.cage_choice import require_friction
 from separatrix.chain.restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.chain.solution import solve
-from separatrix.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.present import plain
 from separatrix.present.shapes import shape
 from separatrix.present.text.chain import basis
-from separatrix.study import (
+from separatrix.study.candidates import require_friction
+from separatrix.study.reading import read_study
+from separatrix.study.study import (
     Candidate,
     Film,
     Friction,
@@ -24,7 +25,6 @@ from separatrix.study import (
     PocketShape,
     StabilitySettings,
 )
-from separatrix.study_file import read_study
 
 STUDY = read_study("cryogenic-turbopump")
 POLYMER = Material(name="polymer", elastic_modulus=5e9, poisson_ratio=0.4)

@@ -12,8 +12,8 @@ from matplotlib import image
 
 from separatrix import figures, present
 from separatrix.cli import main
-from separatrix.ledger import NAME
 from separatrix.questions import VERBS
+from separatrix.verdict.ledger import NAME
 
 SMALL = """
 extends = "cryogenic-turbopump"

@@ -15,9 +15,9 @@ from commands import COMMAND, document, pieces, refused
 from separatrix import present
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.explore.cases import read_axis
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 

@@ -8,7 +8,7 @@ import pytest
 
 import separatrix
 from separatrix.cli import main
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 
 OURS = """\
 title = "Our lab"

@@ -20,10 +20,10 @@ from pypdf import PdfReader
 
 from separatrix import api, present, saving, verbs
 from separatrix.cli import main
-from separatrix.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.reporting.content import answers, read_document
 from separatrix.reporting.record import Kept
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
 
 HOSTILE = "<script>alert(1)</script> $x$ #strong[x]"
 CANDIDATE = '</td><img src="http://x.y"> $x$ #emph[a]'

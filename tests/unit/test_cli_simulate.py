@@ -198,7 +198,7 @@ def test_the_text_has_the_outcome_first_and_fits_a_screen(answered):
 def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_the_races(folder):
     """Its frequency and speed in the document and in the text; no digits of a force that no ball can take."""
     (folder / "whirl.toml").write_text(SMALL.replace("= 0.1", "= 0.6"))
-    with pytest.warns(separatrix.errors.ValidityWarning):
+    with pytest.warns(separatrix.ground.errors.ValidityWarning):
         answer = separatrix.simulate(folder / "whirl.toml", kick=2.0)
     found, text = answer.document(), words(answer.summary())
     assert found["outcome"] == "WHIRLS"
@@ -219,7 +219,7 @@ def test_a_cage_on_its_land_is_told_to_rub_there(folder):
     assert re.search(said, words(found.summary()))
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")
+@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):
     """A wall that ends 0.2 mm from the balls' equator, and a strong kick: the run decides nothing."""
     walls = '[cage]\ninner_diameter = "64.6 mm"\nouter_diameter = "75 mm"\nwidth = "14 mm"'
@@ -344,7 +344,7 @@ def test_a_saved_run_of_numbers_that_cannot_be_drawn_is_refused(folder, capsys, 
     said = "must have finite numbers below 1e+30 in position"
     for value in (np.inf, 1e300, np.nan):
         data["position"][:] = value
-        with pytest.raises(separatrix.errors.InputError, match=re.escape(said)):
+        with pytest.raises(separatrix.ground.errors.InputError, match=re.escape(said)):
             list(pictures(replace(usual, data=data), usual))
     present.save(data, tmp_path / "odd.nc")
     assert main(["compare", str(tmp_path / "odd.nc"), str(folder / "small" / "simulate.nc")]) == 2

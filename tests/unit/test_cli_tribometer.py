@@ -14,7 +14,7 @@ from separatrix.cli import main
 from separatrix.cli.without_bearing import file_name
 from separatrix.friction.file import read_friction
 from separatrix.friction.logs.column_map import column_map
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
 
 MAP = """
 [test]

@@ -7,14 +7,14 @@ from dataclasses import replace
 import distributed
 import pytest
 
-from separatrix import cluster as clusters
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.cluster import cluster
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 from separatrix.limits.curve import stability_curve
-from separatrix.runner import Runner
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.verdict import cluster as clusters
+from separatrix.verdict.cluster import cluster
+from separatrix.verdict.long_jobs import Runner
 
 STUDY = read_study("momentum-wheel")
 CAGE = moving_cage(solve(STUDY), 0.0)

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import separatrix
-from separatrix import compiled
-from separatrix.compiled import UNUSED, cache_folder, kernel_sources, source_stamp
+from separatrix.ground import compiled
+from separatrix.ground.compiled import UNUSED, cache_folder, kernel_sources, source_stamp
 
 PACKAGE = Path(separatrix.__file__).parent
 
@@ -29,7 +29,7 @@ print(json.dumps([values, hits, misses]))
 
 READS_A_CONSTANT = """
 from separatrix.cage.rows import LANES
-from separatrix.compiled import kernel
+from separatrix.ground.compiled import kernel
 
 
 @kernel
@@ -84,12 +84,12 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
     """Another constant in an imported file, however it is imported, is another stamp; a report's is not."""
     package = _package(
         tmp_path / "pack",
-        deep__a=f"from pack.compiled import kernel\n{line}\n",
+        deep__a=f"from pack.ground.compiled import kernel\n{line}\n",
         middle="from pack.slots import FORCE\n",
         slots="FORCE = 1\n",
         other="",
         report="from pack.deep.a import run\n",
-        compiled="",
+        ground__compiled="",
     )
     stamp = source_stamp(package)
     (package / "report.py").write_text("WIDTH = 2\n")
@@ -101,7 +101,8 @@ def test_a_change_in_any_file_that_a_kernel_can_see_is_seen(tmp_path, line):
 def test_the_cage_and_the_study_are_sources_of_kernels_and_a_report_is_not():
     """What the files of today come to."""
     found = {str(path.relative_to(PACKAGE)) for path in kernel_sources(PACKAGE)}
-    assert {"cage/rows.py", "cage/moving_cage.py", "study.py", "chain/hertz.py", "compiled.py"} <= found
+    known = {"cage/rows.py", "cage/moving_cage.py", "study/study.py", "chain/hertz.py", "ground/compiled.py"}
+    assert known <= found
     assert not any(name.startswith(("report", "figures", "cli", "results")) for name in found)
 
 
@@ -144,7 +145,7 @@ def test_code_that_was_compiled_from_other_sources_is_not_used(tmp_path):
     assert value_hits_misses() == [16, 1, 0]
     edit("cage/rows.py", "LANES = 16", "LANES = 32")
     assert value_hits_misses() == [32, 0, 1]
-    (package / "study.py").write_text((package / "study.py").read_text() + "\nADDED = 1\n")
+    (package / "study/study.py").write_text((package / "study/study.py").read_text() + "\nADDED = 1\n")
     assert value_hits_misses() == [32, 0, 1]
 
 

@@ -19,11 +19,11 @@ import pytest
 
 from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
-from separatrix.compiled import part
-from separatrix.compiling import COMPILING
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.messages import noted_warnings
-from separatrix.staged import staged, writable_folder
+from separatrix.ground.compiled import part
+from separatrix.ground.compiling import COMPILING
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.messages import noted_warnings
+from separatrix.ground.staged import staged, writable_folder
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
@@ -217,7 +217,7 @@ def write_half(folder: Path) -> None:
 
 KILLED = """
 import os, pathlib, signal, sys
-from separatrix.staged import staged
+from separatrix.ground.staged import staged
 with staged(pathlib.Path(sys.argv[1])) as stage:
     (stage / "half").write_text("written")
     print(stage.name, flush=True)

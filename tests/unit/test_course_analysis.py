@@ -10,7 +10,7 @@ import pytest
 from separatrix.cage import Cause, History, MovingCage, RunOutcome, analyse
 from separatrix.cage.course import SOURCES, ball_set_speed, phase_of
 from separatrix.cage.numbers import look_time
-from separatrix.study import Guidance, MotionModel
+from separatrix.study.study import Guidance, MotionModel
 
 OMEGA, BALLS, RADIUS = 600.0, 5, 0.03
 TIME = np.linspace(0.0, 0.2, 8001)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from separatrix.distribution import (
+from separatrix.ground.errors import InputError
+from separatrix.study.distribution import (
     CUT,
     LogNormal,
     LogUniform,
@@ -16,7 +17,6 @@ from separatrix.distribution import (
     described,
     positive_alternative,
 )
-from separatrix.errors import InputError
 
 POINTS = (np.arange(2**16) + 0.5) / 2**16
 """Midpoints: the mean of a function of them is its integral, to 1e-9 for what is smooth inside."""

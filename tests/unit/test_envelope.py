@@ -16,17 +16,17 @@ from separatrix.app.plotly import spec
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.explore.sweep import duty, orders, sweep, time_shares, worst_case
 from separatrix.figures import draw
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
+from separatrix.ground.errors import InputError
 from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
 from separatrix.present import dataset, load
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import Kept
-from separatrix.runner import Runner
-from separatrix.study import ClearanceState
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import ClearanceState
+from separatrix.verdict.long_jobs import Runner
 
 STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.004))

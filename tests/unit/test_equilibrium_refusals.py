@@ -9,8 +9,8 @@ from cages import BEARING as TURBOPUMP
 from cages import STEEL_218
 
 from separatrix.chain.equilibrium import equilibrium
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import KinematicModel, Operation
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.study.study import KinematicModel, Operation
 
 STEEL = dataclasses.replace(STEEL_218, elastic_modulus=206e9)
 BEARING = dataclasses.replace(TURBOPUMP, outer_conformity=0.52, ball_material=STEEL, ring_material=STEEL)

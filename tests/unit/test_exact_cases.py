@@ -11,7 +11,7 @@ import pytest
 import separatrix
 from separatrix import ContactCase, ContactMotion, ContactQuestion, ContactSetup
 from separatrix.chain.traction.exact import cases as module
-from separatrix.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
 
 STEEL = separatrix.Body(base=separatrix.solid(200e9, 0.285))
 MODULUS = 200e9 / (1.0 - 0.285**2) / 2.0

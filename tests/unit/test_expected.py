@@ -9,8 +9,8 @@ from separatrix.cage import moving_cage
 from separatrix.cage.rows import LANES
 from separatrix.chain.solution import solve
 from separatrix.explore import expected
-from separatrix.study import StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import StabilitySettings
 
 STUDY = read_study("cryogenic-turbopump")
 SETTINGS = StabilitySettings(kicks=(0.1, 0.5), reference_kick=0.5, runs=64)

@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 
 import separatrix
 from separatrix import figures
-from separatrix.errors import InputError
 from separatrix.figures.chain import signed
 from separatrix.figures.envelope import sweep
 from separatrix.figures.ranking import file_name, overview, rank_texts, text_order
@@ -27,6 +26,7 @@ from separatrix.figures.style import (
     settled,
     spread,
 )
+from separatrix.ground.errors import InputError
 
 
 def test_labels_keep_their_distance_and_order():

@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from PIL import Image
 from scipy.integrate import quad
 
-from separatrix.errors import InputError
 from separatrix.figures import animation, motion, view
 from separatrix.figures.animation import animate
 from separatrix.figures.motion import A_TURN, MOST_FRAMES, frame_moments
+from separatrix.ground.errors import InputError
 
 SMALL, LONG = drawn.run(samples=4), drawn.run(samples=5000)
 SPACE = drawn.run(samples=4, space=True, cage_land_count=2, cage_land_spacing=1e-2)

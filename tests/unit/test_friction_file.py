@@ -14,11 +14,11 @@ import pytest
 from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.friction.file import FrictionTest, friction_text, read_friction
 from separatrix.friction.fit import TestedFriction
-from separatrix.study import Friction, Operation
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
+from separatrix.study.study import Friction, Operation
 
 SMALL = """
 [[test]]
@@ -197,7 +197,8 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
     assert solve(given).friction.mean == 0.1
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")  # not tested as the pocket rubs
+# Not tested as the pocket rubs.
+@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize("verb", [["stability"], ["simulate"], ["rank"], ["sensitivity", "--samples", "64"]])
 def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsys, monkeypatch, verb):
     """That at 5 m/s, as above, in the cage that stands in its answer."""
@@ -278,7 +279,7 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
     """The resolved study repeats the tests whole, in SI, so that the file may change afterwards."""
-    from separatrix.study_file import resolved
+    from separatrix.study.reading import resolved
 
     found = resolved(read_study(study(tmp_path)))["ranking"]
     (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
@@ -290,7 +291,7 @@ def test_a_result_holds_every_test_behind_a_friction(tmp_path):
 
 def test_a_result_holds_the_tests_of_materials_that_are_not_ranked(tmp_path):
     """The scatter is pooled over them too."""
-    from separatrix.study_file import resolved
+    from separatrix.study.reading import resolved
 
     found = resolved(read_study(study(tmp_path, ranking='materials = ["My compound"]')))["ranking"]
     assert [test["material"] for test in found["other_tests"]] == ["Armalon"]

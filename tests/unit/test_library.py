@@ -6,13 +6,13 @@ from importlib.resources import files
 
 import pytest
 
-from separatrix import library
-from separatrix.errors import DataError, InputError, ValidityWarning
-from separatrix.library import SHIPPED_FILES, Library
-from separatrix.library.records import Datum, choose, contradictions
-from separatrix.study_file import read_study, resolved
+from separatrix.ground.errors import DataError, InputError, ValidityWarning
+from separatrix.study import library
+from separatrix.study.library import SHIPPED_FILES, Library
+from separatrix.study.library.records import Datum, choose, contradictions
+from separatrix.study.reading import read_study, resolved
 
-DATA = files("separatrix.library") / "data"
+DATA = files("separatrix.study.library") / "data"
 LIBRARY = Library()
 SOLIDS = ("bearing material", "cage material", "film")
 
@@ -374,7 +374,7 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
     """The documentation of the contract is complete."""
     from pathlib import Path
 
-    from separatrix.library import reading, records
+    from separatrix.study.library import reading, records
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]

@@ -9,8 +9,8 @@ import pytest
 import separatrix
 from separatrix import api, figures
 from separatrix.cli import main
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.study import Wear, Worn
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.study.study import Wear, Worn
 
 
 def test_a_study_without_a_cage_has_no_impacts():

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from separatrix.cage import MovingCage
-from separatrix.errors import InputError
-from separatrix.study import Guidance, PocketShape
+from separatrix.ground.errors import InputError
+from separatrix.study.study import Guidance, PocketShape
 
 CAGE = MovingCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=670.0,

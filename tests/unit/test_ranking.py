@@ -10,9 +10,7 @@ import pytest
 from separatrix.cage import moving_cage
 from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
-from separatrix.draws import Case
-from separatrix.errors import InputError
-from separatrix.ledger import NAME, Ledger
+from separatrix.ground.errors import InputError
 from separatrix.limits.curve import RestitutionThreshold
 from separatrix.ranking.rank import _row, rank
 from separatrix.ranking.reason import Pocket, disagreement, reason
@@ -29,10 +27,19 @@ from separatrix.ranking.records import (
     ranks,
     same_rank,
 )
-from separatrix.runner import Interrupted, Runner
-from separatrix.study import BallModel, Candidate, Friction, Material, RankingQuestion, StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import (
+    BallModel,
+    Candidate,
+    Friction,
+    Material,
+    RankingQuestion,
+    StabilitySettings,
+)
+from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement, Verdict, judge
+from separatrix.verdict.ledger import NAME, Ledger
+from separatrix.verdict.long_jobs import Interrupted, Runner
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.which_ball import transmitted_force
 

@@ -21,8 +21,8 @@ SMALL = replace(
     stability=replace(FULL.stability, runs=1, duration=0.01, kicks=(0.5,), restitution_factors=(0.3, 0.6)),
     ranking=replace(FULL.ranking, candidates=FULL.ranking.candidates[:2]),
 )
-IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.MotionModel.SPACE))
-WORN = replace(SMALL, film=replace(SMALL.film, wear=separatrix.study.Wear(friction=0.3, share=0.2)))
+IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.study.MotionModel.SPACE))
+WORN = replace(SMALL, film=replace(SMALL.film, wear=separatrix.study.study.Wear(friction=0.3, share=0.2)))
 
 ASKED = {
     "check": lambda: separatrix.check(SMALL),

@@ -6,10 +6,10 @@ import pytest
 
 import separatrix
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.friction.logs.binary import tdms_tables
-from separatrix.input_files import size_of
-from separatrix.workbook_files import refuse_unsafe
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import size_of
+from separatrix.ground.sheet import refuse_unsafe
 
 LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))
 CALLS = {

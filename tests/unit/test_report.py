@@ -14,8 +14,8 @@ from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
 from separatrix.present.text.sentences import verdict_sentences
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
-from separatrix.study import BallModel, MotionModel
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import BallModel, MotionModel
 from separatrix.verdict.judgement import Judgement, KickCount, Verdict
 from separatrix.verdict.reasons import CageMotion
 

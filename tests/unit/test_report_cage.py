@@ -5,8 +5,8 @@ from dataclasses import replace
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.present.text.cage import clearance_fact
-from separatrix.study import Guidance
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import Guidance
 
 
 def test_the_offset_is_compared_with_land_and_pockets():

@@ -7,12 +7,12 @@ import pytest
 
 import separatrix
 from separatrix import verbs
-from separatrix.errors import ValidityWarning
+from separatrix.ground.errors import ValidityWarning
 from separatrix.present.text.sentences import verdict_sentences
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.record import Facts, Kept, Paragraph, Table
 from separatrix.reporting.stages import bearing_and_cage
-from separatrix.study import ClearanceState
+from separatrix.study.study import ClearanceState
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 HERE = {"restitution_factor": 0.769, "critical_friction": 0.104, "scatter_low": 0.0865, "scatter_high": 0.144}

@@ -7,7 +7,7 @@ import pytest
 import separatrix
 from separatrix.reporting.evidence import evidence
 from separatrix.reporting.record import Kept, Table
-from separatrix.study import MotionModel
+from separatrix.study.study import MotionModel
 
 WHEEL = separatrix.read_study("momentum-wheel")
 

@@ -14,11 +14,11 @@ import pytest
 from commands import document, refused
 
 import separatrix
-from separatrix import input_files
 from separatrix.cli import main
-from separatrix.study import with_models
-from separatrix.study_file import provenance, provenance_of, read_study
-from separatrix.study_file.templates import template_workbook
+from separatrix.ground import input_files
+from separatrix.study.reading import provenance, provenance_of, read_study
+from separatrix.study.reading.templates import template_workbook
+from separatrix.study.study import with_models
 
 FEW = "[stability]\nruns = 2\nduration = '5 ms'\nkicks = ['0.5 m/s']\nrestitution_factors = [0.3]\n"
 BASE = "extends = 'cryogenic-turbopump'\ntitle = 'Base \u00b5'\n"
@@ -61,7 +61,7 @@ def home(folder: Path) -> Path:
     own, far = folder / "own", folder / "far" / "shared"
     (own / "sub").mkdir(parents=True)
     far.mkdir(parents=True)
-    library = Path(separatrix.__file__).parent / "library/data/cage_materials.toml"
+    library = Path(separatrix.__file__).parent / "study/library/data/cage_materials.toml"
     text = library.read_text(encoding="utf-8").replace("Armalon", "Compound X")
     rest = text.partition('[cage_material."Compound X"]')[2]
     (far / "mine.toml").write_text(f'[cage_material."Compound X"]{rest.partition("[cage_material.")[0]}')

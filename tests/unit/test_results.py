@@ -12,14 +12,14 @@ import pytest
 
 from separatrix import answers
 from separatrix.chain.solution import solve
-from separatrix.errors import InputError
 from separatrix.explore import sweep
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Newton, Ratio, Rows
 from separatrix.present import NotFiniteError, dataset, document, load, plain, save, to_dataframe, to_xarray
 from separatrix.present.nodes import field_units
 from separatrix.ranking.records import NotMeasured, Ranked
-from separatrix.study import Guidance
-from separatrix.study_file import read_study
-from separatrix.units import Newton, Ratio, Rows
+from separatrix.study.reading import read_study
+from separatrix.study.study import Guidance
 
 STUDY = read_study("cryogenic-turbopump")
 

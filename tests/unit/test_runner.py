@@ -21,12 +21,12 @@ from separatrix.cage import Ensemble, moving_cage, run_ensemble, settings_for
 from separatrix.cage.ensemble import Runs, follow_alike
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError
-from separatrix.ledger import NAME, Ledger, key_of
+from separatrix.ground.errors import InputError
 from separatrix.limits.curve import stability_curve
-from separatrix.runner import PART, Interrupted, Runner, joined
-from separatrix.study import MotionModel, PocketShape
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import MotionModel, PocketShape
+from separatrix.verdict.ledger import NAME, Ledger, key_of
+from separatrix.verdict.long_jobs import PART, Interrupted, Runner, joined
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)
@@ -185,7 +185,7 @@ def test_runs_of_many_places_go_side_by_side_with_the_same_bits(monkeypatch):
         batches.append(len(pieces))
         return follow_alike(kind, pieces, stop)
 
-    monkeypatch.setattr("separatrix.side_by_side.follow_alike", follow)
+    monkeypatch.setattr("separatrix.verdict.side_by_side.follow_alike", follow)
     cages = [replace(CAGE, ball_cage_friction=0.05 * i) for i in range(6)]
     cages += [replace(one, cage_speed=-one.cage_speed, inner_speed=-one.inner_speed) for one in cages]
 
@@ -217,7 +217,7 @@ def test_a_fault_in_the_engine_is_raised_where_the_runs_were_asked_for(monkeypat
     def fails(*_):
         raise MemoryError
 
-    monkeypatch.setattr("separatrix.side_by_side.follow_alike", fails)
+    monkeypatch.setattr("separatrix.verdict.side_by_side.follow_alike", fails)
     runner = Runner(jobs=2)
     with pytest.raises(MemoryError):
         runner.work_out(lambda n: runner.ensemble(CAGE, QUICK, kicks=(0.5,), runs=n), [1, 2, 3], into=dict)

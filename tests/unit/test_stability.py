@@ -7,10 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from separatrix import runner
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.solution import solve
-from separatrix.errors import ValidityWarning
+from separatrix.ground.errors import ValidityWarning
 from separatrix.limits.curve import (
     COARSE,
     FINEST,
@@ -33,9 +32,10 @@ from separatrix.limits.response import (
     with_damping,
 )
 from separatrix.present.text.stability import curve
-from separatrix.runner import Runner
-from separatrix.study import BallModel, StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import BallModel, StabilitySettings
+from separatrix.verdict import long_jobs as runner
+from separatrix.verdict.long_jobs import Runner
 
 SHIPPED = solve(read_study("cryogenic-turbopump"))
 CAGE = moving_cage(SHIPPED, 0.1)

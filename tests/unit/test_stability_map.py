@@ -11,8 +11,7 @@ import pytest
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drifts
 from separatrix.chain.solution import solve
-from separatrix.errors import InputError
-from separatrix.ledger import NAME, Ledger
+from separatrix.ground.errors import InputError
 from separatrix.limits.map import (
     AGREED,
     PointFinder,
@@ -37,10 +36,11 @@ from separatrix.limits.map_fill import (
 )
 from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion, parameters, side, value_in, varied
 from separatrix.limits.response import cage_at
-from separatrix.runner import Interrupted, Runner
-from separatrix.study import Guidance, MotionModel, PocketShape, Wear
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import Guidance, MotionModel, PocketShape, Wear
 from separatrix.verdict.judgement import Verdict, is_calm, judge, wilson_interval
+from separatrix.verdict.ledger import NAME, Ledger
+from separatrix.verdict.long_jobs import Interrupted, Runner
 
 KICKS = MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))
 

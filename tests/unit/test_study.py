@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.study import (
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.units import UNITS
+from separatrix.study.reading import read_study, resolved, shipped_studies, template
+from separatrix.study.study import (
     BallBearing,
     CageDesign,
     Candidate,
@@ -23,8 +25,6 @@ from separatrix.study import (
     Study,
     evenly_spaced,
 )
-from separatrix.study_file import read_study, resolved, shipped_studies, template
-from separatrix.units import UNITS
 
 STEEL = Material(name="steel", elastic_modulus=2e11, poisson_ratio=0.3, density=7800.0)
 
@@ -492,7 +492,7 @@ def test_a_study_built_in_python_resolves_too():
 
 def test_every_unit_of_a_record_can_be_read_from_text():
     """The reader takes the unit of a key from the type of its field; each has its table."""
-    from separatrix.units import unit_of
+    from separatrix.ground.units import unit_of
 
     for record in (BallBearing, Operation, Film, CageDesign, StabilitySettings, Material):
         for name in record.__dataclass_fields__:
@@ -518,7 +518,7 @@ def test_the_page_on_study_files_names_every_section_and_every_unit():
     """The documentation of the contract is complete; the generated page has the keys."""
     from pathlib import Path
 
-    from separatrix.study_file.values import READERS
+    from separatrix.study.reading.values import READERS
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
     for section in READERS:

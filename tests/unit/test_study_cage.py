@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.pocket_shape import half_play, tilt
+from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.present.text.answer import clearances, shown
-from separatrix.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
-from separatrix.study_file import read_study, resolved
+from separatrix.study.pocket_shape import half_play, tilt
+from separatrix.study.reading import read_study, resolved
+from separatrix.study.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
 
 BASE = """\
 extends = "cryogenic-turbopump"

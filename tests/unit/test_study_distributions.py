@@ -10,19 +10,19 @@ import pytest
 from scipy.stats import lognorm
 
 from separatrix.answers import CheckAnswer
-from separatrix.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
-from separatrix.draws import sample, uncertain_inputs
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 from separatrix.limits.map_records import varied
 from separatrix.present import in_words
 from separatrix.ranking.records import measured
-from separatrix.study_file import read_study, resolved
-from separatrix.study_numbers import (
+from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
+from separatrix.study.keys import (
     radial_clearance,
     study_numbers,
     value_of,
     with_values,
 )
+from separatrix.study.reading import read_study, resolved
+from separatrix.verdict.draws import sample, uncertain_inputs
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
 

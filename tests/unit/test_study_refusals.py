@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.study_file import read_study, require
-from separatrix.toml_files import lines_of_keys
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.toml import lines_of_keys
+from separatrix.study.reading import read_study, require
 
 VALID = """\
 title = "A valid study"

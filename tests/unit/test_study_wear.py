@@ -8,13 +8,13 @@ from test_study_refusals import VALID, refusal
 from test_workbook import workbook
 
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.explore import expected
+from separatrix.ground.errors import InputError
 from separatrix.limits.map_records import value_in, varied
-from separatrix.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
-from separatrix.study_file import read_study
-from separatrix.study_file.provenance import resolved
-from separatrix.study_numbers import with_values
+from separatrix.study.keys import with_values
+from separatrix.study.reading import read_study
+from separatrix.study.reading.provenance import resolved
+from separatrix.study.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
 
 BAND = '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3\n'
 PLACES = '[film.wear]\nacross = ["-0.1 mm", "0.1 mm"]\nthicknesses = ["0 um", "0.2 um"]\nfriction = 0.3\n'

@@ -13,11 +13,11 @@ from commands import document, refused
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.explore.sweep import MOST_CASES, sweep
-from separatrix.runner import Runner
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 from separatrix.verdict.judgement import judge
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.which_ball import transmitted_force
 
 STUDY = read_study("momentum-wheel")

@@ -19,8 +19,8 @@ from separatrix.chain.traction import (
     traction_slope,
 )
 from separatrix.chain.traction import strip as strip_module
-from separatrix.errors import ConvergenceError, InputError, ValidityWarning
-from separatrix.study import Film, Material
+from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.study.study import Film, Material
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 CREEP = Creep(spin=5.0, curvature=-2e4)

@@ -7,8 +7,8 @@ import pytest
 
 import separatrix
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.friction.logs import column_map
+from separatrix.ground.errors import InputError
 
 MAP = {"test": {"material": "Armalon", "counterface": "440C", "medium": "air"}}
 

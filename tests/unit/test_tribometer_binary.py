@@ -9,10 +9,10 @@ import openpyxl
 import pytest
 from minimal_xlsx import STYLES, Fault, Formula, Shown, sheet, workbook, zipped
 
-from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.binary import tdms_tables
 from separatrix.friction.logs.column_map import column_map
+from separatrix.ground.errors import InputError
 
 nptdms = pytest.importorskip("nptdms")
 

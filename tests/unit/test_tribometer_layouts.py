@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
 from separatrix.friction.logs.dialect import is_clock, seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
+from separatrix.ground.errors import InputError
 
 ROWS = 240
 RNG = np.random.default_rng(6)

@@ -12,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from raw_logs import as_written
 
-from separatrix.errors import InputError
 from separatrix.friction.logs import described, read_log
 from separatrix.friction.logs.column_map import ColumnMap, column_map
 from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog
 from separatrix.friction.logs.names import ALIASES, NAMES, ranks, scale_of
-from separatrix.units import UNITS
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import UNITS
 
 ROWS = 60
 TIME = np.arange(ROWS) * 0.25

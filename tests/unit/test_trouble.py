@@ -17,8 +17,8 @@ from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.restitution import damping_for
 from separatrix.cli import main
 from separatrix.present import document, in_words
-from separatrix.study import StabilitySettings
-from separatrix.study_file import read_study
+from separatrix.study.reading import read_study
+from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import Verdict, judge
 
 BASE = """
@@ -134,7 +134,8 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
     assert np.isfinite(found.growth_rate)
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.errors.ValidityWarning")  # of friction beyond its tests
+# Of friction beyond its tests.
+@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))

@@ -5,9 +5,9 @@ import pickle
 
 import pytest
 
-from separatrix import units
-from separatrix.errors import InputError
-from separatrix.units import UNITS, format_number, format_quantity, parse
+from separatrix.ground import units
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import UNITS, format_number, format_quantity, parse
 
 PINT_NAMES = {
     "lbf in": "lbf * inch",
@@ -165,7 +165,7 @@ def test_what_is_not_one_number_and_one_unit_is_refused(text, si, words):
 
 def test_the_unit_of_a_field_is_read_from_its_type():
     """One place says the unit: the annotation."""
-    from separatrix.study import BallBearing, CageDesign, StabilitySettings
+    from separatrix.study.study import BallBearing, CageDesign, StabilitySettings
 
     assert units.unit_of(BallBearing, "ball_diameter") == "m"
     assert units.unit_of(BallBearing, "bore") == "m"

@@ -10,10 +10,10 @@ from cages import AT_REST as CAGE
 from cages import ensemble
 from scipy import stats
 
-from separatrix.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.cage import Cause, RunOutcome
 from separatrix.cage.closed_forms import drive_energy, room
-from separatrix.study import BallModel, Guidance, MotionModel, PocketShape
+from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
+from separatrix.study.study import BallModel, Guidance, MotionModel, PocketShape
 from separatrix.verdict import which_ball
 from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.verdict.reasons import CageMotion, force_limit

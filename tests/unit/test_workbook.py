@@ -12,16 +12,16 @@ import pytest
 from minimal_xlsx import Formula, Shown, workbook
 
 from separatrix.cli import main
-from separatrix.errors import ValidityWarning
+from separatrix.ground.errors import ValidityWarning
+from separatrix.ground.sheet import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
+from separatrix.ground.units import parse
 from separatrix.present import load as load_dataset
 from separatrix.saving import write_ranking
-from separatrix.study_file import read_study, shipped_studies
-from separatrix.study_file.cells import COLUMNS, sheets_of
-from separatrix.study_file.document import SECTIONS, load
-from separatrix.study_file.templates import template_keys, template_workbook
-from separatrix.study_file.values import READERS
-from separatrix.units import parse
-from separatrix.workbook_files import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
+from separatrix.study.reading import read_study, shipped_studies
+from separatrix.study.reading.cells import COLUMNS, sheets_of
+from separatrix.study.reading.document import SECTIONS, load
+from separatrix.study.reading.templates import template_keys, template_workbook
+from separatrix.study.reading.values import READERS
 
 STUDY = """
 title = "= A title that begins like a formula"
@@ -166,9 +166,9 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
         (tmp_path / taken).write_text("mine")
     (tmp_path / "link.xlsx").symlink_to("nowhere.xlsx")
     built = []
-    monkeypatch.setattr("separatrix.study_file.template", lambda: built.append("text") or "")
+    monkeypatch.setattr("separatrix.study.reading.template", lambda: built.append("text") or "")
     monkeypatch.setattr(
-        "separatrix.study_file.templates.template_workbook", lambda: built.append("workbook") or b""
+        "separatrix.study.reading.templates.template_workbook", lambda: built.append("workbook") or b""
     )
     path = tmp_path / name
     assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2

@@ -8,9 +8,9 @@ import zipfile
 import pytest
 from minimal_xlsx import zipped
 
-from separatrix import workbook_files
-from separatrix.errors import InputError
-from separatrix.workbook_files import MOST_BYTES, MOST_RATIO, refuse_unsafe
+from separatrix.ground import sheet as workbook_files
+from separatrix.ground.errors import InputError
+from separatrix.ground.sheet import MOST_BYTES, MOST_RATIO, refuse_unsafe
 
 MEMBERS = {"one.xml": b"<a>first</a>" * 50, "folder/two.xml": bytes(range(256)) * 40}
 

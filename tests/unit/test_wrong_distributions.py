@@ -2,8 +2,8 @@
 
 import pytest
 
-from separatrix.errors import InputError
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 
 HEAD = 'title = "Wrong"\nextends = "cryogenic-turbopump"\n'
 MANY = "\n".join(

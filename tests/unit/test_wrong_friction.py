@@ -2,10 +2,10 @@
 
 import pytest
 
-from separatrix.errors import InputError
 from separatrix.friction.file import FrictionTest, read_friction
 from separatrix.friction.fit import fit_friction
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 
 GOOD = {
     "material": '"Armalon"',

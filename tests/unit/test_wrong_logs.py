@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import raw_logs
 
-from separatrix.errors import InputError
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map, read_column_map
+from separatrix.ground.errors import InputError
 
 TIME = np.arange(20) * 0.5
 FRICTION = 0.1 + 0.001 * np.arange(20)

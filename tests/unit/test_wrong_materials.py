@@ -3,10 +3,10 @@
 import pytest
 
 from separatrix.cli import main
-from separatrix.errors import InputError
-from separatrix.library import joined
-from separatrix.library.reading import read_library
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.library import joined
+from separatrix.study.library.reading import read_library
+from separatrix.study.reading import read_study
 
 RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
 MODULUS = 'elastic_modulus = { value = "5 GPa", source = "our test", confidence = "measured" }'

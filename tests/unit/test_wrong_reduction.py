@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from separatrix.errors import InputError
 from separatrix.friction.file import place
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import reduce_log
+from separatrix.ground.errors import InputError
 
 NAN = float("nan")
 

@@ -10,9 +10,9 @@ import pytest
 import xarray as xr
 
 from separatrix.cli import main
-from separatrix.errors import InputError
 from separatrix.figures import draw
 from separatrix.figures.style import heading, literal_texts
+from separatrix.ground.errors import InputError
 from separatrix.present import container, load
 
 STUDY = {"cage": {"mass": {"value": 0.025, "unit": "kg"}}}

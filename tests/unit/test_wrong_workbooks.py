@@ -4,8 +4,8 @@
 import pytest
 from minimal_xlsx import Fault, Formula, Shown, parts, workbook, zipped
 
-from separatrix.errors import InputError
-from separatrix.study_file import read_study
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 
 HEAD = ["key", "value", "+-", "unit", "meaning"]
 STUDY = {

@@ -16,15 +16,15 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
-from separatrix.errors import InputError
-from separatrix.input_files import is_inside, reading_only_in
-from separatrix.messages import grouped, noted_warnings
-from separatrix.study import Study
-from separatrix.study_file import read_study
-from separatrix.study_file.document import load
-from separatrix.study_file.templates import is_name, tested_materials
-from separatrix.toml_files import MOST_BYTES, read_text
-from separatrix.units import NUMBER, shown
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import is_inside, reading_only_in
+from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.toml import MOST_BYTES, read_text
+from separatrix.ground.units import NUMBER, shown
+from separatrix.study.reading import read_study
+from separatrix.study.reading.document import load
+from separatrix.study.reading.templates import is_name, tested_materials
+from separatrix.study.study import Study
 
 DRAFT = ".{}.draft"
 """Name of the draft of a study, beside it: a server that is killed loses no edit."""

@@ -12,11 +12,11 @@ from tomlkit.exceptions import TOMLKitError
 from separatrix.app import draft
 from separatrix.app.form import as_typed, form
 from separatrix.app.page import Form, Page
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import printable
 from separatrix.questions import VERBS, Verb, verb_named
-from separatrix.study import BallModel, MotionModel, Study
-from separatrix.study_file import shipped_studies, template
-from separatrix.units import printable
+from separatrix.study.reading import shipped_studies, template
+from separatrix.study.study import BallModel, MotionModel, Study
 
 TYPED = {"points": int, "runs": int, "run": int, "samples": int}
 """Options that are whole numbers."""

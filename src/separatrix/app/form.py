@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import tomlkit
 
 from separatrix.app.draft import Checked
-from separatrix.study_file.document import SECTIONS
-from separatrix.study_file.templates import (
+from separatrix.ground.toml import folded
+from separatrix.study.reading.document import SECTIONS
+from separatrix.study.reading.templates import (
     TemplateKey,
     choices_of,
     quantity_of,
@@ -18,7 +19,6 @@ from separatrix.study_file.templates import (
     template_keys,
     units_like,
 )
-from separatrix.toml_files import folded
 
 TESTED = ("ranking", "materials")
 """The key whose names are those of the tests that the study names."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.app.worker import END, Cancel, Task, work
-from separatrix.errors import InputError
+from separatrix.ground.errors import InputError
 
 WAITING, RUNNING = "waiting", "running"
 ACTIVE = (WAITING, RUNNING)

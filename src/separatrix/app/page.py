@@ -21,11 +21,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
 from separatrix.app.jobs import Jobs
-from separatrix.errors import InputError
-from separatrix.input_files import is_inside
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import is_inside
+from separatrix.ground.toml import read_text
+from separatrix.ground.units import format_quantity, printable, shown
 from separatrix.questions import VERBS
-from separatrix.toml_files import read_text
-from separatrix.units import format_quantity, printable, shown
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,12 +14,12 @@ from separatrix.app import draft
 from separatrix.app.page import ANSWER_SUFFIXES, Folder, Page
 from separatrix.app.plotly import spec
 from separatrix.app.worker import REPORT
-from separatrix.errors import InputError
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.figures.hover import Plot, candidates_plot, map_plot, stability_plot, traction_plot
 from separatrix.figures.view import view
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import shown
 from separatrix.questions import verb_named
-from separatrix.units import shown
 
 PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
     "traction": {"curves": traction_plot},

@@ -25,9 +25,9 @@ from separatrix.app import editing, results
 from separatrix.app.jobs import Jobs
 from separatrix.app.page import TEMPLATES, Folder, Page
 from separatrix.app.worker import Task
-from separatrix.errors import InputError, SeparatrixError
 from separatrix.figures.view import PARTS
-from separatrix.units import printable, shown
+from separatrix.ground.errors import InputError, SeparatrixError
+from separatrix.ground.units import printable, shown
 
 HOST = "127.0.0.1"
 MOST_CONNECTIONS = 200

@@ -16,12 +16,12 @@ from queue import SimpleQueue
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from separatrix.errors import InputError, SeparatrixError
-from separatrix.units import Second, shown
+from separatrix.ground.errors import InputError, SeparatrixError
+from separatrix.ground.units import Second, shown
 
 if TYPE_CHECKING:
     from separatrix.questions import Computed, Verb
-    from separatrix.study import Study
+    from separatrix.study.study import Study
 
 REPORT = "report"
 """In the place of a verb: the report of a study."""
@@ -171,12 +171,12 @@ def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None
 
 def _answered(task: Task, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
-    from separatrix.input_files import reading_only_in
-    from separatrix.messages import grouped, noted_warnings
+    from separatrix.ground.input_files import reading_only_in
+    from separatrix.ground.messages import grouped, noted_warnings
     from separatrix.present import document
     from separatrix.questions import asked_study, computed, verb_named
     from separatrix.saving import save_answer
-    from separatrix.study_file import read_study
+    from separatrix.study.reading import read_study
 
     question = dict(task.question)
     models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
@@ -204,7 +204,7 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
 
 def _refuse_links_out(task: Task) -> None:
     """Refuse to write where a link leads out of the folder of the page."""
-    from separatrix.input_files import is_inside
+    from separatrix.ground.input_files import is_inside
 
     for path in (task.folder, *(task.folder.iterdir() if task.folder.is_dir() else ())):
         if not is_inside(path, task.root):

@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from separatrix.cage.rows import *
-from separatrix.compiled import inlined
+from separatrix.ground.compiled import inlined
 
 REST_SPEED, REST_PLACE, FLOOR, MOST = np.float32(1e-9), np.float32(1e-12), np.float32(1e-18), np.float32(1e18)
 """A ball's speed [m/s] and its place in the groove [m] decay to these, and squares to the next: numbers too

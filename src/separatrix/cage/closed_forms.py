@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.pocket_shape import PocketShape, end_half_play
-from separatrix.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
+from separatrix.ground.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
+from separatrix.study.pocket_shape import PocketShape, end_half_play
 
 if TYPE_CHECKING:
-    from separatrix.ball_traction import BallTraction
     from separatrix.cage.moving_cage import MovingCage
+    from separatrix.chain.ball_traction import BallTraction
 
 LOWEST_RESTITUTION = 1e-4
 REAL = 1e-9

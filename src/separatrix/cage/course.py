@@ -24,9 +24,8 @@ from separatrix.cage.moving_cage import MovingCage, turned_forward
 from separatrix.cage.numbers import look_time, numbers_of, pocket_rectangle
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import of
-from separatrix.errors import InputError
-from separatrix.study import StabilitySettings
-from separatrix.units import (
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import (
     Array,
     Hertz,
     Joule,
@@ -40,6 +39,7 @@ from separatrix.units import (
     Second,
     Watt,
 )
+from separatrix.study.study import StabilitySettings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -18,9 +18,9 @@ from separatrix.cage import rows
 from separatrix.cage.numbers import ball_level, pocket_rectangle
 from separatrix.cage.rows import of
 from separatrix.chain.pocket import REFERENCE, pocket_speed
-from separatrix.errors import InputError
-from separatrix.study import LEAST_KICK, NO_KICK, StabilitySettings
-from separatrix.units import Array, MetrePerSecond, Ratio
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, MetrePerSecond, Ratio
+from separatrix.study.study import LEAST_KICK, NO_KICK, StabilitySettings
 
 if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage

@@ -17,13 +17,13 @@ from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import Kind, Numbers, look_time, numbers_of
 from separatrix.cage.outcome import RunOutcome
 from separatrix.cage.rows import of
-from separatrix.errors import InputError
-from separatrix.units import Array, Second, format_quantity
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Second, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage
-    from separatrix.study import StabilitySettings
-    from separatrix.units import MetrePerSecond
+    from separatrix.ground.units import MetrePerSecond
+    from separatrix.study.study import StabilitySettings
 
 MOST_LOOKS = 100_000
 """Longest run, in looks: beyond it nobody waits."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from separatrix.cage.rows import *
-from separatrix.compiled import inlined
+from separatrix.ground.compiled import inlined
 
 SIXTH, TWELFTH = np.float32(1 / 6), np.float32(1 / 12)
 

@@ -13,7 +13,7 @@ import math
 
 from separatrix.cage.frame import turning
 from separatrix.cage.rows import *
-from separatrix.compiled import inlined
+from separatrix.ground.compiled import inlined
 
 
 @inlined

@@ -13,7 +13,7 @@ from separatrix.cage.frame import cage_rates, place
 from separatrix.cage.land_force import land_forces
 from separatrix.cage.pocket_force import level_depth, level_friction, pocket_depth, pocket_friction
 from separatrix.cage.rows import *
-from separatrix.compiled import inlined
+from separatrix.ground.compiled import inlined
 
 
 @inlined

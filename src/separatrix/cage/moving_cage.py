@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from separatrix import _check, cage_design, pocket_shape
-from separatrix.ball_traction import BallTraction, FreeBall
 from separatrix.cage.disturbance import free_leads
-from separatrix.cage_design import CageDesign
+from separatrix.chain.ball_traction import BallTraction, FreeBall
 from separatrix.chain.restitution import hertz_coefficient_for
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.study import BallModel, Guidance, MotionModel, PocketContact, PocketShape
-from separatrix.units import (
+from separatrix.ground import bounds as _check
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.units import (
     Kilogram,
     KilogramMetre,
     KilogramMetre2,
@@ -33,6 +31,9 @@ from separatrix.units import (
     Second,
     format_quantity,
 )
+from separatrix.study import cage_design, pocket_shape
+from separatrix.study.cage_design import CageDesign
+from separatrix.study.study import BallModel, Guidance, MotionModel, PocketContact, PocketShape
 
 if TYPE_CHECKING:
     from separatrix.chain.solution import Solution

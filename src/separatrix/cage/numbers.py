@@ -20,13 +20,13 @@ from separatrix.cage.closed_forms import (
 )
 from separatrix.cage.rows import of
 from separatrix.cage.step import exact_decay, land_reach, step_length
-from separatrix.cage_design import Guidance
-from separatrix.pocket_shape import PocketShape
+from separatrix.study.cage_design import Guidance
+from separatrix.study.pocket_shape import PocketShape
 
 if TYPE_CHECKING:
-    from separatrix.ball_traction import SlipField
     from separatrix.cage.moving_cage import MovingCage
-    from separatrix.units import Array, Metre, MetrePerSecond, Second
+    from separatrix.chain.ball_traction import SlipField
+    from separatrix.ground.units import Array, Metre, MetrePerSecond, Second
 
 NOWHERE: Metre = 1e6
 """Where something is that is never met: finite, so that a difference of two is a number."""

@@ -21,7 +21,7 @@ import math
 from enum import IntEnum
 
 from separatrix.cage import rows
-from separatrix.compiled import part
+from separatrix.ground.compiled import part
 
 GROWN = 100.0
 """Multiple of the energy at the start, with the drive energy, from which no motion of a study came back."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from separatrix.cage.rows import ONE, TINY, ZERO
-from separatrix.compiled import inlined
+from separatrix.ground.compiled import inlined
 
 
 @inlined

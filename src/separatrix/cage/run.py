@@ -28,7 +28,7 @@ from separatrix.cage.outcome import (
 from separatrix.cage.pocket_force import pocket_depth
 from separatrix.cage.rows import *
 from separatrix.cage.step import held_stage_end, stage_end
-from separatrix.compiled import inlined, kernel, part
+from separatrix.ground.compiled import inlined, kernel, part
 
 OUTCOME, CAUSE, JUDGED, OPEN, DONE, LEFT_AT, FIRST_EXTREME = range(7)
 RAMP_UP = np.float32(1e-6)

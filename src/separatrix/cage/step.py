@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 from separatrix.cage.closed_forms import moving_mass, rebound_damping
 from separatrix.cage.rows import *
-from separatrix.cage_design import Guidance
-from separatrix.compiled import inlined
+from separatrix.ground.compiled import inlined
+from separatrix.study.cage_design import Guidance
 
 if TYPE_CHECKING:
     from separatrix.cage.moving_cage import MovingCage
-    from separatrix.units import Metre, MetrePerSecond, NewtonPerMetre, Second
+    from separatrix.ground.units import Metre, MetrePerSecond, NewtonPerMetre, Second
 
 
 @inlined

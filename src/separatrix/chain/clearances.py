@@ -10,12 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from separatrix.bearing_design import ROOM, BallBearing, Material
-from separatrix.cage_body import ring_of
-from separatrix.cage_design import CageDesign, ClearanceState, Guidance
-from separatrix.errors import InputError, ValidityWarning, together
-from separatrix.study import Operation
-from separatrix.units import (
+from separatrix.ground.errors import InputError, ValidityWarning, together
+from separatrix.ground.units import (
     Kelvin,
     Kilogram,
     KilogramPerMetre3,
@@ -26,6 +22,10 @@ from separatrix.units import (
     Ratio,
     format_quantity,
 )
+from separatrix.study.ball_bearing import ROOM, BallBearing, Material
+from separatrix.study.cage_body import ring_of
+from separatrix.study.cage_design import CageDesign, ClearanceState, Guidance
+from separatrix.study.study import Operation
 
 NEAR: Kelvin = 10.0
 """An expansion serves this far beyond the temperatures that its source states."""

@@ -10,8 +10,8 @@ import numpy as np
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.equilibrium.balance import LEAST_SHARE
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.study import BallBearing, KinematicModel, Race
-from separatrix.units import Pascal, Radian, Ratio, format_quantity
+from separatrix.ground.units import Pascal, Radian, Ratio, format_quantity
+from separatrix.study.study import BallBearing, KinematicModel, Race
 
 STATIC_PRESSURE: Pascal = 4.2e9
 """ISO 76:2006, static load rating of ball bearings: dents of about 1e-4 of a ball diameter."""

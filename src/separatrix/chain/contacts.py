@@ -23,8 +23,16 @@ from separatrix.chain.race_curve import RaceTrack, race_curve, race_slope
 from separatrix.chain.restitution import contact_damping
 from separatrix.chain.traction import TractionCurve
 from separatrix.chain.traction.exact import RaceSlope
-from separatrix.errors import InputError
-from separatrix.study import (
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import (
+    MetrePerSecond,
+    Newton,
+    NewtonSecondPerMetre,
+    Radian,
+    RadianPerSecond,
+    Ratio,
+)
+from separatrix.study.study import (
     BallBearing,
     Film,
     KinematicModel,
@@ -34,7 +42,6 @@ from separatrix.study import (
     TractionModel,
     TractionSettings,
 )
-from separatrix.units import MetrePerSecond, Newton, NewtonSecondPerMetre, Radian, RadianPerSecond, Ratio
 
 REMEMBERED = 1024
 """Solutions of a stage that are kept, by the records it takes."""

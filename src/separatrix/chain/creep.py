@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.chain.hertz import race_curvatures
-from separatrix.study import BallBearing, Race
-from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
+from separatrix.ground.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
+from separatrix.study.study import BallBearing, Race
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

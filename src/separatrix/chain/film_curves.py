@@ -13,9 +13,9 @@ from separatrix.chain.contacts import race_tracks
 from separatrix.chain.race_curve import race_slope
 from separatrix.chain.restitution import Restitution, restitution
 from separatrix.chain.solution import Solution
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import Film, TractionModel
-from separatrix.units import Array, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Array, Ratio
+from separatrix.study.study import Film, TractionModel
 
 SHARES = (*np.linspace(0.0, 0.2, 21).tolist(), *np.linspace(0.25, 1.0, 16).tolist())
 """Widths of a worn band over that of the wider contact: closer where little is worn."""

@@ -8,10 +8,10 @@ from typing import cast
 
 import numpy as np
 
-from separatrix.compiled import kernel, part
-from separatrix.errors import InputError
-from separatrix.study import BallBearing, Material, Race
-from separatrix.units import Array, Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
+from separatrix.study.study import BallBearing, Material, Race
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

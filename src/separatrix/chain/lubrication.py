@@ -11,8 +11,8 @@ import numpy as np
 from separatrix.chain.contacts import RaceContact
 from separatrix.chain.restitution import Restitution, contact_damping, restitution
 from separatrix.chain.traction import film_compliance, traction_slope
-from separatrix.study import Film, Material
-from separatrix.units import Array, Kilogram, Metre, NewtonPerMetre, Ratio
+from separatrix.ground.units import Array, Kilogram, Metre, NewtonPerMetre, Ratio
+from separatrix.study.study import Film, Material
 
 FILM_THICKNESSES: tuple[Metre, ...] = (0.0, *(float(h) for h in np.geomspace(1e-9, 1e-5, 41)))
 """Bare, then 1 nm to 10 um, ten to a decade."""

@@ -14,9 +14,9 @@ from separatrix.chain.restitution import race_damping, restitution
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import exact
 from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import ContactPressure, PressureSlip, TractionModel, TractionSettings
-from separatrix.units import Newton, NewtonMetre, NewtonSecondPerMetre, Pascal, Ratio, Rows, Watt
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Newton, NewtonMetre, NewtonSecondPerMetre, Pascal, Ratio, Rows, Watt
+from separatrix.study.study import ContactPressure, PressureSlip, TractionModel, TractionSettings
 
 STRAINED: Ratio = 0.1
 """Film strain p0/M_c from which a film is no longer linearly elastic."""

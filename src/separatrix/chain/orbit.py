@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio
+from separatrix.ground.units import Array, Metre, MetrePerSecond, RadianPerSecond, Ratio
 
 HIGHEST = 4
 ENOUGH: Ratio = 0.9999

@@ -10,9 +10,8 @@ import numpy as np
 
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.restitution import hertz_coefficient_for
-from separatrix.measured_friction import Friction
-from separatrix.study import Operation, Study
-from separatrix.units import (
+from separatrix.friction.prediction import Friction
+from separatrix.ground.units import (
     Array,
     Kilogram,
     Metre,
@@ -24,6 +23,7 @@ from separatrix.units import (
     RadianPerSecond,
     Ratio,
 )
+from separatrix.study.study import Operation, Study
 
 REFERENCE: Ratio = 2.5
 """Reference disturbance over the pocket speed [-]."""

@@ -19,8 +19,8 @@ from separatrix.chain.traction.curve import TractionCurve, traction_curve
 from separatrix.chain.traction.exact.normal import pressed_contact
 from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
 from separatrix.chain.traction.film import track_of
-from separatrix.errors import ConvergenceError
-from separatrix.study import (
+from separatrix.ground.errors import ConvergenceError
+from separatrix.study.study import (
     ContactPressure,
     Film,
     Material,

@@ -12,10 +12,9 @@ from math import exp, hypot, log, pi, sqrt
 import numpy as np
 
 from separatrix.chain.hertz import contact_modulus
-from separatrix.compiled import kernel
-from separatrix.errors import InputError
-from separatrix.study import Material
-from separatrix.units import (
+from separatrix.ground.compiled import kernel
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import (
     Array,
     Kilogram,
     Metre,
@@ -26,6 +25,7 @@ from separatrix.units import (
     NewtonSecondPerMetre,
     Ratio,
 )
+from separatrix.study.study import Material
 
 SOLID_LUBRICATION_LIMIT: Ratio = 0.6
 """The paper, section 5: "a fairly low restitution factor (eta < 0.6). This threshold value is too low to

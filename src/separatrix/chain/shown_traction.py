@@ -9,9 +9,9 @@ import numpy as np
 
 from separatrix.chain.race_curve import RaceTrack, exact_curve, exact_slope, strips
 from separatrix.chain.traction import ShearField, TractionCurve, exact, shear_field, track_of
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import ContactPressure, TractionModel, TractionSettings
-from separatrix.units import Array, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Array, Ratio
+from separatrix.study.study import ContactPressure, TractionModel, TractionSettings
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
 """Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""

@@ -13,9 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from separatrix.ball_traction import FreeBall
-from separatrix.cage_body import CageInertia, cage_inertia
-from separatrix.cage_choice import NAMELESS, cage_candidate, environment_of
+from separatrix.chain.ball_traction import FreeBall
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
@@ -42,20 +40,22 @@ from separatrix.chain.restitution import (
     ball_pocket_stiffness,
     restitution,
 )
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.study import (
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.units import (
+    Kilogram,
+    MetrePerSecond,
+    NewtonPerMetre,
+    Ratio,
+)
+from separatrix.study.cage_body import CageInertia, cage_inertia
+from separatrix.study.candidates import NAMELESS, cage_candidate, environment_of
+from separatrix.study.study import (
     CageDesign,
     Candidate,
     ClearanceState,
     Friction,
     Material,
     Study,
-)
-from separatrix.units import (
-    Kilogram,
-    MetrePerSecond,
-    NewtonPerMetre,
-    Ratio,
 )
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."

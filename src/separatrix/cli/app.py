@@ -16,9 +16,9 @@ from separatrix.cli import report as reporting
 from separatrix.cli import saved_answers, without_bearing
 from separatrix.cli.console import answer, complain
 from separatrix.cli.verbs import ANSWERED, Json, command_of, whole_number
-from separatrix.errors import InputError, SeparatrixError
+from separatrix.ground.errors import InputError, SeparatrixError
+from separatrix.ground.staged import refuse_existing, write_new
 from separatrix.questions import VERBS
-from separatrix.staged import refuse_existing, write_new
 
 FAULT, WRONG_INPUT = 1, 2
 
@@ -47,7 +47,7 @@ def _new(
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
 ) -> int:
-    from separatrix.study_file.document import WORKBOOK_ENDINGS
+    from separatrix.study.reading.document import WORKBOOK_ENDINGS
 
     ending = path.suffix.casefold()
     if path.is_dir():
@@ -60,7 +60,7 @@ def _new(
         cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
         raise InputError(str(path), "is the name of a workbook", cure=cure)
     refuse_existing(path)
-    from separatrix.study_file import template, templates
+    from separatrix.study.reading import template, templates
 
     write_new(path, templates.template_workbook() if excel else template().encode())
     if json:

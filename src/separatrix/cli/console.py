@@ -15,11 +15,11 @@ from collections.abc import Callable, Iterator, Mapping
 from types import TracebackType
 from typing import TYPE_CHECKING, ParamSpec, TextIO
 
-from separatrix.errors import InputError
-from separatrix.messages import harmless, one_line
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import harmless, one_line
 
 if TYPE_CHECKING:
-    from separatrix.units import Second
+    from separatrix.ground.units import Second
 
 Given = ParamSpec("Given")
 
@@ -196,7 +196,7 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
 
 @contextlib.contextmanager
 def _telling_of_compilation(life: Life) -> Iterator[None]:
-    from separatrix.compiling import COMPILING
+    from separatrix.ground.compiling import COMPILING
 
     COMPILING.heard.append(life.compiling)
     try:

@@ -12,15 +12,15 @@ import typer
 
 from separatrix.cli.console import answer, answer_json, interrupted, interruptible
 from separatrix.cli.verbs import ANSWERED, Jobs, Json, Quiet, computed_with_progress, folder, threads
-from separatrix.errors import InputError
-from separatrix.messages import harmless, noted_warnings
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import harmless, noted_warnings
+from separatrix.ground.staged import writable_folder
 from separatrix.questions import Computed
-from separatrix.staged import writable_folder
 
 if TYPE_CHECKING:
     from separatrix.comparing.saved import Document, Saved
     from separatrix.reporting.record import Kept, Report
-    from separatrix.study import Study
+    from separatrix.study.study import Study
 
     Compute = Callable[..., Computed]
     """`computed_with_progress`, with its options."""
@@ -62,7 +62,7 @@ def report(
     """Write the report of a study, of a folder, or of two answers, and return the exit status."""
     to, compute = folder(out), partial(computed_with_progress, question={}, quiet=quiet, jobs=threads(jobs))
     from separatrix.reporting.formats import typesetter, write
-    from separatrix.study_file import shipped_studies
+    from separatrix.study.reading import shipped_studies
 
     if pdf:
         if json and to is None:
@@ -101,7 +101,7 @@ def report(
 
 
 def _read(asked: str) -> tuple[Study, list[str]]:
-    from separatrix.study_file import read_study
+    from separatrix.study.reading import read_study
 
     with noted_warnings() as notes:
         return read_study(asked), notes
@@ -149,7 +149,7 @@ def _read_back(document: Document, where: str) -> Study | None:
     from separatrix.cli.saved_answers import restored_study
     from separatrix.comparing.saved import Saved
     from separatrix.present import plain
-    from separatrix.study_file import resolved
+    from separatrix.study.reading import resolved
 
     saved = Saved(path=where, verb=str(document["verb"]), document=document)
     try:
@@ -171,7 +171,7 @@ def _of_two(asked: tuple[str, str], compute: Compute, *, writes: bool) -> Report
 def _read_side(asked: str) -> dict[str, Saved] | tuple[Study, list[str]]:
     """Return the answers of one of two by verb, or its study with what was noted."""
     from separatrix.comparing.saved import ENDINGS, read_answers
-    from separatrix.study_file import shipped_studies
+    from separatrix.study.reading import shipped_studies
 
     path = Path(asked)
     kept = path.suffix.casefold() in ENDINGS or (path.is_dir() and asked not in shipped_studies())

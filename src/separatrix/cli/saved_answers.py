@@ -18,14 +18,14 @@ from separatrix.cli.console import answer, answer_json, interruptible, progress_
 from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
 from separatrix.comparing.records import Agreement
 from separatrix.comparing.saved import Document, Saved, read_answers
-from separatrix.errors import InputError
-from separatrix.messages import grouped, noted_warnings
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.staged import staged, writable_folder
+from separatrix.ground.units import printable, shown
 from separatrix.questions import Verb, asked_study, computed, verb_named
-from separatrix.staged import staged, writable_folder
-from separatrix.units import printable, shown
 
 if TYPE_CHECKING:
-    from separatrix.study import Study
+    from separatrix.study.study import Study
 
 COMPARE = "Two answers of one verb side by side: what differs, and by more than counting noise?"
 COMPARE_EPILOG = "A and B are folders of answers, their .json, .nc or .html files, of any verb with a study."
@@ -118,7 +118,7 @@ def reproduce(
 def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     from separatrix.comparing.pair import agreement
     from separatrix.present import document
-    from separatrix.runner import Interrupted
+    from separatrix.verdict.long_jobs import Interrupted
 
     if saved.document is None:
         cure = "Name the .json that was written beside it."
@@ -174,9 +174,9 @@ def restored_study(saved: Saved) -> Iterator[tuple[Study, Path, list[str]]]:
     InputError
         It keeps no files, or other ones than separatrix writes.
     """
-    from separatrix.input_files import restored
-    from separatrix.study_file.document import shipped_studies
-    from separatrix.study_file.provenance import SHIPPED, shipped_checksums
+    from separatrix.ground.input_files import restored
+    from separatrix.study.reading.document import shipped_studies
+    from separatrix.study.reading.provenance import SHIPPED, shipped_checksums
 
     kept, where, verb = _kept_by(saved), saved.path, verb_named(saved.verb)
     files: dict[str, bytes] = {}
@@ -260,7 +260,7 @@ def _is_case(value: object) -> bool:
 
 def _versions(stored: Document, kept: Document) -> Iterator[Version]:
     from separatrix import __version__
-    from separatrix.study_file.provenance import versions
+    from separatrix.study.reading.provenance import versions
 
     given = kept.get("versions")
     before = {"separatrix": stored.get("separatrix_version"), **(given if isinstance(given, dict) else {})}

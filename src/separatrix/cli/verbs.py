@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from separatrix.cli.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
-from separatrix.errors import InputError
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y
-from separatrix.ledger import NAME as LEDGER
-from separatrix.messages import grouped, noted_warnings
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.staged import writable_folder
+from separatrix.ground.units import shown
 from separatrix.questions import Computed, Verb, asked_study, computed, processors
-from separatrix.staged import writable_folder
-from separatrix.units import shown
+from separatrix.verdict.ledger import NAME as LEDGER
 
 if TYPE_CHECKING:
-    from separatrix.study import Study
+    from separatrix.study.study import Study
 
 ANSWERED = 0
 MOST_JOBS = 1024

@@ -19,8 +19,8 @@ from separatrix.comparing.records import (
 )
 from separatrix.comparing.results import Nodes, differing, of_dataset, of_document, order
 from separatrix.comparing.saved import VERBS, Saved
-from separatrix.errors import InputError
-from separatrix.units import printable
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import printable
 
 MOST_ROWS = 2000
 

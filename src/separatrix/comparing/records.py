@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeGuard
 
-from separatrix.units import Ratio
+from separatrix.ground.units import Ratio
 
 Plain = float | int | str | bool | None
 

@@ -20,8 +20,8 @@ import numpy as np
 from separatrix import answers
 from separatrix.comparing.records import Noise, Plain, Row, Value, is_number
 from separatrix.explore.sweep import Sweep
+from separatrix.ground.units import printable
 from separatrix.present.nodes import field_units
-from separatrix.units import printable
 from separatrix.verdict.judgement import NORMAL_95, Judgement, KickCount
 
 if TYPE_CHECKING:

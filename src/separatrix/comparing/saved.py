@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from separatrix.errors import InputError
-from separatrix.input_files import size_of, unreadable
-from separatrix.toml_files import path_text
-from separatrix.units import printable, shown
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.toml import path_text
+from separatrix.ground.units import printable, shown
 
 if TYPE_CHECKING:
     import xarray as xr

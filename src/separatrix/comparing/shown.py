@@ -11,8 +11,9 @@ from separatrix import figures
 from separatrix.comparing.records import Comparison, Noise, Row, Value, is_number
 from separatrix.comparing.results import UNCOUNTED_VERBS
 from separatrix.comparing.saved import Saved
-from separatrix.errors import InputError
-from separatrix.messages import harmless
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import harmless
+from separatrix.ground.units import printable
 from separatrix.present import plain
 from separatrix.present.text.tables import (
     ABSENT,
@@ -25,7 +26,6 @@ from separatrix.present.text.tables import (
     significant,
     table,
 )
-from separatrix.units import printable
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.errors import InputError, noted, together
-from separatrix.toml_files import Kind, nearest, path_text, read_text
-from separatrix.units import NUMBER, parse, shown
+from separatrix.ground.errors import InputError, noted, together
+from separatrix.ground.toml import Kind, nearest, path_text, read_text
+from separatrix.ground.units import NUMBER, parse, shown
 
 if TYPE_CHECKING:
     from separatrix.limits.map_records import MapAxis, Parameter

@@ -15,9 +15,8 @@ import numpy as np
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.chain.lubrication import LubricationCurve
-from separatrix.distribution import LogNormal
-from separatrix.draws import Case
 from separatrix.explore.records import AllowedFilm, AllowedFriction
+from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.limits.response import (
     SEARCHED_FRICTION,
     Count,
@@ -29,10 +28,11 @@ from separatrix.limits.response import (
     with_damping,
 )
 from separatrix.ranking.drawn import DrawnBearings
-from separatrix.runner import Runner, joined
-from separatrix.study import BallModel
-from separatrix.units import Array, MetrePerSecond, Ratio
+from separatrix.study.distribution import LogNormal
+from separatrix.study.study import BallModel
+from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import CLEAR, FEW, Judgement, KickCount, Verdict, is_calm, wilson_interval
+from separatrix.verdict.long_jobs import Runner, joined
 
 BLOCK = 64  # bearings after which a case is judged
 RISK: Ratio = 1e-3

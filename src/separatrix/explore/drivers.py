@@ -32,10 +32,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from scipy.special import expit, ndtri, stdtrit, xlogy
 
-from separatrix.draws import Case, UncertainInput, sobol_points
 from separatrix.explore.records import Drivers, Share, TestGain
-from separatrix.study import Friction, Study
-from separatrix.units import Array, Ratio
+from separatrix.ground.units import Array, Ratio
+from separatrix.study.study import Friction, Study
+from separatrix.verdict.draws import Case, UncertainInput, sobol_points
 
 PRIOR = 3.0  # standard deviation of the coefficients beforehand: a separation by one input alone stays finite
 FOLDS = 8  # parts of the bearings, each left out of one fit

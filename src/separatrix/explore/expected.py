@@ -9,16 +9,16 @@ from dataclasses import replace
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.cage.rows import LANES
-from separatrix.cage_choice import ranking_question
 from separatrix.chain.solution import Solution, solve
+from separatrix.ground.units import Ratio, Second
 from separatrix.limits.map import PointFinder, require_cage_friction
 from separatrix.limits.map_records import MapQuestion
 from separatrix.limits.point import linear_guess
 from separatrix.limits.response import GrowthCounter
 from separatrix.ranking.reason import pocket_of
-from separatrix.runner import Runner
-from separatrix.study import StabilitySettings, Study
-from separatrix.units import Ratio, Second
+from separatrix.study.candidates import ranking_question
+from separatrix.study.study import StabilitySettings, Study
+from separatrix.verdict.long_jobs import Runner
 
 LONGEST_SAMPLE = 0.5  # time after which nothing more is timed [s]
 FACTORS = (0.7, 1.5)

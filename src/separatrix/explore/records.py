@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from separatrix.units import Array, MetrePerSecond, Ratio, Rows
+from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
 from separatrix.verdict.judgement import Judgement
 
 

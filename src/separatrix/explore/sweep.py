@@ -10,15 +10,10 @@ from functools import partial
 
 from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.cage_choice import require_friction
 from separatrix.chain.solution import Solution, solve
-from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.cases import MOST_CASES, TIME_SHARE, Case
-from separatrix.limits.curve import own_threshold
-from separatrix.limits.map_records import KICK, RESTITUTION, Parameter, parameters, varied
-from separatrix.runner import Runner
-from separatrix.study import Operation, Study
-from separatrix.units import (
+from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.units import (
     Hertz,
     Metre,
     Newton,
@@ -30,7 +25,12 @@ from separatrix.units import (
     RadianPerSecond,
     Ratio,
 )
+from separatrix.limits.curve import own_threshold
+from separatrix.limits.map_records import KICK, RESTITUTION, Parameter, parameters, varied
+from separatrix.study.candidates import require_friction
+from separatrix.study.study import Operation, Study
 from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.which_ball import judge_solution
 

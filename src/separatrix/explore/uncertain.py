@@ -11,12 +11,8 @@ from functools import partial
 import numpy as np
 
 from separatrix.cage.ensemble import Ensemble
-from separatrix.cage_choice import ranking_question, reference_candidate, required_environment
 from separatrix.chain.pocket import with_scatter
 from separatrix.chain.solution import solve
-from separatrix.distribution import described
-from separatrix.draws import Case, UncertainInput
-from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.explore.counting import BLOCK, RISK, allowed_film, allowed_friction, counted, settles
 from separatrix.explore.drivers import drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.explore.records import (
@@ -34,6 +30,8 @@ from separatrix.explore.records import (
     UncertainRow,
     UncertainStudy,
 )
+from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.units import Array, Ratio
 from separatrix.ranking.drawn import DrawnBearings, drawn_bearings
 from separatrix.ranking.reason import (
     NOT_FINISHED,
@@ -45,11 +43,13 @@ from separatrix.ranking.reason import (
     pocket_of,
 )
 from separatrix.ranking.records import MeanFriction, lowest_among, overall
-from separatrix.runner import Interrupted, Runner
-from separatrix.study import Study
-from separatrix.study_numbers import setter, study_numbers
-from separatrix.units import Array, Ratio
+from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
+from separatrix.study.distribution import described
+from separatrix.study.keys import setter, study_numbers
+from separatrix.study.study import Study
+from separatrix.verdict.draws import Case, UncertainInput
 from separatrix.verdict.judgement import Judgement, Verdict, wilson_interval
+from separatrix.verdict.long_jobs import Interrupted, Runner
 
 FEWEST = 64  # bearings below which no probability is worth a table
 CLOUD = 256  # bearings of a case that are kept for the pictures

@@ -8,7 +8,6 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
-from separatrix.errors import InputError
 from separatrix.figures import (
     chain,
     envelope,
@@ -19,6 +18,7 @@ from separatrix.figures import (
     stability,
 )
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
+from separatrix.ground.errors import InputError
 
 __all__ = ["draw", "plot", "save", "save_all"]
 

@@ -15,12 +15,12 @@ from matplotlib.collections import EllipseCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from separatrix.errors import InputError
 from separatrix.figures.motion import AROUND, draw_lean, draw_orbit, frame_moments, milliseconds, ring
 from separatrix.figures.style import BLACK, GREY, SKY, VERMILION, headed, journal, literal_texts, settled
 from separatrix.figures.view import BAR_POINTS, Scene, force_key, scene, span_key
-from separatrix.staged import staged
-from separatrix.units import Array
+from separatrix.ground.errors import InputError
+from separatrix.ground.staged import staged
+from separatrix.ground.units import Array
 
 A_SECOND, SIZE, DOTS = 24, (7.0, 4.2), 100
 """Frames in a second; inches without the heading, and dots an inch."""

@@ -25,7 +25,7 @@ from separatrix.figures.style import (
     stated,
     study_of,
 )
-from separatrix.units import Array, format_number
+from separatrix.ground.units import Array, format_number
 
 RACES = (("inner", BLUE, "o"), ("outer", VERMILION, "s"))
 DASHED = (0, (4, 2))

@@ -16,7 +16,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from separatrix.figures.style import PAGE, VERMILION, Look, canvas, colour_bar
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 ARROWS = 13, 17
 """Arrows along and across at most."""

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle, Wedge
 
 from separatrix.figures.style import BLACK, BLUE, GREY, PAGE, VERMILION, Json, Look, canvas, stated
-from separatrix.units import Array, Metre, Radian, format_quantity
+from separatrix.ground.units import Array, Metre, Radian, format_quantity
 
 STEEL, BALL, CAGE = "#c9ced6", "#eef1f5", "#e8c27a"
 DASHED: Look = {"ls": (0, (3, 2)), "lw": 0.8}

@@ -30,9 +30,9 @@ from separatrix.figures.style import (
     canvas,
     with_ends,
 )
+from separatrix.ground.units import Array, format_quantity
 from separatrix.present.text.sentences import deciding
 from separatrix.present.text.tables import interval, number, significant
-from separatrix.units import Array, format_quantity
 
 FACTOR, PROBABILITY, FREQUENCY, TIME = r"$\eta$ [-]", "P(stable) [-]", "frequency [Hz]", "time [%]"
 HEIGHTS = {FACTOR: 1.5, PROBABILITY: 1.1, FREQUENCY: 1.9, TIME: 0.8}

@@ -25,7 +25,7 @@ from separatrix.figures.style import (
     colour_bar,
     legend_below,
 )
-from separatrix.units import Array, format_quantity, parse
+from separatrix.ground.units import Array, format_quantity, parse
 
 Mask = NDArray[np.bool_]
 

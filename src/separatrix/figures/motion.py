@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from separatrix.figures.style import BLACK, BLUE, GREY, SKY, VERMILION, Look
-from separatrix.units import Array, Hertz
+from separatrix.ground.units import Array, Hertz
 
 AROUND = np.linspace(0.0, 2 * np.pi, 1441)
 """Directions in which boundaries are drawn: a quarter of a degree apart."""

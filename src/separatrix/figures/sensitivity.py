@@ -27,7 +27,7 @@ from separatrix.figures.style import (
     label_lines,
     legend_below,
 )
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 OVERALL = "over all environments"
 LEAST, MOST = 0.02, 7  # smallest share of an input that is drawn; most inputs, and most cases

@@ -24,7 +24,7 @@ from separatrix.figures.style import (
     legend_below,
     with_ends,
 )
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 HIGHEST = 0.5
 """Friction at the top of a picture without any curve: above it no cage material is of interest."""

@@ -23,8 +23,8 @@ from matplotlib.mathtext import math_to_image
 from matplotlib.transforms import Bbox, offset_copy
 from matplotlib.typing import RcKeyType
 
-from separatrix.errors import InputError
-from separatrix.units import Array, format_quantity
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, format_quantity
 
 Look = dict[str, Any]
 """Keyword arguments of matplotlib."""

@@ -29,7 +29,7 @@ from separatrix.figures.style import (
 )
 from separatrix.friction.file import in_words
 from separatrix.friction.reduction import GIVEN
-from separatrix.units import format_number, format_quantity
+from separatrix.ground.units import format_number, format_quantity
 
 ROWS = 2.1
 """Height of a row of panels [inch]."""

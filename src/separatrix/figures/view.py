@@ -21,7 +21,7 @@ from separatrix.figures.motion import (
     shown_parts,
 )
 from separatrix.figures.style import WIDTH, cut, heading, stated, study_of
-from separatrix.units import Array, format_number
+from separatrix.ground.units import Array, format_number
 
 MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 """Most frames of a page, and most numbers in all: they keep it under 1 MB."""

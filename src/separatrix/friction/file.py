@@ -14,10 +14,11 @@ from decimal import Decimal
 from functools import partial
 from pathlib import Path
 
-from separatrix import _check, units
-from separatrix.errors import InputError, together
-from separatrix.measured_friction import FRICTION_LIMIT, LEAST_FRICTION
-from separatrix.toml_files import (
+from separatrix.friction.prediction import FRICTION_LIMIT, LEAST_FRICTION
+from separatrix.ground import bounds as _check
+from separatrix.ground import units
+from separatrix.ground.errors import InputError, together
+from separatrix.ground.toml import (
     Kind,
     Places,
     Reader,
@@ -31,7 +32,7 @@ from separatrix.toml_files import (
     table,
     text,
 )
-from separatrix.units import (
+from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
     Pascal,

@@ -13,7 +13,6 @@ from math import exp, hypot, sqrt
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.file import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.law import (
     Covariates,
@@ -25,6 +24,7 @@ from separatrix.friction.law import (
     tested_range,
     values_of,
 )
+from separatrix.friction.prediction import Prediction
 from separatrix.friction.scatter import (
     LinearModel,
     Posterior,
@@ -32,8 +32,8 @@ from separatrix.friction.scatter import (
     posteriors,
     variance_components,
 )
-from separatrix.measured_friction import Prediction
-from separatrix.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
 """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess. A 25 %

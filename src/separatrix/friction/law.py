@@ -14,8 +14,8 @@ from math import hypot, log, sqrt
 from statistics import correlation
 
 from separatrix.friction.file import CONDITIONS, PRODUCT, WORDS, FrictionTest
-from separatrix.measured_friction import Prediction
-from separatrix.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
+from separatrix.friction.prediction import Prediction
+from separatrix.ground.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
 
 LEAST_SPAN = 1.2
 """Ratio of the largest to the smallest value from which tests span a condition; nearer than that

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.units import Array, Ratio
+from separatrix.ground.units import Array, Ratio
 
 _SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are searched, in units of the residual one
 

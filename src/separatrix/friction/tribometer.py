@@ -9,15 +9,15 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TypeVar
 
-from separatrix.errors import InputError, together
 from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest, place
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
 from separatrix.friction.logs.log import RawLog, in_order, joined, of_log
+from separatrix.friction.prediction import FRICTION_LIMIT
 from separatrix.friction.reduction import RUN_IN_END, Cut, Reduction, TestFriction, reduction, with_outliers
-from separatrix.measured_friction import FRICTION_LIMIT
-from separatrix.units import printable
+from separatrix.ground.errors import InputError, together
+from separatrix.ground.units import printable
 
 _T = TypeVar("_T")
 _S = TypeVar("_S")

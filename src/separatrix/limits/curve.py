@@ -10,6 +10,7 @@ from typing import Annotated, TypeVar
 from separatrix.cage.closed_forms import drift_rate_law, drifts
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage
+from separatrix.ground.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
 from separatrix.limits.point import (
     BAND_FEW,
     BAND_MOST,
@@ -19,9 +20,8 @@ from separatrix.limits.point import (
     linear_limit,
 )
 from separatrix.limits.response import SEARCHED_FRICTION, GrowthCounter, Side
-from separatrix.runner import Runner
-from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
+from separatrix.study.study import StabilitySettings
+from separatrix.verdict.long_jobs import Runner
 
 Point = TypeVar("Point")
 COARSE: tuple[Ratio, ...] = (0.0, 0.25, 0.5, 0.75, 0.875, 1.0)

@@ -13,10 +13,10 @@ from separatrix.cage.disturbance import with_kicks
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.cage.outcome import RunOutcome
-from separatrix.cage_choice import require_friction
 from separatrix.chain.pocket import pocket_speed
 from separatrix.chain.solution import Solution, solve
-from separatrix.errors import ConvergenceError, InputError
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.limits.map_fill import (
     Filled,
     Place,
@@ -45,10 +45,10 @@ from separatrix.limits.map_records import (
     varied,
 )
 from separatrix.limits.response import cage_at
-from separatrix.runner import Runner, joined, made_into
-from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond, Ratio
+from separatrix.study.candidates import require_friction
+from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import Verdict, decide, is_calm, wilson_interval
+from separatrix.verdict.long_jobs import Runner, joined, made_into
 
 MOST_LINKS = 1024  # links of the chain that are remembered
 OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)  # parameters that change nothing before the cage itself

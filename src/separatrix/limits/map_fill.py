@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import comb
 
+from separatrix.ground.units import Ratio
 from separatrix.limits.map_records import EITHER, MapPoint, MapQuestion, side
-from separatrix.runner import Interrupted, Runner
-from separatrix.units import Ratio
 from separatrix.verdict.judgement import CLEAR, FEW, Verdict, wilson_interval
+from separatrix.verdict.long_jobs import Interrupted, Runner
 
 AGREEING = 6
 """A point is decided once this number of runs agree from the first on; otherwise when it is settled."""

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
-from separatrix.errors import InputError
-from separatrix.study import Film, Study, Wear
-from separatrix.study_numbers import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
-from separatrix.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
+from separatrix.study.keys import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
+from separatrix.study.study import Film, Study, Wear
 from separatrix.verdict.judgement import Verdict
 
 RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"

@@ -11,6 +11,7 @@ from separatrix.cage.closed_forms import linear_critical_friction
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.chain.restitution import damping_ratio
 from separatrix.chain.restitution import restitution_factor as nominal
+from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.limits.response import (
     SEARCHED_FRICTION,
     Count,
@@ -22,8 +23,7 @@ from separatrix.limits.response import (
     cage_at,
     ends_of,
 )
-from separatrix.study import StabilitySettings
-from separatrix.units import MetrePerSecond, Ratio
+from separatrix.study.study import StabilitySettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

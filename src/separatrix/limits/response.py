@@ -16,17 +16,17 @@ from math import inf
 
 import numpy as np
 
-from separatrix.ball_traction import FreeBall, SlipField
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage
 from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import LANES
+from separatrix.chain.ball_traction import FreeBall, SlipField
 from separatrix.chain.restitution import damping_for
-from separatrix.errors import ValidityWarning
-from separatrix.runner import Runner
-from separatrix.study import StabilitySettings
-from separatrix.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
+from separatrix.ground.errors import ValidityWarning
+from separatrix.ground.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
+from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import wilson_interval
+from separatrix.verdict.long_jobs import Runner
 
 UNRESOLVED = (
     "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."

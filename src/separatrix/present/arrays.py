@@ -14,16 +14,16 @@ import xarray as xr
 from separatrix.answers import MapAnswer, SensitivityAnswer, TractionAnswer
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
+from separatrix.ground.units import Array, Rows
 from separatrix.present.container import DAMAGE, check_container, damaged
 from separatrix.present.nodes import Group, Leaf, Node, Table, plain
 from separatrix.present.shapes import all_notes, shape
-from separatrix.units import Array, Rows
 
 if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from separatrix.study import Study
+    from separatrix.study.study import Study
 
 RACES = ("inner", "outer")
 Columns = dict[str, Leaf]
@@ -37,7 +37,7 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
     `reason` beside it.
     """
     from separatrix import __version__
-    from separatrix.study_file import provenance_of, resolved
+    from separatrix.study.reading import provenance_of, resolved
 
     data = to_xarray(answer)
     data.attrs |= {

@@ -15,9 +15,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from separatrix.errors import InputError
-from separatrix.input_files import size_of
-from separatrix.units import printable
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import size_of
+from separatrix.ground.units import printable
 
 MOST_BYTES = 512 * 1024**2
 """Size of a file of results; the longest simulations have some 10 MB."""

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from separatrix import study
 from separatrix.chain.mobility import SlipLaw
-from separatrix.errors import SeparatrixError
-from separatrix.units import Rows
+from separatrix.ground.errors import SeparatrixError
+from separatrix.ground.units import Rows
+from separatrix.study import study
 from separatrix.verdict.reasons import CageMotion
 
 
@@ -141,7 +141,7 @@ def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]
     """
     from separatrix import __version__
     from separatrix.present.shapes import all_notes
-    from separatrix.study_file import provenance_of, resolved
+    from separatrix.study.reading import provenance_of, resolved
 
     left_out: list[str] = []
     body = plain(Group(shape(answer)), verb, left_out)

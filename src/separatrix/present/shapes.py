@@ -30,12 +30,12 @@ from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import NotDrawn, UncertainMaterial
 from separatrix.explore.sweep import Sweep
+from separatrix.ground.units import Rows, Watt
 from separatrix.present.nodes import Group, Leaf, Node, Table, absent, fields_of
 from separatrix.present.nodes import shape as shape
 from separatrix.present.text.sentences import pocket_force
 from separatrix.present.text.tables import quantity
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, Ranking
-from separatrix.units import Rows, Watt
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
 

@@ -15,10 +15,10 @@ from separatrix.friction.logs import described
 from separatrix.friction.logs.log import MEANINGS
 from separatrix.friction.reduction import Reduction, TestFriction, steady
 from separatrix.friction.tribometer import ReducedLogs
+from separatrix.ground.units import Array
 from separatrix.present.arrays import variable
 from separatrix.present.nodes import Document, Leaf, plain
 from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
-from separatrix.units import Array
 
 Node = dict[str, Leaf]
 

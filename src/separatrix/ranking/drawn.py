@@ -17,14 +17,14 @@ from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble, Runs
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution, solve
-from separatrix.draws import Case, UncertainInput, sample, stated_frictions
-from separatrix.errors import InputError, SeparatrixError, ValidityWarning
 from separatrix.friction.fit import TestedFriction
-from separatrix.runner import Runner
-from separatrix.study import BallModel, Friction, Study
-from separatrix.study_numbers import study_numbers
-from separatrix.units import Array, MetrePerSecond, Ratio
+from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.units import Array, MetrePerSecond, Ratio
+from separatrix.study.keys import study_numbers
+from separatrix.study.study import BallModel, Friction, Study
+from separatrix.verdict.draws import Case, UncertainInput, sample, stated_frictions
 from separatrix.verdict.judgement import Judgement, judge
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.which_ball import asks_free_balls, transmitted_force, whirl_share, with_reason
 
 Change = Callable[[int, MovingCage], MovingCage]  # from the cage of a bearing, by its place, to another

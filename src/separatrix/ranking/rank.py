@@ -10,15 +10,9 @@ import numpy as np
 
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.cage_choice import (
-    other_than_candidates,
-    ranking_question,
-    reference_candidate,
-    required_environment,
-)
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
-from separatrix.draws import Case
+from separatrix.ground.units import Ratio
 from separatrix.limits.curve import (
     OWN_DAMPING,
     Node,
@@ -61,10 +55,16 @@ from separatrix.ranking.records import (
     ranks,
     same_rank,
 )
-from separatrix.runner import Runner
-from separatrix.study import RankingQuestion, StabilitySettings, Study
-from separatrix.units import Ratio
+from separatrix.study.candidates import (
+    other_than_candidates,
+    ranking_question,
+    reference_candidate,
+    required_environment,
+)
+from separatrix.study.study import RankingQuestion, StabilitySettings, Study
+from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.which_ball import judge_solution, transmitted_force
 
 Key = tuple[Pocket, Ratio]  # a pocket, and a friction: what a verdict is about

@@ -11,9 +11,9 @@ from separatrix.cage.disturbance import with_kicks
 from separatrix.chain.pocket import contact_radius, pocket_speed
 from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
 from separatrix.chain.solution import Solution
+from separatrix.ground.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
 from separatrix.limits.curve import RestitutionThreshold
-from separatrix.study import BallBearing, BallModel, Guidance, Material, MotionModel, PocketShape, Study
-from separatrix.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
+from separatrix.study.study import BallBearing, BallModel, Guidance, Material, MotionModel, PocketShape, Study
 from separatrix.verdict.judgement import Judgement, KickCount, Verdict
 from separatrix.verdict.which_ball import transmitted_force
 

@@ -10,9 +10,18 @@ from typing import Annotated
 import numpy as np
 
 from separatrix.chain.pocket import PocketConditions, standard_error
+from separatrix.ground.units import (
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    Ratio,
+    Rows,
+    Second,
+)
 from separatrix.limits.curve import StabilityCurve
-from separatrix.study import BallModel, Friction, MotionModel
-from separatrix.units import Kilogram, Metre, MetrePerSecond, Newton, NewtonPerMetre, Ratio, Rows, Second
+from separatrix.study.study import BallModel, Friction, MotionModel
 from separatrix.verdict.judgement import Judgement
 
 

@@ -20,8 +20,8 @@ from separatrix.comparing.shown import (
     result_words,
     shown_rows,
 )
-from separatrix.errors import InputError
-from separatrix.messages import grouped, noted_warnings
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import grouped, noted_warnings
 from separatrix.present import load
 from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.questions import Computed, Verb, verb_named
@@ -42,7 +42,7 @@ from separatrix.reporting.record import (
 from separatrix.reporting.stages import bearing_and_cage, stages
 
 if TYPE_CHECKING:
-    from separatrix.study import Study
+    from separatrix.study.study import Study
 
 MOST_CASES = 40
 MOST_ROWS = 40
@@ -287,7 +287,7 @@ def answers(kept: Kept, study: Study) -> bool:
     """Whether an answer is complete, from this version, and to this study."""
     from separatrix import __version__
     from separatrix.present import plain
-    from separatrix.study_file import resolved
+    from separatrix.study.reading import resolved
 
     found = kept.document
     asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}

@@ -13,10 +13,10 @@ from types import ModuleType
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from separatrix.errors import InputError
-from separatrix.messages import harmless
+from separatrix.ground.errors import InputError
+from separatrix.ground.messages import harmless
+from separatrix.ground.staged import staged
 from separatrix.reporting.record import Block, Equation, Facts, Paragraph, Picture, Report, Table
-from separatrix.staged import staged
 
 SHORT = 24
 """Letters of a name that stays on one line."""

@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 
 from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
 from separatrix.cage.outcome import Cause, RunOutcome
-from separatrix.units import (
+from separatrix.ground.units import (
     Array,
     Hertz,
     Joule,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from separatrix.cage.closed_forms import drift_rate_law, room
 from separatrix.cage.outcome import GROWN, Cause, RunOutcome
-from separatrix.units import Array, Metre, Newton, format_number, format_quantity
+from separatrix.ground.units import Array, Metre, Newton, format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble

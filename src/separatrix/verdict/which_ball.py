@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 from separatrix.cage.closed_forms import felt_mass
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.pocket import REFERENCE
-from separatrix.study import BallModel
+from separatrix.study.study import BallModel
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
     from separatrix.cage.moving_cage import MovingCage
     from separatrix.chain.solution import Solution
-    from separatrix.units import Newton, Ratio
+    from separatrix.ground.units import Newton, Ratio
 
 ENOUGH: Ratio = 0.25
 """Friction of a sustained whirl over what the races hold, up to which the ball of one state decides alone."""

@@ -15,8 +15,8 @@ import numpy as np
 
 from separatrix.chain.equilibrium.groove import Touch, friction_resultants, touch
 from separatrix.chain.equilibrium.problem import Problem, Work
-from separatrix.compiled import kernel, part
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array
 
 STEEPEST = 1.4
 """Largest contact angle for which kinematics are computed [rad]."""

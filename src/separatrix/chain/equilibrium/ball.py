@@ -21,8 +21,8 @@ from separatrix.chain.equilibrium.balance import (
 )
 from separatrix.chain.equilibrium.groove import static_split, touch
 from separatrix.chain.equilibrium.problem import Method, Problem, Work, copy, solve_linear, work
-from separatrix.compiled import part, unfolded
-from separatrix.units import Array
+from separatrix.ground.compiled import part, unfolded
+from separatrix.ground.units import Array
 
 TOLERANCE = 1e-11
 """Largest unbalanced force of a ball over the force scale of the bearing; rounding allows about 1e-14."""

@@ -24,8 +24,8 @@ import numpy as np
 
 from separatrix.chain.equilibrium.problem import Problem
 from separatrix.chain.hertz import approach_coefficient
-from separatrix.compiled import kernel, part
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array
 
 
 class Touch(NamedTuple):

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from separatrix.chain.hertz import contact_modulus
-from separatrix.compiled import part
-from separatrix.errors import InputError
-from separatrix.study import BallBearing, Operation
-from separatrix.units import Array
+from separatrix.ground.compiled import part
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array
+from separatrix.study.study import BallBearing, Operation
 
 
 class Problem(NamedTuple):

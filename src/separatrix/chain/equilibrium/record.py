@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain.hertz import ContactEllipse, contact_ellipse, contact_modulus, race_curvatures
-from separatrix.study import BallBearing, KinematicModel, Race
-from separatrix.units import Array, Metre, Newton, NewtonMetre, Radian
+from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Radian
+from separatrix.study.study import BallBearing, KinematicModel, Race
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -25,8 +25,8 @@ from separatrix.chain.equilibrium.ball import (
 from separatrix.chain.equilibrium.groove import Touch, static_split, touch
 from separatrix.chain.equilibrium.problem import Method, Problem, Work, copy, solve_linear, work
 from separatrix.chain.hertz import elliptic_integrals
-from separatrix.compiled import kernel, part, unfolded
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part, unfolded
+from separatrix.ground.units import Array
 
 STATIC, CONTROLLED, FREE = 3, 2, 6
 """Length of the state of a ball, which names its model; of the three numbers of STATIC two are used."""

@@ -20,9 +20,9 @@ from separatrix.chain.equilibrium.ring import (
     settle_free_states,
     solve_ring,
 )
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.study import BallBearing, KinematicModel, Operation, Race
-from separatrix.units import Array, Newton, NewtonMetre, Radian, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Array, Newton, NewtonMetre, Radian, Ratio
+from separatrix.study.study import BallBearing, KinematicModel, Operation, Race
 
 CELLS, NODES, COARSE_CELLS, COARSE_NODES = 48, chebyshev_nodes(24), 16, chebyshev_nodes(8)
 """Quadrature over an ellipse: strips across the groove, places along rolling; the same, coarse."""

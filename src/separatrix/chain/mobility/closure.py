@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from separatrix.ball_traction import FreeBall, SlipField
+from separatrix.chain.ball_traction import FreeBall, SlipField
 from separatrix.chain.contacts import BearingState, bearing_state, of_both_races, race_tracks
 from separatrix.chain.creep import Creep
 from separatrix.chain.equilibrium.groove import chebyshev_nodes
@@ -16,9 +16,9 @@ from separatrix.chain.equilibrium.problem import problem
 from separatrix.chain.mobility.field import HeldBall, settle
 from separatrix.chain.mobility.record import SlipLaw
 from separatrix.chain.race_curve import race_slope
-from separatrix.errors import InputError
-from separatrix.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
-from separatrix.units import MetrePerSecond, PerSecond, RadianPerSecond
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import MetrePerSecond, PerSecond, RadianPerSecond
+from separatrix.study.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
 
 REMEMBERED = 256
 """Balls that are kept, by the records they are made of."""

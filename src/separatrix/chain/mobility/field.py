@@ -14,9 +14,9 @@ import numpy as np
 from separatrix.chain.equilibrium.balance import contact_friction, free_ball, turning_loads
 from separatrix.chain.equilibrium.groove import touch
 from separatrix.chain.equilibrium.problem import Problem, copy, work
-from separatrix.compiled import kernel
-from separatrix.errors import ConvergenceError
-from separatrix.units import Array, Newton, NewtonPerMetre, NewtonSecondPerMetre
+from separatrix.ground.compiled import kernel
+from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.units import Array, Newton, NewtonPerMetre, NewtonSecondPerMetre
 
 SETTLED = 1e-10
 """Unbalanced friction of a settled ball over mu (Q_i + Q_o); rounding of the slip fields allows 1e-13."""

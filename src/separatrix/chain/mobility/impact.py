@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from separatrix.ball_traction import BallTraction
+from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.equilibrium.problem import Problem, solve_linear
 from separatrix.chain.mobility.field import ball_balance
 from separatrix.chain.mobility.modes import Modes
-from separatrix.compiled import kernel, part
-from separatrix.errors import ConvergenceError
-from separatrix.units import Array, Kilogram, NewtonPerMetre, Ratio
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.units import Array, Kilogram, NewtonPerMetre, Ratio
 
 TOLERANCE = 1e-4
 """Error of a step over the speed of the impact and the depth that belongs to it."""

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
-from separatrix.ball_traction import BallTraction
-from separatrix.units import Array, Kilogram, NewtonSecondPerMetre
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.ground.units import Array, Kilogram, NewtonSecondPerMetre
 
 
 def fitted_law(speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass: Kilogram) -> BallTraction:

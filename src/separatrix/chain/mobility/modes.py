@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 REAL = 1e-9
 """Imaginary part of a rate over its size below which it is rounding."""

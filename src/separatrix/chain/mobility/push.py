@@ -12,8 +12,8 @@ import numpy as np
 
 from separatrix.chain.mobility.field import HeldBall, balanced
 from separatrix.chain.mobility.modes import Modes
-from separatrix.errors import ConvergenceError
-from separatrix.units import Array
+from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.units import Array
 
 
 class Curve(NamedTuple):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated
 
-from separatrix.ball_traction import BallTraction
-from separatrix.units import (
+from separatrix.chain.ball_traction import BallTraction
+from separatrix.ground.units import (
     Array,
     Kilogram,
     MetrePerSecond,

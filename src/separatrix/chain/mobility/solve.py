@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from separatrix.ball_traction import BallTraction
+from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.mobility.closure import REMEMBERED, held_ball
 from separatrix.chain.mobility.field import (
@@ -22,9 +22,9 @@ from separatrix.chain.mobility.modes import Modes, mobility_at, modes, step_damp
 from separatrix.chain.mobility.push import CURVE, pushed
 from separatrix.chain.mobility.record import Impacts, LinearMobility, Mobility, SlipLaw
 from separatrix.chain.restitution import damping_ratio, restitution_factor
-from separatrix.errors import ConvergenceError
-from separatrix.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
-from separatrix.units import Array, Kilogram, MetrePerSecond, NewtonPerMetre, NewtonSecondPerMetre
+from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.units import Array, Kilogram, MetrePerSecond, NewtonPerMetre, NewtonSecondPerMetre
+from separatrix.study.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
 
 GENTLE, HARD, IMPACTS = 0.03, 8.0, 12
 """Speeds of impacts: from 0.03 to 8 times that at which a held ball would be pushed with its capacity."""

@@ -30,9 +30,9 @@ from separatrix.chain.traction.ellipse import (
 from separatrix.chain.traction.layer import BondedLayer, layer_tables
 from separatrix.chain.traction.master import MasterTable, film_tables, master_traction
 from separatrix.chain.traction.profile import Profile, edges_of, ends_of
-from separatrix.compiled import kernel
-from separatrix.errors import InputError, ValidityWarning
-from separatrix.units import Array, Metre, Ratio, format_quantity
+from separatrix.ground.compiled import kernel
+from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.units import Array, Metre, Ratio, format_quantity
 
 NODES = (200, 400, 800)  # elements a strip of the coarser of two solutions; the finer one has twice as many
 INTERPOLATION = (

@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from separatrix.chain.traction.master import master_traction
-from separatrix.compiled import kernel, part
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array
 
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 SECTORS = np.pi * np.array([-0.5, -0.4, -0.25, 0.0, 0.25, 0.4, 0.5])

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from separatrix.chain.traction.profile import Profile, worn_band
-from separatrix.study import Film, Race, Wear
-from separatrix.units import Metre, Ratio
+from separatrix.ground.units import Metre, Ratio
+from separatrix.study.study import Film, Race, Wear
 
 
 class Track(NamedTuple):

@@ -17,10 +17,10 @@ from scipy.linalg import expm
 
 from separatrix.chain.traction.master import MasterTable, master_tables
 from separatrix.chain.traction.strip import log_kernel
-from separatrix.compiled import kernel, part
-from separatrix.errors import InputError
-from separatrix.study import BallBearing, Film, Material
-from separatrix.units import Array, Metre, Pascal, Ratio
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre, Pascal, Ratio
+from separatrix.study.study import BallBearing, Film, Material
 
 TERMS = 16  # exponentials exp(-j kh/2) that carry c(kh); the test measures what they leave
 DEEP = 8.0  # kh beyond which the half-plane below is not felt: (kh)^2 exp(-2 kh) = 7e-6

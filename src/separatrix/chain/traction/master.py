@@ -16,8 +16,8 @@ from functools import lru_cache
 import numpy as np
 
 from separatrix.chain.traction.strip import node_pressure, strip_influence, toeplitz_product
-from separatrix.compiled import kernel, part
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array
 
 LAM_MIN, LAM_MAX, LAM_COUNT = 1e-3, 300.0, 56
 CREEP_COUNT = 257

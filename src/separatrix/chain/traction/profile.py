@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.errors import InputError
-from separatrix.units import Array, Metre
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,7 @@ from separatrix.chain.traction.curve import scaled_contact
 from separatrix.chain.traction.layer import BondedLayer, strip_layer
 from separatrix.chain.traction.profile import Profile
 from separatrix.chain.traction.strip import solve_strip, stick_solution, strip_influence
-from separatrix.units import Array, Ratio
+from separatrix.ground.units import Array, Ratio
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.compiled import kernel, part
-from separatrix.errors import ConvergenceError
-from separatrix.units import Array, Ratio
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.units import Array, Ratio
 
 
 @part

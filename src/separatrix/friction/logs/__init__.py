@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
 from separatrix.friction.logs.columns import Understood, understand
 from separatrix.friction.logs.dialect import CLOCK, text_of
@@ -19,8 +18,9 @@ from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
 from separatrix.friction.logs.raw import raw_log
 from separatrix.friction.logs.sliding import motion_columns
-from separatrix.input_files import size_of, unreadable
-from separatrix.units import format_quantity, printable, shown, unit_of
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.units import format_quantity, printable, shown, unit_of
 
 __all__ = ["column_map", "described", "read_column_map", "read_log"]
 LARGEST = 2_000_000_000  # bytes that a log may have

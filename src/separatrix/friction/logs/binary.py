@@ -21,14 +21,14 @@ from typing import IO, TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.header import layout_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts, ranks
-from separatrix.input_files import size_of, unreadable
-from separatrix.units import Array, printable, shown
-from separatrix.workbook_files import MOST_BYTES, SAVE_AGAIN, refuse_unsafe
+from separatrix.ground.errors import InputError
+from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.sheet import MOST_BYTES, SAVE_AGAIN, refuse_unsafe
+from separatrix.ground.units import Array, printable, shown
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

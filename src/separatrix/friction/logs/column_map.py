@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from pathlib import Path, PurePosixPath
 
-from separatrix import units
-from separatrix.errors import InputError
 from separatrix.friction.file import place
 from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
 from separatrix.friction.logs.names import MEANINGS, known_units, scale_of, torque_scale
-from separatrix.toml_files import Kind, build, quantity, read_toml
-from separatrix.units import printable, shown
+from separatrix.ground import units
+from separatrix.ground.errors import InputError
+from separatrix.ground.toml import Kind, build, quantity, read_toml
+from separatrix.ground.units import printable, shown
 
 KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')
 MOST = 1_000_000_000  # number of a column or a line, at most

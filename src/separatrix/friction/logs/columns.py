@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap
 from separatrix.friction.logs.dialect import CLOCK
 from separatrix.friction.logs.header import PLAIN, Layout
@@ -27,7 +26,8 @@ from separatrix.friction.logs.names import (
     scale_of,
     torque_scale,
 )
-from separatrix.units import Metre, printable, shown
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Metre, printable, shown
 
 LAST = 9  # rank of times as text: a column of seconds is finer
 NO_UNIT = "has no unit, so that its meaning is not certain"

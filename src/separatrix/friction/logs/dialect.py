@@ -10,8 +10,8 @@ from datetime import date
 
 import numpy as np
 
-from separatrix.errors import InputError
-from separatrix.units import Array, printable
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, printable
 
 _MISSING = (
     "x \u00d7 - -- --- \u2013 \u2014 nan +nan -nan null none n/a na n.a. k.a. #n/a #nv #value! #div/0! #num! "

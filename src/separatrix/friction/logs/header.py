@@ -9,12 +9,12 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from separatrix import units
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.dialect import Dialect, is_number
 from separatrix.friction.logs.names import ALIASES, NONE, TORQUES, ranks
-from separatrix.units import printable
+from separatrix.ground import units
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import printable
 
 _OTHER_UNITS = (
     "% %rh v mv a ma w kw hz khz deg \u00b0 rad g kg nm mm2 mm3 um3 um2 bar mbar pa kpa mpa l/min ml/min "

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from separatrix import _check
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
 from separatrix.friction.logs.header import PLAIN, Layout
 from separatrix.friction.logs.names import ABSCISSAE, header_parts, plain, scale_in
 from separatrix.friction.logs.names import MEANINGS as MEANINGS
-from separatrix.units import (
+from separatrix.ground import bounds as _check
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import (
     Array,
     Kelvin,
     MetrePerSecond,

@@ -7,9 +7,9 @@ import unicodedata
 from dataclasses import dataclass
 from functools import cache
 
-from separatrix import units
 from separatrix.friction.logs.dialect import CLOCK, SHORT_CLOCKS
-from separatrix.units import Array
+from separatrix.ground import units
+from separatrix.ground.units import Array
 
 MEANINGS = {
     "friction": "-",

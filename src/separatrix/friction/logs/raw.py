@@ -6,14 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.columns import Meant, Understood, understand
 from separatrix.friction.logs.dialect import is_number
 from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain
 from separatrix.friction.logs.sliding import Rows, sliding_rows
-from separatrix.units import Array, format_quantity, printable, shown
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, format_quantity, printable, shown
 
 HIGHEST = 5.0
 """Friction above which a value is not a ratio of forces in sliding: a code for a missing value, no load."""

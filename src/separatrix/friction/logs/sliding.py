@@ -15,7 +15,7 @@ from scipy.ndimage import median_filter
 
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts, plain, ranks
-from separatrix.units import Array, format_number, printable
+from separatrix.ground.units import Array, format_number, printable
 
 Rows = NDArray[np.bool_]
 SPEEDS = ("slip_speed", "rotational_speed")  # meanings of a column of speed; its unit does not matter here

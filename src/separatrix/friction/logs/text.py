@@ -10,7 +10,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.column_map import TextFormat
 from separatrix.friction.logs.dialect import (
     CLOCK,
@@ -28,7 +27,8 @@ from separatrix.friction.logs.dialect import (
 from separatrix.friction.logs.header import Header, Layout, find_header, header_at, is_names, metadata_of
 from separatrix.friction.logs.log import RawTable
 from separatrix.friction.logs.names import header_parts
-from separatrix.units import Array, printable
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, printable
 
 Wanted = Callable[[Sequence[str], Sequence[str]], Sequence[int]]
 """From the headers and units of a table to the numbers of the columns to read."""

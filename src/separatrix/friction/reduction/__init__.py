@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.file import in_words
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import cycles, steady
 from separatrix.friction.reduction.conditions import steady_conditions
 from separatrix.friction.reduction.flags import Event, flags, kept_rows, row_events
 from separatrix.friction.reduction.steady import METHOD, RunIn, run_in
-from separatrix.units import Array, Ratio, format_number
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Ratio, format_number
 
 GIVEN = "given"  # how the end of running-in was found, if a user gave it
 PREFERRED = ("distance", "time", "cycles")  # the abscissa of ends and drift is the first that a log has

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog, of_log
-from separatrix.units import Array, format_quantity
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, format_quantity
 
 WATCHED = ("slip_speed", "normal_force", "temperature")  # columns that are conditions
 PARTS = 12  # parts of the steady part whose medians are compared

@@ -13,10 +13,10 @@ from scipy.ndimage import percentile_filter
 from scipy.signal import welch
 from scipy.special import gammaincc
 
-from separatrix.errors import InputError
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.steady import ROUNDING
-from separatrix.units import Array, Ratio, format_number
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Ratio, format_number
 
 MOST = 256  # spans into which a test is divided for its statistics, at most
 FEWEST = 12  # spans, where no cycle is known and there are as many rows

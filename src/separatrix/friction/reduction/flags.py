@@ -15,7 +15,7 @@ from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction.conditions import changes
 from separatrix.friction.reduction.cycles import Spans
 from separatrix.friction.reduction.steady import LONG
-from separatrix.units import format_number, format_quantity
+from separatrix.ground.units import format_number, format_quantity
 
 if TYPE_CHECKING:
     from separatrix.friction.reduction import Reduction

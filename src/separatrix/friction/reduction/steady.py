@@ -35,7 +35,7 @@ from scipy.fft import dct
 from scipy.ndimage import median_filter
 from scipy.special import stdtr, stdtrit
 
-from separatrix.units import Array, Ratio
+from separatrix.ground.units import Array, Ratio
 
 CONFIDENCE = 0.95  # of the interval
 CORNERS = np.geomspace(2.0, 4096.0, 34)

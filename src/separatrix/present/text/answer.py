@@ -9,8 +9,7 @@ from math import asin, degrees, isclose, pi
 from operator import itemgetter
 
 from separatrix.answers import CheckAnswer
-from separatrix.cage_body import cage_inertia
-from separatrix.pocket_shape import half_play, tilt
+from separatrix.ground.units import format_quantity
 from separatrix.present.nodes import Document
 from separatrix.present.shapes import all_notes
 from separatrix.present.text.cage import simulate
@@ -29,10 +28,11 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.study import CageDesign, ClearanceState, Guidance, Study
-from separatrix.study_file import inputs_of, resolved
-from separatrix.study_file.document import SECTIONS
-from separatrix.units import format_quantity
+from separatrix.study.cage_body import cage_inertia
+from separatrix.study.pocket_shape import half_play, tilt
+from separatrix.study.reading import inputs_of, resolved
+from separatrix.study.reading.document import SECTIONS
+from separatrix.study.study import CageDesign, ClearanceState, Guidance, Study
 
 INCOMPLETE = "INCOMPLETE: interrupted. What was not finished is left out, or has a dash in its place."
 

@@ -7,7 +7,6 @@ import math
 from separatrix.answers import SimulationAnswer
 from separatrix.cage import History, MovingCage
 from separatrix.cage.closed_forms import drift_rate_law
-from separatrix.cage_choice import cage_candidate, environment_of
 from separatrix.limits.point import own_restitution_factor
 from separatrix.present.shapes import outcome_sentence, rubbing_power
 from separatrix.present.text.chain import basis, running_clearances
@@ -22,7 +21,8 @@ from separatrix.present.text.tables import (
     significant,
     stated,
 )
-from separatrix.study import Guidance, Study
+from separatrix.study.candidates import cage_candidate, environment_of
+from separatrix.study.study import Guidance, Study
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CageMotion, ball_words
 

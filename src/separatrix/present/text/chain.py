@@ -26,7 +26,7 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.study import PressureSlip, Study, Worn
+from separatrix.study.study import PressureSlip, Study, Worn
 
 BALL_HEADERS = (
     *("ball", "azimuth\ndeg", "angle in\ndeg", "angle out\ndeg", "load in\nN", "load out\nN"),

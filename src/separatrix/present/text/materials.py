@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from separatrix.library.records import Datum, Facts, FrictionTable, Record
+from separatrix.ground.units import Kelvin, format_quantity
 from separatrix.present.text.tables import (
     ABSENT,
     facts,
@@ -17,7 +17,7 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.units import Kelvin, format_quantity
+from separatrix.study.library.records import Datum, Facts, FrictionTable, Record
 
 AnyRecord = Record | FrictionTable
 

@@ -34,7 +34,7 @@ from separatrix.present.text.tables import (
     table,
 )
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking, Row
-from separatrix.study import Study
+from separatrix.study.study import Study
 from separatrix.verdict.judgement import Judgement, Verdict
 
 HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)

@@ -32,7 +32,7 @@ from separatrix.present.text.tables import (
     significant,
     table,
 )
-from separatrix.study import Study
+from separatrix.study.study import Study
 
 HEADERS = (
     *("material", "friction of\na new cage", "P(stable)\n(95 %)", "verdict", "motion"),

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Sequence
 
 from separatrix.answers import MapAnswer, StabilityAnswer
-from separatrix.cage_choice import cage_candidate
 from separatrix.explore.sweep import Sweep, SweptCase
 from separatrix.limits.curve import StabilityCurve
 from separatrix.limits.map_records import NOT_RUN, Inference, MapAxis, MapChange, StabilityMap, Stopping
@@ -27,7 +26,8 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.study import Study
+from separatrix.study.candidates import cage_candidate
+from separatrix.study.study import Study
 
 HEADERS = (
     *("restitution\nfactor", "critical friction\n(95 %)", "band\nlow", "band\nhigh"),

@@ -6,11 +6,11 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from separatrix.ground.units import format_quantity
 from separatrix.present.nodes import field_units
-from separatrix.units import format_quantity
 
 if TYPE_CHECKING:
-    from separatrix.study import Friction
+    from separatrix.study.study import Friction
 
 WIDTH = 96
 ABSENT = "-"

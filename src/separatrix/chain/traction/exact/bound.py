@@ -9,8 +9,8 @@ import numpy as np
 
 from separatrix.chain.traction.exact.grid import GAUSS_NODES, GAUSS_WEIGHTS, Grid
 from separatrix.chain.traction.profile import Profile
-from separatrix.errors import InputError
-from separatrix.units import Array, Metre, Pascal, Ratio
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre, Pascal, Ratio
 
 LIGHTEST = 1e-6  # of the largest pressure, below which asperities do not soften further
 

@@ -35,8 +35,8 @@ from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.chain.traction.exact.two_way import solve_two_way
 from separatrix.chain.traction.profile import Profile
-from separatrix.errors import ConvergenceError, InputError, ValidityWarning
-from separatrix.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio, unit_of
+from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.ground.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio, unit_of
 
 MOST_CELLS = 5_000_000  # of all cases: their fields take 60 bytes a cell
 LARGEST_STEPS = 5000  # columns rolled in a transient

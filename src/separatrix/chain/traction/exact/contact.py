@@ -37,8 +37,8 @@ from separatrix.chain.traction.exact.normal import film_strain, press, pressed_c
 from separatrix.chain.traction.exact.operator import Operator, rolling_operator
 from separatrix.chain.traction.exact.precondition import SLIP
 from separatrix.chain.traction.profile import Profile
-from separatrix.errors import ConvergenceError, InputError, ValidityWarning
-from separatrix.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
 
 LARGEST_TOLERANCE = 0.1
 LARGEST_CREEP = 1e3  # a creep ratio of 2 is sliding without rolling

@@ -17,7 +17,7 @@ from scipy import fft, ndimage
 
 from separatrix.chain.traction.exact.flexibility import Body, flexibility
 from separatrix.chain.traction.exact.grid import Grid
-from separatrix.units import Array
+from separatrix.ground.units import Array
 
 BOX = 4.0  # sides of the periodic box over those of the contact
 FINE = 500, 128  # points of it over the contact along rolling and across

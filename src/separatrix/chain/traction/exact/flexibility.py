@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from separatrix.errors import InputError
-from separatrix.units import Array, Metre, Pascal, Ratio
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre, Pascal, Ratio
 
 DEEP = 700.0  # kh beyond which exp(-kh) is 0 in floating point
 NEARLY_INCOMPRESSIBLE = 0.49  # Poisson's ratio above which a bonded film's compression modulus diverges

@@ -13,8 +13,8 @@ from typing import Annotated
 
 import numpy as np
 
-from separatrix.compiled import kernel, part
-from separatrix.units import Array, Metre, Pascal
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array, Metre, Pascal
 
 MEAN_SHAPE = 0.72  # mean over largest pressure of a row, between pi/4 of Hertz and 2/3 of a thin soft film
 CELLS = 40  # columns, and rows, of a contact that is not longer than wide

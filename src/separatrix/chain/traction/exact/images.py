@@ -22,9 +22,9 @@ from functools import lru_cache
 import numpy as np
 
 from separatrix.chain.traction.exact.flexibility import Body, flexibility, half_space_flexibility
-from separatrix.compiled import kernel, part
-from separatrix.errors import InputError
-from separatrix.units import Array, Metre, Ratio
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre, Ratio
 
 IMAGES = 24  # exponentials beside the constant
 STEPS = (1.0, 1.4, 2.0)  # of the depths, in half thicknesses; stiff films respond to longer waves

@@ -17,8 +17,8 @@ import numpy as np
 
 from separatrix.chain.traction.exact.operator import Operator, product
 from separatrix.chain.traction.exact.precondition import SLIP, STICK, States, precondition, slip_factors
-from separatrix.compiled import kernel, part
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array
 
 LARGEST_SPACE = 80  # vectors of the Krylov space; 3 to 12 are usual
 

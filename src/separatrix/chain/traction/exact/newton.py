@@ -23,9 +23,9 @@ import numpy as np
 from separatrix.chain.traction.exact.krylov import Sets, right_side, solve_step
 from separatrix.chain.traction.exact.operator import Operator, product
 from separatrix.chain.traction.exact.precondition import OUTSIDE, SLIP, STICK, States
-from separatrix.compiled import kernel, part
-from separatrix.errors import ConvergenceError
-from separatrix.units import Array, Ratio
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.units import Array, Ratio
 
 TOLERANCE = 1e-5  # of the tractions: forces are then right to about 1e-6
 LINEAR = 0.05  # relative tolerance of a linear step

@@ -16,8 +16,8 @@ from separatrix.chain.traction.exact.flexibility import Body
 from separatrix.chain.traction.exact.grid import Grid, pressed_grid
 from separatrix.chain.traction.exact.images import Images, influence, pair_images
 from separatrix.chain.traction.exact.operator import SHIFT, spectrum
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.units import Array, Metre, Newton, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Array, Metre, Newton, Ratio
 
 TOLERANCE = 1e-8  # change of the pressures in one iteration over the load
 LARGEST_ITERATIONS = 1000

@@ -30,8 +30,8 @@ from separatrix.chain.traction.exact.flexibility import Body, flexibility, half_
 from separatrix.chain.traction.exact.grid import Grid, end_normals
 from separatrix.chain.traction.exact.images import influence, pair_images
 from separatrix.chain.traction.exact.precondition import leading_inverses
-from separatrix.compiled import kernel
-from separatrix.units import Array, Metre, Ratio
+from separatrix.ground.compiled import kernel
+from separatrix.ground.units import Array, Metre, Ratio
 
 Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]

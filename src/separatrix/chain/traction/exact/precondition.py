@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from separatrix.compiled import kernel, part
-from separatrix.units import Array
+from separatrix.ground.compiled import kernel, part
+from separatrix.ground.units import Array
 
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.int64]

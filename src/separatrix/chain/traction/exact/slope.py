@@ -29,8 +29,8 @@ from separatrix.chain.traction.exact.krylov import right_side, solve_step
 from separatrix.chain.traction.exact.newton import Settled
 from separatrix.chain.traction.exact.operator import unresolved_film
 from separatrix.chain.traction.profile import Profile
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.units import Array, Newton, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Array, Newton, Ratio
 
 TOLERANCE = 1e-6  # of the tractions
 LINEAR = 1e-4  # relative tolerance of a tangent

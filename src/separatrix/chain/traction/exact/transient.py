@@ -31,7 +31,7 @@ from separatrix.chain.traction.exact.operator import (
     shift_operator,
     spectrum,
 )
-from separatrix.units import Array, Ratio
+from separatrix.ground.units import Array, Ratio
 
 
 def shift(

@@ -26,8 +26,8 @@ from separatrix.chain.traction.exact.grid import Grid, cell_counts, pressed_grid
 from separatrix.chain.traction.exact.images import Images, influence, pair_images
 from separatrix.chain.traction.exact.normal import REFINED, press_in_box, pressed_box, touches_edge
 from separatrix.chain.traction.exact.operator import SHIFT, Complex, spectrum
-from separatrix.errors import ConvergenceError, InputError
-from separatrix.units import Array, PerMetre, PerMetre2, Ratio
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Array, PerMetre, PerMetre2, Ratio
 
 LARGEST_PASSES = 8
 SETTLED = 1e-4  # change of the pressure in a pass, over the load

@@ -1,0 +1,126 @@
+"""What the races do to a pushed ball: of one state, a mass and a law of traction; free, two slip fields."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from separatrix.ground import bounds as _check
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import (
+    Array,
+    Kilogram,
+    KilogramMetre2,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonSecondPerMetre,
+    PerSecond,
+    Ratio,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BallTraction:
+    r"""A ball of one state: :math:`m_e \dot u = N - F(u)`, :math:`F(u) = C u / (1 + (u/v)^4)^{1/4}`.
+
+    u is the speed beyond its free orbit. The slip fields of bearings have the knee of this power within 1 to
+    2 % of the capacity (docs/theory/mobility.md).
+
+    Parameters
+    ----------
+    mass : float
+        Effective mass m_e: of the ball with the spin that follows it at once [kg].
+    slope, speed : float
+        C [N s/m], and v, above which the races slide [m/s]; infinite for a damper.
+
+    Raises
+    ------
+    InputError
+        A number is not above zero.
+    """
+
+    mass: Kilogram
+    slope: NewtonSecondPerMetre
+    speed: MetrePerSecond
+
+    def __post_init__(self) -> None:
+        limits = (("mass", 1e-12, 1e3), ("slope", 1e-12, 1e12))
+        _check.settle(
+            *(_check.positive(self, name, low, high) for name, low, high in limits), _refused_speed(self)
+        )
+
+    @property
+    def capacity(self) -> Newton:
+        """Largest force of the law, at infinite speed; infinite with a damper."""
+        return self.slope * self.speed
+
+    def stiffened(self, ratio: float) -> BallTraction:
+        """Return the law with a slope this many times as large, of the same capacity and mass."""
+        return replace(self, slope=self.slope * ratio, speed=self.speed / ratio)
+
+    def force(self, speed: Array) -> Array:
+        """F(u) at speeds beyond the free orbit, same shape [N]."""
+        u = np.asarray(speed, dtype=np.float64)
+        return np.asarray(self.slope * u / (1.0 + (u / self.speed) ** 4) ** 0.25)
+
+
+def _refused_speed(law: BallTraction) -> Iterator[InputError]:
+    """The knee is at a speed above zero; it may be infinite."""
+    if not law.speed > 0.0:
+        yield InputError("BallTraction.speed", "must be > 0 [m/s]", str(law.speed))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlipField:
+    """One race at a free ball in steady rolling, seen from the ball.
+
+    Attributes
+    ----------
+    normal_axial, normal_radial : float
+        Direction from the ball's centre to the contact: along the axis and outward [-].
+    limit : float
+        Friction times load [N].
+    semi_major, axis_ratio : float
+        Half the ellipse across the groove [m], and its other half over it [-].
+    slip, pivoting, heathcote : float
+        Slip of the middle along the orbit; half the ellipse times the pivoting speed; slip of the ellipse's
+        ends against its middle from the curvature of the pressed surface [m/s].
+    elastic_slip : float
+        Slip that elastic creep makes of full friction [m/s].
+    """
+
+    normal_axial: Ratio
+    normal_radial: Ratio
+    limit: Newton
+    semi_major: Metre
+    axis_ratio: Ratio
+    slip: MetrePerSecond
+    pivoting: MetrePerSecond
+    heathcote: MetrePerSecond
+    elastic_slip: MetrePerSecond
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeBall:
+    """A ball with its mass, both races' slip fields, and the fastest rate of its small motions."""
+
+    mass: Kilogram
+    inertia: KilogramMetre2
+    inner: SlipField
+    outer: SlipField
+    fastest_rate: PerSecond
+
+    @property
+    def capacity(self) -> Newton:
+        """Largest force that both races hold, f_BT (Q_i + Q_o) [N]."""
+        return self.inner.limit + self.outer.limit
+
+    def __post_init__(self) -> None:
+        if not all(
+            math.isfinite(x) and x > 0.0 for x in (self.mass, self.inertia, self.capacity, self.fastest_rate)
+        ):
+            raise InputError("FreeBall", "must have a mass, an inertia, loads and rates above zero")

@@ -1,0 +1,84 @@
+"""Measured friction of ball on cage: its mean, its scatter, and the law over the conditions behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from separatrix.ground import bounds as _check
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Kelvin, MetrePerSecond, Pascal, Ratio
+
+FRICTION_LIMIT = 2.0
+LEAST_FRICTION = 1e-5
+"""The least that is a measurement: of frictions that scatter the logarithm is taken."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """Friction that tests predict for stated conditions: log-normal about `mean`."""
+
+    mean: Ratio  # the material's friction, its median
+    standard_error: Ratio  # how well that mean is known from the tests
+    standard_deviation: Ratio  # of a new sample about it, widened where the conditions were not tested
+    extrapolation: tuple[str, ...] = ()  # in what respect the conditions were not tested, in words
+    widening: Ratio = 0.0  # what these add to the standard deviation, in quadrature
+    assumed_scatter: bool = False  # whether no repeated test shows the scatter
+
+
+class FrictionLaw(Protocol):
+    """Friction as a function of the conditions, from tests, as `separatrix.friction.fit.TestedFriction`."""
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None,
+        pressure: Pascal | None,
+        temperature: Kelvin | None,
+        medium: str | Sequence[str] | None,
+    ) -> Prediction:
+        """Friction for these conditions; one that is None is not known. The medium by all its names."""
+
+
+_SPREAD = _check.must(_check.not_negative, FRICTION_LIMIT)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Friction:
+    """A measured ball/cage friction: its mean and, if known, its scatter.
+
+    `standard_deviation` is that of single tests or samples; `standard_error` that of the mean, where it is
+    not the former over the root of `count`. `law` is what knows more: friction over the conditions.
+    `extrapolation` says in words in what respect a friction was asked for where nothing was tested;
+    `widening` is the part of the standard deviation that stands for it.
+    """
+
+    mean: Ratio = field(metadata=_check.must(_check.between, 0.0, FRICTION_LIMIT))
+    standard_deviation: Ratio | None = field(default=None, metadata=_SPREAD)
+    count: int | None = field(default=None, metadata=_check.must(_check.whole, 1, 1_000_000_000))
+    standard_error: Ratio | None = field(default=None, metadata=_SPREAD)
+    assumed_scatter: bool = False
+    extrapolation: tuple[str, ...] = ()
+    widening: Ratio = 0.0
+    law: FrictionLaw | None = field(default=None, compare=False, repr=False)
+    source: str = "given in the study"
+    confidence: str = "given in the study"
+
+    def __post_init__(self) -> None:
+        _check.settle(_check.each_field(self))
+
+
+def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:
+    """Return the friction as it was read, unless it scatters about a mean that is none.
+
+    Raises
+    ------
+    InputError
+        It has a standard deviation, and a mean of 0 or nearly so.
+    """
+    if friction.standard_deviation and friction.mean < LEAST_FRICTION:
+        rule = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
+        cure = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
+        raise InputError(f"{where}.mean", rule, f"{friction.mean:g}", cure)
+    return friction

@@ -1,0 +1,1 @@
+"""What every room stands on: units, refusals, files, compiled kernels. It knows no bearing."""

@@ -1,0 +1,372 @@
+"""TOML files that people write: checked before they are parsed, every key with its line, values by readers.
+
+A `Reader` takes a value and the name of its place, and returns what a record has, or raises InputError.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from enum import Enum
+from pathlib import Path
+from typing import Any, TypeVar
+
+from separatrix.ground.errors import InputError, noted, together
+from separatrix.ground.input_files import note, size_of, unreadable
+from separatrix.ground.units import NUMBER, missing_unit, parse, printable, shown
+
+Made = TypeVar("Made")
+Choice = TypeVar("Choice", bound=Enum)
+Reader = Callable[[object, str], Made]
+Values = dict[str, Any]
+"""Values of a table by their keys, each of the type that the reader of its key returns."""
+
+
+MOST_BYTES = 256 * 1024
+LONGEST_LINE = 4000
+DEEPEST = 16
+"""How deep brackets may nest; a study needs 3."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """Kind of a file: its name in refusals, and its largest size."""
+
+    noun: str = "a study"
+    most_bytes: int = MOST_BYTES
+    empty: str = "`separatrix new PATH` writes a study to fill in."
+    """The cure of an empty one."""
+
+
+STUDY = Kind()
+
+_BESIDE = ("ring", "race", "land", "guided")
+"""Words that may follow a choice."""
+
+_KEY = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
+_DOTTED = rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*"
+_KEY_LINE = re.compile(rf"\s*({_DOTTED})[ \t]*=")
+_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_DOTTED})[ \t]*\]")
+_STRING_OR_COMMENT = re.compile(
+    r'"""(?:\\.|[^\\])*?(?:"""|\Z)'
+    r"|'''.*?(?:'''|\Z)"
+    r'|"(?:\\.|[^"\\\n])*(?:"|$)'
+    r"|'[^'\n]*(?:'|$)"
+    r"|#[^\n]*",
+    re.DOTALL | re.MULTILINE,
+)
+
+
+def label_of(path: Path) -> str:
+    """Name of a file in messages and results: without its folder, on one line."""
+    return printable(path.name or str(path))
+
+
+def path_text(path: Path) -> str:
+    """A path as the user wrote it, on one line; only its name if it is long."""
+    text = printable(str(path), 200)
+    return text if len(text) <= 80 else label_of(path)
+
+
+def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, object], dict[str, int]]:
+    """Content of a TOML file, and the line of each key as a dotted path.
+
+    Raises
+    ------
+    InputError
+        Not a regular file, small enough for its kind, of UTF-8 with valid TOML in it.
+    """
+    return parsed(read_text(path, kind), label_of(path), kind)
+
+
+def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object], dict[str, int]]:
+    """Content of TOML text, and the line of each key as a dotted path."""
+    _, too_deep = _statements(text)
+    if too_deep:
+        raise InputError(f"{label}, line {too_deep}", f"nests brackets more than {DEEPEST} deep")
+    try:
+        data = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise _invalid_toml(error, text, label) from None
+    if not data:
+        raise InputError(label, "is empty", cure=kind.empty)
+    return data, lines_of_keys(text)
+
+
+def lines_of_keys(text: str) -> dict[str, int]:
+    """Line number of each key by its dotted path: ``bearing.bore``, ``ranking.candidates.0.name``."""
+    found: dict[str, int] = {}
+    seen: dict[str, int] = {}
+    prefix, lines = "", text.split("\n")
+    for number in _statements(text)[0]:
+        line = lines[number - 1]
+        if header := _HEADER.match(line):
+            name = _plain(header[2])
+            if header[1] == "[[":
+                seen[name] = seen.get(name, -1) + 1
+                name = f"{name}.{seen[name]}"
+            prefix = name + "."
+            found.setdefault(name, number)
+        elif key := _KEY_LINE.match(line):
+            parts = _plain(key[1]).split(".")
+            for depth in range(1, min(len(parts), 4) + 1):
+                found.setdefault(prefix + ".".join(parts[:depth]), number)
+    return found
+
+
+@dataclass(slots=True)
+class Places:
+    """File and line, or sheet and cell, of the paths of faults, as ``[ranking] candidates[2].name``."""
+
+    label: str
+    """Of the file: the place of a path without one."""
+
+    known: dict[str, str] = field(default_factory=dict)
+
+    def of(self, path: str) -> str:
+        """Return the place of the longest part of a path that has one."""
+        found = [p for p in self.known if path.startswith(p) and path[len(p) : len(p) + 1] in (*".,[ ", "")]
+        return self.known[max(found, key=len)] if found else self.label
+
+    def locate(self, path: str) -> str:
+        """Return a path with its place: ``case.toml, line 7: [cage] mass``."""
+        return f"{self.of(path)}: {path}" if path else self.label
+
+
+def places_of(label: str, data: Mapping[str, object], lines: Mapping[str, int]) -> Places:
+    """Return the places of the keys of a TOML file, from the lines of its dotted keys."""
+    places = Places(label)
+    for dotted, line in lines.items():
+        for path in _paths(dotted, data):
+            places.known.setdefault(path, f"{label}, line {line}")
+    return places
+
+
+def _paths(dotted: str, data: Mapping[str, object]) -> Iterator[str]:
+    """Yield a dotted key as the paths of faults, with those of the tables around it."""
+    name, *keys = dotted.split(".")
+    inside = data.get(name)
+    if not keys and not isinstance(inside, dict | list):
+        yield name
+        return
+    path = f"[{printable(name)}]"
+    yield path
+    for i, key in enumerate(keys):
+        if isinstance(inside, list) and key.isdigit():
+            path += f"[{int(key) + 1}]" if i > 0 else ""
+            inside = inside[int(key)] if int(key) < len(inside) else None
+        else:
+            path += f"{' ' if i == 0 else '.'}{printable(key)}"
+            inside = inside.get(key) if isinstance(inside, dict) else None
+        yield path
+
+
+def _statements(text: str) -> tuple[list[int], int]:
+    """Numbers of the lines that begin a statement; and of the line that nests too deep, 0 if none does."""
+    begins, number, depth = [1], 1, 0
+    # a text or a comment without its content, its ends of lines marked as inside
+    bare = _STRING_OR_COMMENT.sub(lambda match: "\0" * match[0].count("\n"), text)
+    for mark in re.findall(r"[\[{\]}\n\0]", bare):
+        depth = max(0, depth + (mark in "[{") - (mark in "]}"))
+        if depth > DEEPEST:
+            return begins, number
+        number += mark in "\n\0"
+        if mark == "\n" and depth == 0:
+            begins.append(number)
+    return begins, 0
+
+
+def _plain(key: str) -> str:
+    return ".".join(part.strip("\"'") for part in re.findall(_KEY, key))
+
+
+def read_text(path: Path, kind: Kind = STUDY) -> str:
+    """Text of a regular file, small enough for its kind, in UTF-8, without NUL or endless lines."""
+    label = label_of(path)
+    size_of(path, path_text(path))
+    try:
+        with path.open("rb") as file:
+            raw = file.read(kind.most_bytes + 1)
+    except OSError as error:
+        raise unreadable(path_text(path), error) from None
+    if len(raw) > kind.most_bytes:
+        raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
+    note(path, raw)
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        where, cure = f"{label}, line {line}", "Save the file as UTF-8."
+        raise InputError(where, "is not UTF-8 text", cure=cure) from None
+    for number, content in enumerate(text.split("\n"), 1):
+        if "\0" in content:
+            raise InputError(f"{label}, line {number}", "contains a NUL character: this is not a text file")
+        if len(content) > LONGEST_LINE:
+            raise InputError(f"{label}, line {number}", f"is longer than {LONGEST_LINE} characters")
+    return text
+
+
+def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
+    message = printable(str(error), 300)
+    found = re.search(r" \(at line (\d+), column \d+\)", message)
+    if not found:
+        rule = "is not valid TOML: it ends inside a quotation or a bracket"
+        return InputError(label, rule if "end of document" in message else "is not valid TOML")
+    number = int(found[1])
+    line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
+    if "overwrite" in message or "twice" in message:
+        key = _KEY_LINE.match(line)
+        return InputError(where, f"has {printable(_plain(key[1])) if key else shown(line)} a second time")
+    reason = message[: found.start()]
+    rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
+    return InputError(where, rule, printable(line), _cure(line))
+
+
+def _cure(line: str) -> str:
+    """Likely correction of an invalid line."""
+    if comma := re.search(r"=\s*([+-]?[0-9]+),([0-9]+)", line):
+        return f"Write a decimal point: {comma[1]}.{comma[2]}."
+    if bare := re.search(r"=\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z][^#\"]{0,20})", line):
+        return f'Put quantities in quotes: "{printable(bare[1].strip())}".'
+    return "Put text in quotes." if re.search(r"=\s*[A-Za-z]", line) else ""
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name in lower case, which its spellings have in common."""
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Sentence for a name that is not known: the nearest one that is, and as many as fit in a line."""
+    choices = list(known)
+    by_case = {c.casefold(): c for c in choices}
+    if near := get_close_matches(name[:80].casefold(), by_case, 1, 0.6):
+        return f"Did you mean {by_case[near[0]]}?"
+    return cut_list(f"Known: {', '.join(choices)}.")
+
+
+def cut_list(listed: str) -> str:
+    """A sentence with a list, cut after a comma where it is long."""
+    return listed if len(listed) <= 200 else listed[: listed.rindex(",", 0, 200)] + ", ..."
+
+
+def quantity(unit: str) -> Reader[float]:
+    """Read a number with a unit, as text; of a ratio, without a unit, a plain number."""
+
+    def read(value: object, where: str) -> float:
+        if not isinstance(value, str):
+            raise missing_unit(value, unit, where)
+        return parse(value, unit, where)
+
+    return ratio if unit == "-" else read
+
+
+def ratio(value: object, where: str) -> float:
+    """Read a plain number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        cure = _as_number(value)
+        raise InputError(where, "must be a plain number, without a unit", shown(value), cure)
+    if not -1e300 < value < 1e300:  # an integer may be too long for a float
+        raise InputError(where, "must be a finite number", shown(value))
+    return float(value)
+
+
+def whole(value: object, where: str) -> int:
+    """Read an integer."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        near = isinstance(value, float) and abs(value) < 1e15 and value.is_integer()
+        cure = f"Write {value:.0f}." if near else _as_number(value)
+        raise InputError(where, "must be a whole number", shown(value), cure)
+    return value
+
+
+def truth(value: object, where: str) -> bool:
+    """Read true or false."""
+    if not isinstance(value, bool):
+        raise InputError(where, "must be true or false, without quotes", shown(value))
+    return value
+
+
+def text(value: object, where: str, longest: int = 200, cure: str = "") -> str:
+    """Read a line of printable text."""
+    if not isinstance(value, str):
+        raise InputError(where, "must be text", shown(value), cure)
+    if not 0 < len(value.strip()) <= longest or not value.isprintable():
+        raise InputError(where, f"must be one line of 1 to {longest} printable characters", shown(value))
+    return value
+
+
+def choice(options: type[Choice]) -> Reader[Choice]:
+    """Read one of the values of an Enum, in any spelling: "Inner ring" is "inner"."""
+    names = [option.value for option in options]
+    known = {folded(f"{name} {word}"): name for name in names for word in ("", *_BESIDE)}
+
+    def read(value: object, where: str) -> Choice:
+        found = known.get(folded(value)) if isinstance(value, str) else None
+        if found is None:
+            rule = "must be " + " or ".join([", ".join(f'"{name}"' for name in names[:-1]), f'"{names[-1]}"'])
+            raise InputError(where, rule, shown(value))
+        return options(found)
+
+    return read
+
+
+def list_of(reader: Reader[Made]) -> Reader[tuple[Made, ...]]:
+    """Read a list, each item with one reader."""
+
+    def read(value: object, where: str) -> tuple[Made, ...]:
+        if not isinstance(value, list):
+            raise InputError(where, "must be a list in [brackets]", shown(value))
+        return tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(value, 1))
+
+    return read
+
+
+def table(
+    value: object,
+    where: str,
+    readers: Mapping[str, Reader[object]],
+    required: tuple[str, ...] = (),
+    what: str = "this table",
+) -> Values:
+    """Read a table in place, with known keys only and all required ones; all faults are collected."""
+    if not isinstance(value, dict):
+        raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
+    given: Values = {}
+    problems: list[InputError] = []
+    for key, item in value.items():
+        at = f"{where}.{printable(key)}"
+        with noted(problems):
+            if key not in readers:
+                raise InputError(at, f"is not a key of {what}", cure=nearest(key, readers))
+            given[key] = readers[key](item, at)
+    if missing := [key for key in required if key not in value]:
+        problems.append(InputError(where, f"lacks: {', '.join(missing)}"))
+    if problems:
+        raise together(problems)
+    return given
+
+
+def build(record: Callable[..., Made], values: Mapping[str, object], where: str) -> Made:
+    """Build a record from a table; the place of the table is put before its refusals."""
+    try:
+        return record(**values)
+    except InputError as error:
+        found = [p.at(f"{where}.{p.path.partition('.')[2]}") for p in error.problems or (error,)]
+        raise together(found) from None
+
+
+def _as_number(value: object) -> str:
+    """Cure for a number that is written as text."""
+    if not isinstance(value, str):
+        return ""
+    number = value.replace(",", ".")
+    if number.endswith("%") and re.fullmatch(NUMBER, share := number.removesuffix("%").strip()):
+        return f"Write {float(share) / 100.0:.12g}."
+    if re.fullmatch(NUMBER, number.strip()) is None:
+        return ""
+    point = " with a decimal point" if "," in value else ""
+    return f"Write {number.strip()} as a number{point}, not as text."

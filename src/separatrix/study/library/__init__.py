@@ -1,0 +1,200 @@
+"""Named materials, fluids and friction tables, each number with its source, conditions and confidence.
+
+The shipped data are the TOML files in `data/`; libraries of the user have the same form
+(docs/reference/materials.md). A `Library` has the shipped records, and over them those of the user's files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import TypeVar
+
+from separatrix.ground.errors import DataError, InputError
+from separatrix.ground.toml import folded, path_text
+from separatrix.ground.units import Kelvin, printable, shown
+from separatrix.study.ball_bearing import ROOM, Expansion
+from separatrix.study.library.reading import Content, read_library
+from separatrix.study.library.records import PROPERTIES, FrictionTable, LibraryFile, Record, choose
+from separatrix.study.study import Material
+
+SHIPPED_FILES = {
+    "bearing material": "bearing_materials.toml",
+    "cage material": "cage_materials.toml",
+    "film": "films.toml",
+    "fluid": "fluids.toml",
+    "friction table": "pin-on-disk-77K.toml",
+}
+"""Shipped file of each kind; each is read when it is first used."""
+
+ALONE, FOLDER = "materials.toml", "materials"
+"""Library beside a study, and folder beside it whose files are all read."""
+
+MOST_FILES = 200
+Records = Mapping[str, Record | FrictionTable]
+Wanted = TypeVar("Wanted", Record, FrictionTable)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Library:
+    """The shipped records and, over them, those of the user's files."""
+
+    files: tuple[LibraryFile, ...] = ()
+    """Files of the user."""
+
+    own: Mapping[str, Records] = field(default_factory=dict)
+    """Records of the user by kind and name."""
+
+    def records(self, kind: str) -> Records:
+        """Records of one kind by name, the shipped ones first."""
+        return {**shipped_records(kind), **self.own.get(kind, {})}
+
+    def names(self, kind: str) -> tuple[str, ...]:
+        """Names of one kind, in the order of the files."""
+        return tuple(self.records(kind))
+
+    def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
+        """One solid by its exact name, with the data that serve at a temperature."""
+        return as_material(self._found(Record, kind, name), temperature)
+
+    def friction_table(self, name: str) -> FrictionTable:
+        """One table of measured friction by its exact name."""
+        return self._found(FrictionTable, "friction table", name)
+
+    def _found(self, wanted: type[Wanted], kind: str, name: str) -> Wanted:
+        found = self.records(kind).get(name)
+        if not isinstance(found, wanted):
+            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
+        return found
+
+    def named(self, kind: str, name: str) -> str | None:
+        """Exact name of a record by its name or another name of it, in any spelling; None if unknown.
+
+        Case of letters, spaces, hyphens and the like do not count.
+        """
+        records, wanted = self.records(kind), folded(name)
+        if name in records:
+            return name
+        found = [known for known in records if folded(known) == wanted]
+        found = found or [one.name for one in records.values() if wanted in map(folded, _aliases(one))]
+        return found[0] if wanted and len(found) == 1 else None
+
+    def fluid(self, name: str) -> Record | None:
+        """Record of a fluid by its name or another name of it, in any spelling; None if unknown."""
+        known = self.named("fluid", name)
+        return None if known is None else self._found(Record, "fluid", known)
+
+
+def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
+    """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
+    chosen = {
+        key: choose(data, temperature, PROPERTIES[key].words)
+        for key, data in record.data.items()
+        if key != "thermal_expansion"  # of which all data serve, at any temperature
+    }
+    sources = [f"{PROPERTIES[key].words}: {choice.datum.source}" for key, choice in chosen.items()]
+    confidences = [f"{PROPERTIES[key].words}: {choice.datum.confidence}" for key, choice in chosen.items()]
+    composition = [f"Composition: {record.composition}"] if record.composition else []
+    remark = [record.remark.rstrip(".")] if record.remark else []
+    # numbers on which any answer depends
+    acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
+    taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
+    expansions = (
+        Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence)
+        for d in record.data.get("thermal_expansion", ())
+    )
+    return Material(
+        name=record.name,
+        expansions=tuple(sorted(expansions)),
+        source=". ".join([*composition, *remark, *sources]),
+        confidence=", ".join(confidences),
+        record={**record.plain(), "taken": taken, "taken_at": temperature},
+        cautions=tuple(one.caution for key, one in chosen.items() if one.caution and key in acting),
+        **{key: choice.datum.value for key, choice in chosen.items()},
+    )
+
+
+def joined(contents: Sequence[Content]) -> Library:
+    """Library of files of the user over the shipped records."""
+    own: dict[str, dict[str, Record | FrictionTable]] = {}
+    for content in contents:
+        for record in content.records:
+            kind = own.setdefault(record.kind, {})
+            _refuse_hiding(kind.get(record.name) or shipped_records(record.kind).get(record.name), record)
+            kind[record.name] = record
+    for name, records in own.items():
+        _refuse_alike({**shipped_records(name), **records}.values())
+    return Library(files=tuple(content.file for content in contents), own=own)
+
+
+def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTable) -> None:
+    """Refuse a record that would replace another without stating so."""
+    if old is None and new.replaces:
+        rule = f"replaces a {new.kind} that is not shipped"
+        raise InputError(_header(new), rule, cure="Leave replaces out, or correct the name.")
+    if old is not None and not old.file.shipped:
+        cure = "Rename or remove one of them."
+        raise InputError(_header(new), f"is in {_place(old)} too", shown(new.name), cure)
+    if old is not None and not new.replaces:
+        cure = "Give it another name, or write replaces = true."
+        raise InputError(_header(new), f"has the name of a shipped {new.kind}", shown(new.name), cure)
+
+
+def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
+    """Refuse a name that an earlier record has, but for capitals and spaces."""
+    known: dict[str, Record | FrictionTable] = {}
+    for record in records:
+        for name in (record.name, *_aliases(record)):
+            old = known.setdefault(" ".join(name.casefold().split()), record)
+            if old is not record:
+                rule = f"has a name of {printable(old.name)} ({_place(old)})"
+                raise InputError(_header(record), rule, shown(name), "Give it another name.")
+
+
+def _aliases(record: Record | FrictionTable) -> Sequence[str]:
+    return record.facts.get("aliases") or () if isinstance(record, Record) else ()
+
+
+def _header(record: Record | FrictionTable) -> str:
+    return f"{_place(record)}: [{record.kind.replace(' ', '_')}] {printable(record.name)}"
+
+
+def _place(record: Record | FrictionTable) -> str:
+    """File and line of a record."""
+    return record.file.label if record.line is None else f"{record.file.label}, line {record.line}"
+
+
+@cache
+def shipped_records(kind: str) -> Records:
+    """Records of one kind that come with the package, by name."""
+    content = read_library(Path(__file__).with_name("data") / SHIPPED_FILES[kind], shipped=True)
+    return {record.name: record for record in content.records}
+
+
+def with_files(paths: Iterable[Path]) -> Library:
+    """Shipped library with library files of the user."""
+    return joined([read_library(path) for path in dict.fromkeys(path.resolve() for path in paths)])
+
+
+def library_files(path: Path) -> list[Path]:
+    """The file itself, or the TOML files of a folder, by name; hidden ones are left out."""
+    if not path.is_dir():
+        return [path]
+    try:
+        names = sorted(file.name for file in path.iterdir())
+    except OSError as error:
+        raise InputError(path_text(path), f"cannot be read ({error.strerror})") from None
+    found = [path / name for name in names if name.endswith(".toml") and not name.startswith(".")]
+    if len(found) > MOST_FILES:
+        raise InputError(path_text(path), f"has more than {MOST_FILES} library files")
+    return found
+
+
+def beside(folder: Path, besides: Path | None = None) -> list[Path]:
+    """Library files in a folder: `materials.toml`, and those of a folder `materials`."""
+    alone, several = folder / ALONE, folder / FOLDER
+    found = [alone] if alone.is_file() else []
+    found += library_files(several) if several.is_dir() else []
+    return [path for path in found if besides is None or path.resolve() != besides.resolve()]

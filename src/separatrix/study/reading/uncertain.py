@@ -1,0 +1,255 @@
+"""Readers of numbers of a study, each perhaps uncertain: with its distribution."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from separatrix.ground.errors import InputError
+from separatrix.ground.toml import Reader, nearest, quantity, ratio, truth, whole
+from separatrix.ground.units import NUMBER, parse, printable, shown
+from separatrix.study import distribution
+from separatrix.study.distribution import Distribution, Normal, Samples
+
+Made = TypeVar("Made", bound=Distribution)
+Value = TypeVar("Value")
+
+_SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
+_PLAIN = re.compile(NUMBER)
+_PERCENT = re.compile(rf"({NUMBER}) ?%")
+_BRACKETS = re.compile(r"\(([^()]*)\) ?([^()]+)")
+_FORM_OF = {
+    "between": "between",
+    "log": "between",
+    "mean": "mean",
+    "standard_deviation": "mean",
+    "samples": "samples",
+}
+"""Keys of a distribution, and the form that each belongs to."""
+
+_FORMS = "between, or mean with standard_deviation, or samples"
+_ALONE = "Write the value alone if it is certain."
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertain:
+    """A value whose numbers are uncertain: the value with the means, and the distributions by their names."""
+
+    value: object
+    distributions: Mapping[str, Distribution] = field(default_factory=dict)
+    """Under ``""`` that of the value itself, under the name of a property that of the property."""
+
+
+def unwrapped(value: object) -> tuple[object, Mapping[str, Distribution]]:
+    """The value with its means, and the distributions in it."""
+    return (value.value, value.distributions) if isinstance(value, Uncertain) else (value, {})
+
+
+def gathered(given: Mapping[str, object]) -> tuple[dict[str, object], dict[str, Distribution]]:
+    """Values of a table with their means, and the distributions in them by dotted names."""
+    values: dict[str, object] = {}
+    found: dict[str, Distribution] = {}
+    for key, item in given.items():
+        values[key], inside = unwrapped(item)
+        found |= {f"{key}.{name}".removesuffix("."): one for name, one in inside.items()}
+    return values, found
+
+
+def number(unit: str) -> Reader[float | Uncertain]:
+    """Read a number, or the distribution of an uncertain one."""
+    reader = quantity(unit)
+
+    def read(value: object, where: str) -> float | Uncertain:
+        found: Distribution
+        if isinstance(value, list):
+            found = _samples(value, where, reader, written(value))
+        elif isinstance(value, dict):
+            found = _table(value, where, unit)
+        elif isinstance(value, str) and _SIGN.search(value):
+            found = _plus_minus(value, where, unit)
+        else:
+            return reader(value, where)
+        return Uncertain(found.mean, {"": found})
+
+    return read
+
+
+def count(value: object, where: str) -> int | Uncertain:
+    """Read a whole number, or a list of equally likely ones."""
+    if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
+        rule = "must be a whole number, or a list of whole numbers that are equally likely"
+        raise InputError(where, rule, shown(value), "Write it like [12, 13].")
+    items = value["samples"] if isinstance(value, dict) else value
+    if not isinstance(items, list):
+        return whole(value, where)
+    found = _samples(items, where, whole, written(value))
+    return Uncertain(int(found.mean), {"": found})
+
+
+def certain(reader: Reader[Value]) -> Reader[Value]:
+    """Read with `reader`; a distribution is refused as one."""
+
+    def read(value: object, where: str) -> Value:
+        is_table = isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value)
+        if is_table or _is_spread(value):
+            cure = "This key takes one certain value."
+            raise InputError(where, "takes no distribution", written(value), cure)
+        return reader(value, where)
+
+    return read
+
+
+def written(value: object) -> str:
+    """The value as the file has it, on one short line."""
+    if isinstance(value, dict):
+        inside = ", ".join(f"{printable(str(key))} = {written(item)}" for key, item in value.items())
+        return f"{{ {inside} }}"
+    if isinstance(value, list):
+        few = [written(item) for item in (value if len(value) <= 6 else value[:3])]
+        return f"[{', '.join(few)}{f', ... {len(value)} of them' if len(value) > 6 else ''}]"
+    return shown(value)
+
+
+def friction_deviation(value: Mapping[str, object], where: str) -> object:
+    """Standard deviation of a friction: a number, or percent of the mean."""
+    width, mean = value.get("standard_deviation"), value.get("mean")
+    if not isinstance(width, str) or "%" not in width:
+        return width
+    return _width(width, ratio(mean, f"{where}.mean"), str(mean), f"{where}.standard_deviation", "-")
+
+
+def _is_spread(value: object) -> bool:
+    return isinstance(value, str) and _SIGN.search(value) is not None
+
+
+def _plus_minus(text: str, where: str, unit: str) -> Normal:
+    """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations.
+
+    ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4).
+    """
+    shared = _BRACKETS.fullmatch(text.strip())
+    parts = _SIGN.split(text.strip() if shared is None else shared[1].strip())
+    if shared is not None:
+        parts = [f"{part} {shared[2]}" for part in parts]
+    example = {"m": "0.5 um", "N": "300 daN", "Pa": "1.5 GPa", "-": "0.1"}.get(unit, f"1.5 {unit}")
+    like = f'Write it like "{example} +- 20 %"'
+    if len(text) > 120 or len(parts) != 2 or not all(parts):
+        raise InputError(where, "must be one value, +- and one expanded uncertainty", shown(text), f"{like}.")
+    if unit != "-" and _PLAIN.fullmatch(parts[0]):
+        cure = f"{like}, with a unit on either side of +-."
+        raise InputError(where, "needs a unit before +- too", shown(text), cure)
+    mean = _written_number(parts[0], where, unit)
+    half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
+    return _made(Normal, where, mean=mean, standard_deviation=half / distribution.COVERAGE, text=shown(text))
+
+
+def _table(value: dict[str, object], where: str, unit: str) -> Distribution:
+    """Read a table with bounds, with mean and standard deviation, or with samples."""
+    for key in value:
+        if key not in _FORM_OF:
+            at, cure = f"{where}.{printable(key) or chr(34) * 2}", nearest(key, _FORM_OF)
+            raise InputError(at, f"is not a key of a distribution: {_FORMS}", cure=cure)
+    found = {_FORM_OF[key] for key in value if key != "log"}
+    if len(found) != 1:
+        rule = f"must have {_FORMS}" if not found else f"must have only one of {_FORMS}"
+        raise InputError(where, rule, written(value))
+    if "log" in value and "between" not in value:
+        raise InputError(f"{where}.log", "has a meaning only with between")
+    if "between" in found:
+        return _between(value, where, quantity(unit))
+    if "mean" in found:
+        return _moments(value, where, unit)
+    samples = value["samples"]
+    if not isinstance(samples, list):
+        raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(samples))
+    return _samples(samples, f"{where}.samples", quantity(unit), written(value))
+
+
+def _between(value: dict[str, object], where: str, reader: Reader[float]) -> Distribution:
+    bounds, at = value["between"], f"{where}.between"
+    log = truth(value.get("log", False), f"{where}.log")
+    if not isinstance(bounds, list) or len(bounds) != 2:
+        got = f"a list of {len(bounds)}" if isinstance(bounds, list) else shown(bounds)
+        raise InputError(at, "must be a list of two bounds", got)
+    low, high = (reader(bound, f"{at}, item {i},") for i, bound in enumerate(bounds, 1))
+    if not low < high:
+        cure = _ALONE if low == high else "Write the lower one first."
+        raise InputError(at, "must rise", f"{written(bounds[0])} and {written(bounds[1])}", cure)
+    if log and low <= 0.0:
+        cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
+        raise InputError(at, "must be > 0 with log = true", shown(bounds[0]), cure)
+    return _made(
+        distribution.LogUniform if log else distribution.Uniform, at, low=low, high=high, text=written(value)
+    )
+
+
+def _moments(value: dict[str, object], where: str, unit: str) -> Normal:
+    if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
+        raise InputError(where, f"lacks: {missing[0]}", written(value))
+    reader, at, width = quantity(unit), f"{where}.standard_deviation", value["standard_deviation"]
+    mean = reader(value["mean"], f"{where}.mean")
+    if isinstance(width, str) and (unit != "-" or "%" in width):
+        deviation = _width(width, mean, str(value["mean"]), at, unit)
+    else:
+        deviation = _not_zero(reader(width, at), width, at)
+    return _made(Normal, where, mean=mean, standard_deviation=deviation, text=written(value))
+
+
+def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Samples:
+    """Read equally likely values."""
+    if not 2 <= len(items) <= distribution.MOST_SAMPLES:
+        cure = "Write one value without brackets." if len(items) == 1 else ""
+        rule = f"must have 2 to {distribution.MOST_SAMPLES} samples"
+        raise InputError(where, rule, str(len(items)), cure)
+    values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
+    if min(values) == max(values):
+        raise InputError(where, "must differ: there is no spread in them", written(items), _ALONE)
+    return _made(Samples, where, values=values, text=text)
+
+
+def _made(kind: Callable[..., Made], where: str, **values: object) -> Made:
+    """Make a distribution; the place in the file is put before its refusals."""
+    try:
+        return kind(**values)
+    except InputError as error:
+        raise error.at(where) from None
+
+
+def _width(text: str, mean: float, mean_text: str, where: str, unit: str) -> float:
+    """Read a width: percent of the mean, or a difference of two values of the quantity."""
+    percent = _PERCENT.fullmatch(text.strip())
+    if percent is None and unit != "-" and _PLAIN.fullmatch(text.strip()):
+        cure = f'Write "{printable(text.strip())} %", or the width with its unit.'
+        raise InputError(where, "needs a unit, or %", shown(text), cure)
+    if percent is None:
+        width = _written_number(text, where, unit)
+        if unit == "K":  # a difference, without the zero of the scale
+            scale = re.sub(r"^\s*[-+.0-9eE]+\s*", "", text)
+            width -= parse(f"0 {scale}", unit, where)
+        return _not_zero(width, text, where)
+    if unit == "K" and not re.search(r"[0-9] ?K$", mean_text.strip()):
+        cure = "Write the width in kelvin."
+        raise InputError(where, "is a share of a temperature, whose zero is arbitrary", shown(text), cure)
+    share = _not_zero(float(percent[1]) / 100.0, text, where)
+    if mean == 0.0:
+        raise InputError(where, "is a share of 0", shown(text), "Write the width with its unit.")
+    return share * abs(mean)
+
+
+def _written_number(text: str, where: str, unit: str) -> float:
+    """Read a number inside a text; a ratio has no quotes of its own there."""
+    if unit != "-":
+        return parse(text, unit, where)
+    if _PLAIN.fullmatch(text.strip()) is None:
+        cure = "Write a decimal point." if "," in text else 'Write it like "0.1 +- 20 %".'
+        raise InputError(where, "must be a plain number, without a unit", shown(text), cure)
+    return ratio(float(text), where)
+
+
+def _not_zero(width: float, written_as: object, where: str) -> float:
+    if not width > 0.0:
+        cure = _ALONE if width == 0.0 else "A width has no sign."
+        raise InputError(where, "must be a width > 0", shown(written_as), cure)
+    return width

@@ -1,0 +1,200 @@
+"""Quasi-random draws of the uncertain inputs of a study: scrambled Sobol' points through their quantiles.
+
+The inputs are assumed to be independent: a study states no correlations. Where two inputs are correlated, as
+a film's thickness and its modulus after wear, the computed spread may be too wide or too narrow.
+
+Sobol' (1967) with the digital shift and linear scrambling of Matousek (1998), as `scipy.stats.qmc` has it.
+For a smooth function the error of a mean falls nearly as 1/n, against the root of 1/n of random draws; it is
+best at powers of two (Owen 2022, "On dropping the first Sobol' point").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import exp, expm1, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from separatrix.friction.fit import TestedFriction
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Ratio
+from separatrix.study.distribution import Distribution, LogNormal
+from separatrix.study.keys import Setter, setter, settled_in, study_numbers, value_of
+from separatrix.study.study import Friction, Study
+
+MOST_SAMPLES = 2**20
+STREAM = 0x50B0
+"""Separates the draws of the inputs from other draws with a study's seed."""
+
+BITS = 30
+MOST_VARIANCE = 100.0
+"""Largest variance of the logarithm of a friction from tests that are of use."""
+
+
+class Case(NamedTuple):
+    """A candidate in an environment; "" for the mean friction over all."""
+
+    candidate: str
+    environment: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UncertainInput:
+    """One uncertain number: its name and SI unit in a study, its distribution, and its value there.
+
+    `source` of the distribution: ``"study"``, ``"measured"`` (the scatter of a measured friction), or
+    ``"assumed"`` (that of an unrepeated test).
+    """
+
+    key: str
+    unit: str
+    distribution: Distribution
+    central: float
+    source: str = "study"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Draws:
+    """Draws of the uncertain inputs of a study, which has their means.
+
+    `values` are in the SI units of the inputs, shape (sample, input); `probabilities` are the points behind
+    them, the share of each distribution below a value, same shape [-].
+    """
+
+    study: Study
+    inputs: tuple[UncertainInput, ...]
+    values: Array
+    probabilities: Array
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return tuple(one.key for one in self.inputs)
+
+    def setter(self) -> Setter:
+        """Return a function from one row of values to the study that has them."""
+        return setter(self.study, self.names)
+
+
+def uncertain_inputs(
+    study: Study, frictions: Mapping[Case, Friction] | None = None
+) -> tuple[UncertainInput, ...]:
+    """Every uncertain number of a study: those with a distribution, then the frictions of the candidates.
+
+    `frictions` are those of the candidates that were measured, by default as the study states them.
+
+    Raises
+    ------
+    InputError
+        A friction of 0 has a scatter, or one from tests has a scatter of ten times its mean.
+    """
+    known, found = study_numbers(study), list[UncertainInput]()
+    for key, one in study.distributions.items():
+        central = value_of(study, known[key]) or 0.0
+        found.append(UncertainInput(key=key, unit=known[key].unit, distribution=one, central=central))
+    return (*found, *_frictions(study, stated_frictions(study) if frictions is None else frictions))
+
+
+def stated_frictions(study: Study) -> dict[Case, Friction]:
+    """Measured friction of each case, as the study states it."""
+    return {
+        Case(candidate.name, environment): friction
+        for candidate in (study.ranking.candidates if study.ranking else ())
+        for environment, friction in candidate.friction.items()
+        if friction is not None
+    }
+
+
+def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[UncertainInput]:
+    """Measured frictions without a distribution in the study, log-normal, as the fit to tests assumes."""
+    for (candidate, environment), friction in frictions.items():
+        key = f"ranking.{candidate}.{environment}"
+        if key in study.distributions:
+            continue
+        scatter = study.ranking.friction_scatter if study.ranking else 0.0
+        deviation, source = next_cage_deviation(friction, scatter)
+        if deviation > 0.0:
+            where = f"Friction from tests of {candidate} in {environment}"
+            law = settled_in(study, key, _next_cage(friction, deviation, where))
+            yield UncertainInput(key=key, unit="-", distribution=law, central=friction.mean, source=source)
+
+
+def _next_cage(friction: Friction, deviation: Ratio, where: str) -> LogNormal:
+    """Friction of a new cage; a fit to tests predicts the median, and the scatter of the logarithm."""
+    if not isinstance(friction.law, TestedFriction):
+        return LogNormal(mean=friction.mean, standard_deviation=deviation)
+    variance = (deviation / friction.mean) ** 2
+    if variance > MOST_VARIANCE:
+        got = f"{friction.mean:.3g} with a standard deviation of {deviation:.3g}"
+        cure = "Test it nearer to the speed and pressure of the pocket, or state a friction."
+        raise InputError(where, "must not scatter by ten times its mean [-]", got, cure)
+    mean = friction.mean * exp(0.5 * variance)
+    return LogNormal(mean=mean, standard_deviation=mean * sqrt(expm1(variance)))
+
+
+def next_cage_deviation(friction: Friction, default_scatter: Ratio) -> tuple[Ratio, str]:
+    r"""Standard deviation of the friction of a new cage, and its source.
+
+    Of a new cage, not of the mean: the scatter of single samples and the standard error of their mean
+    together, :math:`s \sqrt{1 + 1/n}` for n samples; without a count the scatter alone; without a scatter
+    `default_scatter` times the mean. The source is ``"measured"`` or ``"assumed"``.
+    """
+    if friction.standard_deviation is None:
+        return default_scatter * friction.mean, "assumed"
+    error, count = friction.standard_error, friction.count
+    if error is None:
+        error = friction.standard_deviation / sqrt(count) if count else 0.0
+    deviation = sqrt(friction.standard_deviation**2 + error**2)
+    return deviation, "assumed" if friction.assumed_scatter else "measured"
+
+
+def sample(
+    study: Study,
+    samples: int,
+    seed: int | None = None,
+    *,
+    frictions: Mapping[Case, Friction] | None = None,
+) -> Draws:
+    """Draw the uncertain inputs of a study.
+
+    Parameters
+    ----------
+    study : Study
+        With distributions, or with candidates whose friction was measured.
+    samples : int
+        1 to `MOST_SAMPLES`, best a power of two. The first of more samples are the same as fewer samples.
+    seed : int, optional
+        Of the scrambling; without it the study's. The draws are the same on every machine.
+    frictions : mapping, optional
+        Measured friction of each case; by default as the study states it.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain, or the number of samples is out of range.
+    """
+    if not 1 <= samples <= MOST_SAMPLES:
+        raise InputError("samples", f"must be a whole number from 1 to {MOST_SAMPLES}", str(samples))
+    inputs = uncertain_inputs(study, frictions)
+    if not inputs:
+        cure = 'Write one like "0.5 um +- 20 %".'
+        raise InputError(study.name, "has no uncertain number to draw", cure=cure)
+    points = sobol_points(samples, len(inputs), STREAM, study.stability.seed if seed is None else seed)
+    columns = [one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)]
+    values = np.stack(columns, axis=1)
+    return Draws(study=study, inputs=inputs, values=values, probabilities=points)
+
+
+def sobol_points(samples: int, dimensions: int, *seed: int) -> Array:
+    """Scrambled Sobol' points inside the unit cube, shape (sample, dimension) [-].
+
+    Each is in the middle of its cell of 2**-`BITS`, so that none is on a face.
+    """
+    from scipy.stats import qmc
+
+    generator = np.random.default_rng(seed)
+    engine = qmc.Sobol(dimensions, scramble=True, bits=BITS, rng=generator)
+    points: Array = engine.random_base2(max(samples - 1, 0).bit_length())[:samples]
+    return points + 2.0 ** -(BITS + 1)

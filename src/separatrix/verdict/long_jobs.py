@@ -1,0 +1,321 @@
+"""The one runner of long jobs: threads or a cluster, progress, interrupts, and the runs finished before."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+import zlib
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
+from dataclasses import fields
+from queue import Empty, SimpleQueue
+from typing import Any, Protocol, TypeVar, runtime_checkable
+
+import numpy as np
+
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.ensemble import (
+    BY_BALL,
+    SPACE_ONLY,
+    WHOLE_NUMBERS,
+    Ensemble,
+    Runs,
+    Stop,
+    ensemble_of,
+    pieces_of,
+)
+from separatrix.cage.moving_cage import MovingCage
+from separatrix.ground.units import MetrePerSecond, Ratio, Second
+from separatrix.study.study import StabilitySettings
+from separatrix.verdict.ledger import Ledger, key_of
+from separatrix.verdict.side_by_side import Gathered, Turns, run_each
+
+Place = TypeVar("Place", bound=Hashable)
+Result = TypeVar("Result")
+Answer = TypeVar("Answer")
+
+
+class Progress(Protocol):
+    """Is called with how far a long job is."""
+
+    def __call__(self, done: int, total: int, /) -> None:
+        """Take in how many points of those known so far are done."""
+
+
+@runtime_checkable
+class Expecting(Progress, Protocol):
+    """Is called beforehand with what a long job will take, too."""
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Take in an estimate, which costs something to make."""
+
+
+LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
+PART = 64  # runs from each kick that the ledger keeps together
+GRACE = 1.0
+"""Time that an interrupt waits for the work under way [s]: runs end within it, compilation is left behind."""
+
+WAITING = 4
+"""Threads for each that may work, most of which wait for their runs."""
+
+NAMES = tuple(field.name for field in fields(Ensemble))
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C or SIGTERM ended a long job.
+
+    `finished` is the answer made of what was finished, a record that names what it lacks; None if nothing
+    was.
+    """
+
+    def __init__(self, finished: object = None) -> None:
+        super().__init__("interrupted")
+        self.finished = finished
+
+
+class Runner:
+    """How a long job runs; its numbers do not depend on it.
+
+    An interrupt (Ctrl-C or SIGTERM) ends the runs under way at their next look and starts no others; work
+    that does not end within `GRACE`, or before a second interrupt, is left behind.
+
+    Parameters
+    ----------
+    jobs : int
+        Threads.
+    progress : callable, optional
+        Called with (done, total so far) after each point.
+    ledger : Ledger, optional
+        Keeps finished runs, for a later job.
+    executor : Executor, optional
+        Computes the pieces elsewhere, as `verdict.cluster` does; by default the threads compute them.
+    """
+
+    def __init__(
+        self,
+        *,
+        jobs: int = 1,
+        progress: Progress | None = None,
+        ledger: Ledger | None = None,
+        executor: Executor | None = None,
+    ) -> None:
+        self.jobs, self.progress, self.ledger, self.executor = jobs, progress, ledger, executor
+        self.stop = Stop()
+        self._gathered: Gathered | None = None  # while `work_out` is at work
+
+    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
+        """Report what the work will take; at most that where an earlier call has kept runs."""
+        if isinstance(self.progress, Expecting):
+            resumed = self.ledger is not None and self.ledger.goes_on
+            self.progress.expect(estimate, at_most=at_most or resumed)
+
+    def ensemble(
+        self,
+        cage: MovingCage,
+        settings: StabilitySettings,
+        *,
+        kicks: Sequence[MetrePerSecond],
+        runs: int,
+        first_run: int = 0,
+    ) -> Ensemble:
+        """Run a cage as `run_ensemble` does, unless the ledger has these runs; or raise `Interrupted`."""
+        return self.ensemble_of([Runs(cage, settings, first_run, runs)], kicks)
+
+    def ensemble_of(self, asked: Sequence[Runs], kicks: Sequence[MetrePerSecond]) -> Ensemble:
+        """Run several cages of as many balls, as `run_each` does, unless the ledger has these runs."""
+        if self.ledger is None:
+            return self._followed(asked, kicks)
+        key = key_of([(one.cage, _of_runs(one.settings), *one[2:]) for one in asked], tuple(kicks))
+        cage, shape = asked[0].cage, (len(kicks), sum(one.runs for one in asked))
+        known = _unpacked(self.ledger.get(key), cage, shape)
+        if known is not None:
+            self.ledger.taken += shape[0] * shape[1]
+            return known
+        found = self._followed(asked, kicks)
+        arrays = (np.asarray(getattr(found, name)) for name in _names(cage))
+        self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
+        return found
+
+    def _followed(self, asked: Sequence[Runs], kicks: Sequence[MetrePerSecond]) -> Ensemble:
+        """Follow runs elsewhere, or here with those of other places; an interrupt ends them."""
+        if self.stop.is_set:
+            raise Interrupted
+        if self.executor is not None:
+            return self._elsewhere(self.executor.submit(run_each, asked, kicks))
+        if self._gathered is None:
+            found = run_each(asked, kicks, stop=self.stop)
+        else:
+            found = ensemble_of(asked, kicks, self._gathered.follow(pieces_of(asked, kicks)))
+        if self.stop.is_set:  # it may have ended these runs
+            raise Interrupted
+        return found
+
+    def _elsewhere(self, future: Future[Result]) -> Result:
+        """Result of the executor, unless an interrupt comes first."""
+        while not self.stop.is_set:
+            with contextlib.suppress(TimeoutError):
+                return future.result(timeout=LOOK)
+        future.cancel()
+        raise Interrupted
+
+    def whole_ensemble(self, cage: MovingCage, settings: StabilitySettings) -> Ensemble:
+        """Every run of the settings from every kick."""
+        kicks, runs = settings_for(settings, cage).kicks, settings.runs
+        parts = ((first, min(PART, runs - first)) for first in range(0, runs, PART))
+        return joined(
+            [self.ensemble(cage, settings, kicks=kicks, runs=n, first_run=first) for first, n in parts]
+        )
+
+    def alone(self, work: Callable[[], Answer]) -> Answer:
+        """Result of a single piece of work, in a thread so that an interrupt ends its runs.
+
+        `Interrupted` has nothing finished: the piece is no answer.
+        """
+        try:
+            return self.work_out(
+                lambda _: work(), [None], into=lambda found: found[None], progress=lambda *_: None
+            )
+        except Interrupted:
+            raise Interrupted from None
+
+    def work_out(
+        self,
+        compute: Callable[[Place], Result],
+        places: Iterable[Place],
+        *,
+        into: Callable[[dict[Place, Result]], Answer],
+        more: Callable[[Place, Mapping[Place, Result]], Iterable[Place]] | None = None,
+        progress: Progress | None = None,
+    ) -> Answer:
+        """Answer made of the results of `compute` at each place, and at the places that follow from them.
+
+        Threads, because the kernels below release the interpreter's lock. `Interrupted` has the answer made
+        of the places that were finished, if any was.
+
+        Parameters
+        ----------
+        compute : callable
+            Called once with each place; must not depend on when it is called, so that `jobs` changes nothing.
+        places : iterable
+            Where to begin; put the longest first.
+        into : callable
+            Makes the answer of the results by their places; after an interrupt some are missing.
+        more : callable, optional
+            Given a place just finished and all results so far: which places it makes wanted, whatever the
+            order. None is computed twice.
+        progress : callable, optional
+            Called instead of the runner's own.
+        """
+        report = progress or self.progress
+        results: dict[Place, Result] = {}
+        done: SimpleQueue[tuple[Place, Future[Result]]] = SimpleQueue()
+        wanted: dict[Place, Future[Result]] = {}
+        # threads that wait for their runs let others work, so that many runs go side by side
+        turns, waiting = Turns(self.jobs), 1 if self.executor is not None else WAITING
+        pool = ThreadPoolExecutor(max_workers=waiting * self.jobs)
+        self._gathered = Gathered(turns, self.jobs, self.stop)
+
+        def in_turn(place: Place) -> Result:
+            with turns:
+                if self.stop.is_set:
+                    raise Interrupted
+                return compute(place)
+
+        def submit(new: Iterable[Place]) -> None:
+            for place in new:
+                if place not in wanted:
+                    wanted[place] = pool.submit(in_turn, place)
+                    wanted[place].add_done_callback(lambda finished, at=place: done.put((at, finished)))  # type: ignore[misc]
+
+        with _noticed(self.stop):
+            try:
+                submit(() if self.stop.is_set else places)
+                while len(results) < len(wanted) and not self.stop.is_set:
+                    with contextlib.suppress(Empty, Interrupted):
+                        place, future = done.get(timeout=LOOK)
+                        results[place] = future.result()
+                        submit(more(place, results) if more is not None else ())
+                        if report is not None:
+                            report(len(results), len(wanted))
+            except KeyboardInterrupt:
+                self.stop.set()
+            finally:
+                pool.shutdown(wait=not self.stop.is_set, cancel_futures=True)
+                if self.stop.is_set:
+                    wait(wanted.values(), timeout=GRACE)
+                self._gathered = None
+            while self.stop.is_set and not done.empty():
+                place, future = done.get()
+                if not future.cancelled() and future.exception() is None:
+                    results[place] = future.result()
+        if not self.stop.is_set:
+            return into(results)
+        raise Interrupted(into(results) if results else None)
+
+
+def made_into(make: Callable[[Result], Answer], compute: Callable[[], Result]) -> Answer:
+    """Make the result of a long job into another record, also the part that an interrupt carries."""
+    try:
+        return make(compute())
+    except Interrupted as stop:
+        raise Interrupted(None if stop.finished is None else make(stop.finished)) from None  # type: ignore[arg-type]
+
+
+@contextlib.contextmanager
+def _noticed(stop: Stop) -> Iterator[None]:
+    """Let an interrupt set an event instead of breaking in anywhere; the second one breaks in."""
+
+    def note(number: int, frame: object) -> None:  # noqa: ARG001 - as signals call it
+        if stop.is_set:
+            raise KeyboardInterrupt
+        stop.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = [(number, signal.signal(number, note)) for number in (signal.SIGINT, signal.SIGTERM)]
+    try:
+        yield
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler or signal.SIG_DFL)
+
+
+def joined(parts: Sequence[Ensemble]) -> Ensemble:
+    """One ensemble of the runs of several, from the same kicks."""
+
+    def column(name: str) -> Any:
+        values = [getattr(part, name) for part in parts]
+        return np.concatenate(values, axis=1) if np.ndim(values[0]) > 1 else values[0]
+
+    return Ensemble(**{name: column(name) for name in NAMES})
+
+
+def _of_runs(settings: StabilitySettings) -> tuple[int, Second, Ratio]:
+    """What a run takes of the settings, besides disturbance and number."""
+    return settings.seed, settings.duration, settings.ball_scatter
+
+
+def _names(cage: MovingCage) -> list[str]:
+    """Fields of the ensemble of a cage; those of space are None in the plane."""
+    return [name for name in NAMES if cage.is_in_space or name not in SPACE_ONLY]
+
+
+def _unpacked(known: bytes | None, cage: MovingCage, runs: tuple[int, int]) -> Ensemble | None:
+    """Ensemble of a cage from its bytes, with so many kicks and runs; None if they are of no use."""
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(_names(cage), runs)
+    shapes |= dict.fromkeys(BY_BALL, (*runs, cage.ball_count)) | {"kicks": runs[:1], "duration": ()}
+    sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
+    whole, data = 8 * sum(sizes.values()), b""
+    with contextlib.suppress(zlib.error):
+        data = b"" if known is None else zlib.decompressobj().decompress(known, whole + 1)
+    if len(data) != whole:
+        return None
+    at = 0
+    values: dict[str, Any] = {}
+    for name, size in sizes.items():
+        number = np.int64 if name in WHOLE_NUMBERS else np.float64
+        values[name] = np.frombuffer(data, number, size, at).reshape(shapes[name])
+        at += 8 * size
+    return Ensemble(**values | {"duration": float(values["duration"])})
