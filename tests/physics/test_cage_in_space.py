@@ -243,4 +243,4 @@ def test_a_free_cage_wobbles():
     turning = (angle[-1] - angle[0]) / (free.time[-1] - free.time[0]) / (2.0 * math.pi)
     assert turning == pytest.approx(100.1557, abs=1e-4)
     wobble = cage.moment_of_inertia / cage.transverse * OMEGA / (2.0 * math.pi)
-    assert turning + OMEGA / (2.0 * math.pi) == pytest.approx(wobble, rel=1e-8)
+    assert turning + OMEGA / (2.0 * math.pi) == pytest.approx(wobble, rel=3e-10)  # 1e-10 measured
