@@ -92,7 +92,11 @@ class Document(NamedTuple):
         for i, part in enumerate(rest):
             is_plain = i == 0 or str(part).replace("_", "").isalnum()
             quoted = printable(str(part)) if is_plain and part != "" else f'"{printable(str(part))}"'
-            text += f"[{part + 1}]" if isinstance(part, int) else f"{'.' if i else ' '}{quoted}"
+            text += (
+                f"[{part + 1}]"
+                if isinstance(part, int)
+                else f"{' ' if text.endswith(']') and not i else '.'}{quoted}"
+            )
         return text
 
 
@@ -265,11 +269,10 @@ class Reading:
     def _names(self, hint: Any, one: Described, raw: Any, path: KeyPath) -> dict[str, Any]:
         """Values by their names."""
         least, most = one.key.length or (0, 2000)
-        if not isinstance(raw, dict) or not least <= len(raw) <= most:
-            got = f"{len(raw)} of them" if isinstance(raw, dict) else shown(raw)
-            raise InputError(
-                "", f"must be a table of {least} to {most} names, each with its value", got, one.key.hint
-            )
+        if not isinstance(raw, dict):
+            raise InputError("", "must be a table of names with their values", shown(raw), one.key.hint)
+        if not least <= len(raw) <= most:
+            raise InputError("", f"must have {least} to {most} names", f"{len(raw)} of them", one.key.hint)
         before = len(self.faults)
         for name in raw:
             try:

@@ -273,7 +273,7 @@ def faults_of(
     `values` has the defaults too, and MISSING where there is none.
     """
     bad: set[str | int] = set(refused)
-    for stage in (partial(_structure, owner, keys, values, written), partial(_rules, keys, values)):
+    for stage in (partial(_structure, owner, keys, values, written), partial(_rules, keys, values, written)):
         for fault in tuple(stage(bad)):
             bad.update(fault.path[:1] or ("",))
             yield fault
@@ -350,15 +350,15 @@ def _structure(
             yield Fault(name, f"needs {only.key}: {only.reason}", only.cure, "")
 
 
-def _rules(keys: Mapping[str, Described], values: Mapping[str, Any], bad: Set[str | int]) -> Faults:
-    """What type, bound and length of each key refuse."""
-    for name, one in keys.items():
-        value = values[name]
-        if name not in bad and value is not MISSING and value is not one.default:
-            if value is None:  # from Python
-                yield Fault(name, "must not be None", one.key.hint, "")
-            else:
-                yield from _of_type(one.hint, one, value, (name,))
+def _rules(
+    keys: Mapping[str, Described], values: Mapping[str, Any], written: Set[str], bad: Set[str | int]
+) -> Faults:
+    """What type, bound and length of each key refuse; a default is right."""
+    for name in (name for name in keys if name in written and name not in bad):
+        if values[name] is None:  # from Python
+            yield Fault(name, "must not be None", keys[name].key.hint, "")
+        elif values[name] is not MISSING:
+            yield from _of_type(keys[name].hint, keys[name], values[name], (name,))
 
 
 def _of_type(hint: Any, one: Described, value: Any, path: KeyPath) -> Faults:
@@ -393,9 +393,9 @@ def _of_list(arguments: tuple[Any, ...], one: Described, value: Any, path: KeyPa
     least, most = (2, 2) if is_pair else one.key.length
     if not isinstance(value, tuple) or not least <= len(value) <= most:
         got = f"{len(value)} of them" if isinstance(value, tuple) else None
-        yield Fault(
-            path, f"must have {f'{least} to ' if least < most else ''}{most} items", one.key.hint, got
-        )
+        count = f"{least} to {most}" if least < most else f"{most}"
+        cure = "" if one.key.bound else one.key.hint  # that of a bound is about a number
+        yield Fault(path, f"must have {count} items", cure, got)
         return
     of_items = [tuple(_of_type(inner, one, item, (*path, i))) for i, item in enumerate(value)]
     if wrong := [fault for faults in of_items for fault in faults]:
