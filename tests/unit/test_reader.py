@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 import pytest
 
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import Origin, read_text
+from separatrix.ground.reader import Origin, read, read_text
 from separatrix.ground.schema import (
     Fault,
     Only,
@@ -70,7 +70,7 @@ class Part:
 class File:
     """A file of parts."""
 
-    FILE: ClassVar = Kind(noun="a file of parts", most_bytes=2000, empty="Write a [part].")
+    FILE: ClassVar = Kind(noun="a file of parts", most_bytes=6000, empty="Write a [part].")
 
     title: str | None = key(default=None)
     part: Part = key()
@@ -178,6 +178,28 @@ def test_every_mistake_is_a_line_with_place_rule_value_and_cure(text, refusal):
     assert len(found) == len(refusal), found
     for line, start in zip(found, sorted(one.strip() for one in refusal), strict=True):
         assert line.startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "parts.toml is empty. Write a [part]."),
+        ("# nothing\n", "is empty"),
+        (BASE + "angle = 1\n", "parts.toml, line 4 has angle a second time"),
+        ("[part\n", "parts.toml, line 1 is not valid TOML"),
+        ("[part]\nsize = " + "[" * 40, "parts.toml, line 2 nests brackets more than 16 deep"),
+        (BASE + "# " + "x" * 4001, "parts.toml, line 4 is longer than 4000 characters"),
+        (BASE + "# \0", "parts.toml, line 4 contains a NUL character"),
+        (BASE + "# x\n" * 2000, "parts.toml is larger than a file of parts can be, 5 kB"),
+        (BASE + "# \xff", "parts.toml, line 4 is not UTF-8 text"),
+    ],
+)
+def test_a_file_that_cannot_be_read_at_all_is_refused_in_one_line(tmp_path, text, words):
+    """Before any key is looked at."""
+    (tmp_path / "parts.toml").write_bytes(text.encode("latin-1"))
+    with pytest.raises(InputError) as refused:
+        read(File, tmp_path / "parts.toml")
+    assert str(refused.value).startswith(words) or words in str(refused.value)
 
 
 def test_a_right_file_has_the_source_of_every_value_and_notes():
