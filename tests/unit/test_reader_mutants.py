@@ -1,8 +1,8 @@
-"""Every value of a library and of a friction file wrong in nine ways: decided as by the readers before this one.
+"""Every value of a library and of a friction file wrong in nine ways: decided as by the readers before.
 
-The decisions are in reader_mutants.json: the lines that are refused, or "read". Those of the readers of 0.1 were the
-same; where a row of a friction table is wrong they had the line of the table's header. Written anew, after a look at
-each difference, by `python tests/unit/test_reader_mutants.py`.
+The decisions are in reader_mutants.json: the lines that are refused, or "read". Those of the hand-written
+readers were the same, but that a wrong row of a friction table had the line of its header.
+Written anew, after a look at each difference, by `python tests/unit/test_reader_mutants.py`.
 """
 
 import json
@@ -67,15 +67,15 @@ reduced_by = "separatrix"
 }
 PAIR = re.compile(r'("[^"\n]*"|[a-z_]+)( = )("[^"\n]*"|\[[^]\n{}]*\]|[0-9.]+|false)(, )?')
 CHANGES = {
-    "dropped": lambda key, value: "",
-    "misspelt": lambda key, value: f"{key.rstrip(chr(34))[:-1]}q{chr(34) * (key[0] == chr(34))} = {value}",
-    "another unit": lambda key, value: f"{key} = " + re.sub(r'(\d) [A-Za-z/0-9]+"', r'\1 mm"', value),
-    "bare": lambda key, value: f"{key} = " + re.sub(r'"([0-9.]+) [^"]*"', r"\1", value),
-    "negative": lambda key, value: f"{key} = " + re.sub(r"(?<![\w.])(\d)", r"-\1", value),
-    "huge": lambda key, value: f"{key} = " + re.sub(r"(?<![\w.])(\d)", r"999999999999\1", value),
-    "text": lambda key, value: f'{key} = "x"',
-    "nan": lambda key, value: f"{key} = nan",
-    "list": lambda key, value: f"{key} = []",
+    "dropped": "",
+    "misspelt": "{wrong} = {value}",
+    "another unit": (r'(\d) [A-Za-z/0-9]+"', r'\1 mm"'),
+    "bare": (r'"([0-9.]+) [^"]*"', r"\1"),
+    "negative": (r"(?<![\w.])(\d)", r"-\1"),
+    "huge": (r"(?<![\w.])(\d)", r"999999999999\1"),
+    "text": '{key} = "x"',
+    "nan": "{key} = nan",
+    "list": "{key} = []",
 }
 
 
@@ -85,7 +85,12 @@ def decisions(dialect, folder):
     for change, changed in CHANGES.items():
         found = []
         for pair in PAIR.finditer(text):
-            new = changed(pair[1], pair[3])
+            key, value = pair[1], pair[3]
+            wrong = f'{key[:-2]}q"' if key[0] == '"' else f"{key[:-1]}q"
+            if isinstance(changed, tuple):
+                new = f"{key} = {re.sub(*changed, value)}"
+            else:
+                new = changed.format(key=key, value=value, wrong=wrong)
             path.write_text(
                 text[: pair.start()] + (new + (pair[4] or "") if new else "") + text[pair.end() :]
             )

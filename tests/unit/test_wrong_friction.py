@@ -51,10 +51,10 @@ nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got 
     :: line 13: [[test]] checksum is that of test 1 once more
 +GOODfriction = 0.1 :: line 11 has friction a second time
 +\n[[test]]\nmaterial = "armalon"\ncounterface = "440C"\nmedium = "liquid  nitrogen"\nfriction = 1
-    :: line 8: [[test]] material differs from that of test 1 only in capitals or spaces; got "armalon". Write both alike
+    :: line 8: [[test]] material differs from that of test 1 only in capitals or spaces; got "armalon"
     :: line 10: [[test]] medium differs from that of test 1 only in capitals or spaces
 """
-"""A change of a good file, one added (+) or the file itself (^); place and rule of each line of its refusal."""
+"""A change of a good file, one added (+) or the file itself (^); place and rule of each mistake."""
 
 
 def wrong_files():

@@ -33,17 +33,23 @@ EDITS = r"""
 MATERIAL: cage_material => spring :: line 1: [spring] is not a section of a library of materials
 MATERIAL: "Ours" => "" :: line 1: [cage_material] "", its name, must be one line
 MATERIAL: Ours => Ours  :: line 1: [cage_material] Ours , its name, must not begin or end with a space
-MATERIAL: DATUM => 5 :: line 2: [cage_material] Ours.elastic_modulus must be a table with value, source, confidence
+MATERIAL: DATUM => 5
+    :: line 2: [cage_material] Ours.elastic_modulus must be a table with value, source, confidence
 MATERIAL: DATUM => [] :: line 2: [cage_material] Ours.elastic_modulus must have 1 to 100 items
 MATERIAL: DATUM => [DATUM, DATUM]
-    :: line 2: [cage_material] Ours.elastic_modulus has two with the same temperature, pressure, medium and form
-MATERIAL: , source = "our test", confidence => , confidence :: line 2: [cage_material] Ours.elastic_modulus lacks: source
-MATERIAL: "our test" => "x" :: line 2: [cage_material] Ours.elastic_modulus.source must be one line of 3 to 1000
-MATERIAL: "measured" => "sure" :: line 2: [cage_material] Ours.elastic_modulus.confidence must be one of measured, maker
+    :: line 2: [cage_material] Ours.elastic_modulus has two with the same temperature, pressure
+MATERIAL: , source = "our test", confidence => , confidence
+    :: line 2: [cage_material] Ours.elastic_modulus lacks: source
+MATERIAL: "our test" => "x"
+    :: line 2: [cage_material] Ours.elastic_modulus.source must be one line of 3 to 1000
+MATERIAL: "measured" => "sure"
+    :: line 2: [cage_material] Ours.elastic_modulus.confidence must be one of measured, maker
 MATERIAL: 5 GPa => 5 mm :: line 2: [cage_material] Ours.elastic_modulus.value needs a unit of pressure
-MATERIAL: 5 GPa => 0 GPa :: line 2: [cage_material] Ours.elastic_modulus.value must lie between 100 kPa and 5000 GPa
+MATERIAL: 5 GPa => 0 GPa
+    :: line 2: [cage_material] Ours.elastic_modulus.value must lie between 100 kPa and 5000 GPa
 MATERIAL: 0.3 => 0.5 :: line 3: [cage_material] Ours.poisson_ratio.value must lie between 0.001 and 0.499
-MATERIAL: "5 GPa", => "5 GPa", temperature = "-10 K", :: line 2: [cage_material] Ours.elastic_modulus.temperature must lie
+MATERIAL: "5 GPa", => "5 GPa", temperature = "-10 K",
+    :: line 2: [cage_material] Ours.elastic_modulus.temperature must lie
 MATERIAL: "5 GPa", => "5 GPa", range = ["6 GPa", "9 GPa"],
     :: line 2: [cage_material] Ours.elastic_modulus.range must have the value between its ends
 MATERIAL: "5 GPa", => "5 GPa", range = "5 GPa",
@@ -62,11 +68,13 @@ FLUID: liquid => slush :: line 3: [fluid] slush.phase must be "liquid" or "gas"
 FLUID: phase => elastic_modulus :: line 1: [fluid] slush lacks: phase
 TABLE: 0.2 => 0.0 :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be above 0
 TABLE: 0.2 => { mean = 1e-200, standard_deviation = 0.1 }
-    :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be >= 1e-05 where there is a standard deviation
+    :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be >= 1e-05 where there is
 TABLE: 0.2 => { mean = 0.2, count = 0 }
     :: line 8: [friction_table] rig.friction.Ours."air, 440C".count must be a whole number from 1
-TABLE: ["air, 440C"] => ["air"] :: line 6: [friction_table] rig.environments lacks an environment that the table uses
-TABLE: ["air, 440C"] => ["air, 440C", "air, 440C"] :: line 6: [friction_table] rig.environments names an environment twice
+TABLE: ["air, 440C"] => ["air"]
+    :: line 6: [friction_table] rig.environments lacks an environment that the table uses
+TABLE: ["air, 440C"] => ["air, 440C", "air, 440C"]
+    :: line 6: [friction_table] rig.environments names an environment twice
 TABLE: "air, 440C" = 0.2\n =>  :: line 7: [friction_table] rig.friction.Ours must have 1 to 2000 names
 TITLE:  => \n :: ours.toml has no record: it needs a section
 TITLE: title = "Ours"\n => # nothing :: ours.toml is empty. `separatrix materials show 440C` shows
