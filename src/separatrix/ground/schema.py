@@ -279,12 +279,9 @@ def faults_of(
             yield fault
     seen: set[KeyPath] = set()
     failed: set[Check] = set()
-    for function, after in sorted(_CHECKS[owner], key=lambda one: _rank(one[0], values)):
-        is_whole = _rank(function, values) == 2
-        if (failed & {*after}) or (is_whole and (bad or seen)):
-            arguments = None
-        else:
-            arguments = _arguments(function, owner, values, bad)
+    for function, after, is_whole in _ordered(owner):
+        spared = not failed.isdisjoint(after) or (is_whole and (bad or seen))
+        arguments = None if spared else _arguments(function, owner, values, bad)
         if arguments is None:
             failed.add(function)
             continue
@@ -297,10 +294,14 @@ def faults_of(
                 bad.update(fault.path[:1])
 
 
-def _rank(function: Check, values: Mapping[str, Any]) -> int:
-    """Place of a check: of one key, whose refusal spares it the others; of several; of the whole record."""
-    names = _parameters(function)
-    return 2 if not names.keys() <= values.keys() else int(len(names) > 1)
+@cache
+def _ordered(owner: Any) -> tuple[tuple[Check, tuple[Check, ...], bool], ...]:
+    """Checks of one key, whose refusal spares it the others; of several; of the whole record, marked."""
+    names = {one.name for one in fields(owner)}
+    found = [
+        (function, after, not _parameters(function).keys() <= names) for function, after in _CHECKS[owner]
+    ]
+    return tuple(sorted(found, key=lambda one: (one[2], len(_parameters(one[0])) > 1)))
 
 
 def silent_keys(
@@ -441,7 +442,8 @@ def _arguments(
     return found
 
 
-def defaults_of(owner: Any) -> dict[str, Any]:
+@cache
+def defaults_of(owner: Any) -> Mapping[str, Any]:
     """Value of each field that is not given; MISSING if there is none."""
     return {
         one.name: one.default if one.default_factory is MISSING else one.default_factory()
