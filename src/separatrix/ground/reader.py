@@ -170,7 +170,7 @@ class Reading:
                     "", f"must be a table{f' with {required}' if required else ''}", shown(raw), cure
                 )
             raw = {short: raw}
-        values, refused, written = {**defaults_of(owner)}, set(), {name for name in raw if name in keys}
+        values, refused, written = defaults_of(owner), set(), {name for name in raw if name in keys}
         for name, one in keys.items():  # in the order of the schema: a later key may need an earlier one
             at = (*path, name)
             if name not in raw:

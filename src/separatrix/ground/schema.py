@@ -442,13 +442,15 @@ def _arguments(
     return found
 
 
-@cache
-def defaults_of(owner: Any) -> Mapping[str, Any]:
+def defaults_of(owner: Any) -> dict[str, Any]:
     """Value of each field that is not given; MISSING if there is none."""
-    return {
-        one.name: one.default if one.default_factory is MISSING else one.default_factory()
-        for one in fields(owner)
-    }
+    return dict(_defaults_of(owner))
+
+
+@cache
+def _defaults_of(owner: Any) -> Mapping[str, Any]:
+    made = ((one.name, one.default, one.default_factory) for one in fields(owner))
+    return {name: default if factory is MISSING else factory() for name, default, factory in made}
 
 
 def built(owner: type[Made], values: Mapping[str, Any]) -> Made:
