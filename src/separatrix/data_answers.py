@@ -12,8 +12,8 @@ from separatrix.friction.tribometer import tribometer as reduced
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import nearest
 from separatrix.ground.units import Kelvin, shown
-from separatrix.study.library import Library, as_material, beside, library_files, with_files
-from separatrix.study.library.records import KINDS, Record, contradictions
+from separatrix.study.library import Library, beside, library_files, with_files
+from separatrix.study.library.records import KINDS, UNITS, AnyRecord, contradictions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from separatrix.friction.reduction import Reduction
     from separatrix.present.nodes import Document
     from separatrix.present.text.materials import Shown
-    from separatrix.study.library.records import FrictionTable
     from separatrix.verdict.long_jobs import Progress
 
 # Path of a library file or of a folder of them.
@@ -126,7 +125,7 @@ class Materials:
     """Records of the library, from `materials`."""
 
     library: Library
-    records: tuple[Record | FrictionTable, ...]
+    records: tuple[AnyRecord, ...]
 
     def document(self) -> Document:
         """Plain data, as ``materials list --json`` prints it, without the version."""
@@ -146,15 +145,14 @@ class Materials:
         import pandas as pd
 
         rows = [
-            {"kind": record.kind, "name": record.name, "property": key, **datum.plain()}
+            {"kind": record.kind, "name": record.name, "property": key, **datum.plain(UNITS[key])}
             for record in self.records
-            if isinstance(record, Record)
             for key, data in record.data.items()
             for datum in data
         ]
         return pd.DataFrame(rows)
 
-    def find(self, name: str) -> tuple[Record | FrictionTable, ...]:
+    def find(self, name: str) -> tuple[AnyRecord, ...]:
         """Return the records of a name; a fluid also by another name of it.
 
         Raises
@@ -184,10 +182,10 @@ class Materials:
 
         views = []
         for record in self.find(name):
-            if temperature is None or not isinstance(record, Record):
+            if temperature is None or record.kind == "friction table":
                 views.append(Shown(record=record))
             elif record.kind != "fluid":
-                material = as_material(record, temperature)
+                material = self.library.material(record.kind, record.name, temperature)
                 taken = (material.record or {}).get("taken", {})
                 one = Shown(record=record, taken_at=temperature, taken=taken, cautions=material.cautions)
                 views.append(one)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from separatrix.friction.file import FrictionTest, friction_text, read_friction
+from separatrix.friction.file import FrictionTest, Place, friction_text, read_friction
 from separatrix.friction.fit import fit_friction
 from separatrix.ranking.records import lowest_of
 
@@ -35,7 +35,7 @@ def test_what_is_written_is_read(tmp_path_factory, material, sample, flag, frict
     """Any printable words and any numbers come back as they were."""
     test = FrictionTest(
         material=material, counterface="440C", medium="air", friction=friction, slip_speed=(v, 2.0 * v),
-        pressure=(1e6 * p, 1e6 * p), sample=sample, flags=(flag,), run_in_end=end, run_in_axis=axis,
+        pressure=(1e6 * p, 1e6 * p), sample=sample, flags=(flag,), run_in_end=Place(axis, end),
     )  # fmt: skip
     path = tmp_path_factory.mktemp("friction") / "friction.toml"
     path.write_text(friction_text([test]), encoding="utf-8")

@@ -14,7 +14,7 @@ import pytest
 from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.cli import main
-from separatrix.friction.file import FrictionTest, friction_text, read_friction
+from separatrix.friction.file import FrictionTest, Place, friction_text, read_friction
 from separatrix.friction.fit import TestedFriction
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
@@ -49,8 +49,8 @@ def whole(**changes):
         "material": 'PEEK "x" \\ 30 %', "counterface": "440C", "medium": "liquid nitrogen",
         "friction": 0.1 + 0.2 / 3.0, "standard_error": 1e-3 / 3.0, "standard_deviation": 0.01,
         "effective_count": 88.25, "temperature": (77.35, 78.0), "slip_speed": (1.0 / 3.0, 5.0),
-        "pressure": (1e6 / 3.0, 1e6 / 3.0), "sample": "s1", "test": "t1", "run_in_end": 12.3,
-        "run_in_axis": "cycles", "flags": ("drift: 2 % in 1 km", "too short"), "source": "a.csv",
+        "pressure": (1e6 / 3.0, 1e6 / 3.0), "sample": "s1", "test": "t1", "run_in_end": Place("cycles", 12.3),
+        "flags": ("drift: 2 % in 1 km", "too short"), "source": "a.csv",
         "checksum": "ab" * 32, "reduced_by": "separatrix 0.1.0",
     } | changes)  # fmt: skip
 
@@ -104,14 +104,14 @@ def test_the_longest_flag_is_written_and_read_back(tmp_path):
     tests = (whole(flags=(max(found, key=len),)),)
     (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
     assert read_friction(tmp_path / "friction.toml") == tests
-    with pytest.raises(InputError, match="flags must be printable texts of 1 to 500"):
+    with pytest.raises(InputError, match=r"flags\.0 must be one line of 1 to 500"):
         whole(flags=("a" * 501,))
 
 
 @pytest.mark.parametrize("axis", ["time", "distance", "cycles"])
 def test_a_written_test_is_read_back_to_the_last_bit(tmp_path, axis):
     """Every field, with numbers that no short decimal holds, quotes and backslashes."""
-    tests = (whole(run_in_axis=axis), whole(checksum="cd" * 32, flags=(), sample=None))
+    tests = (whole(run_in_end=Place(axis, 12.3)), whole(checksum="cd" * 32, flags=(), sample=None))
     (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
     assert read_friction(tmp_path / "friction.toml") == tests
 

@@ -7,6 +7,7 @@ from importlib.resources import files
 import pytest
 
 from separatrix.ground.errors import DataError, InputError, ValidityWarning
+from separatrix.ground.schema import keys_of
 from separatrix.study import library
 from separatrix.study.library import SHIPPED_FILES, Library
 from separatrix.study.library.records import Datum, choose, contradictions
@@ -119,7 +120,7 @@ def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses(
     """Table 1, every line; no maker's sheet of the seven was at hand, so no modulus claims more."""
     for line in PAPER_TABLE_1.strip().splitlines():
         name, composition = line.split(" | ")
-        assert LIBRARY.records("cage material")[name].composition == f"{composition} (paper, table 1)"
+        assert LIBRARY.records("cage material")[name].content.composition == f"{composition} (paper, table 1)"
         confidence = LIBRARY.material("cage material", name).confidence
         assert confidence == "modulus: guess, Poisson's ratio: guess"
     assert LIBRARY.material("film", "PTFE transfer film").confidence.startswith("modulus: guess")
@@ -135,12 +136,12 @@ def test_numbers_that_the_shipped_study_depends_on_have_not_moved():
 
 def test_the_friction_table_is_the_paper_s():
     """Table 3, every number; a cross is absent, never 0."""
-    table = LIBRARY.friction_table("pin-on-disk-77K")
+    table = LIBRARY.friction_table("pin-on-disk-77K").content
     rows = [line.split(" | ") for line in PAPER_TABLE_3.strip().splitlines()]
     assert list(table.friction) == [row[0] for row in rows]
     for name, *values in rows:
-        for environment, value in zip(table.environments, values, strict=True):
-            friction = table.friction[name][environment]
+        for environment, value in zip(table.columns, values, strict=True):
+            friction = table.rows[name][environment]
             assert (friction is None) == (value == "-")
             assert friction is None or friction.mean == float(value)
     assert table.conditions == {
@@ -155,7 +156,9 @@ def test_the_file_of_the_table_names_its_author_and_what_is_missing():
     text = (DATA / "pin-on-disk-77K.toml").read_text(encoding="utf-8")
     for words in ("table 3", "Typed in", "absent", "1 to 5 m/s", "1 to 14 daN", "table 2", "lost"):
         assert words in text
-    assert set(LIBRARY.friction_table("pin-on-disk-77K").friction) == set(LIBRARY.names("cage material"))
+    assert set(LIBRARY.friction_table("pin-on-disk-77K").content.friction) == set(
+        LIBRARY.names("cage material")
+    )
 
 
 @pytest.mark.parametrize(
@@ -175,7 +178,7 @@ def test_an_unknown_name_is_answered_with_the_known_ones(kind, name, words):
 
 def datum(value, temperature):
     """A number that holds at a temperature or over a range."""
-    return Datum(value=value, unit="Pa", source="test", confidence="guess", temperature=temperature)
+    return Datum(value=value, source="test", confidence="guess", temperature=temperature)
 
 
 @pytest.mark.parametrize(
@@ -354,11 +357,11 @@ def test_the_built_in_states_are_those_of_coolprop():
     for name in LIBRARY.names("fluid"):
         record = LIBRARY.fluid(name)
         boiling = record.data["boiling_temperature"][0].value if "boiling_temperature" in record.data else 0.0
-        quality = 0.0 if record.facts["phase"] == "liquid" else 1.0
+        quality = 0.0 if record.content.phase == "liquid" else 1.0
         for key, code in codes.items():
             for one in record.data[key]:
                 at = ("Q", quality) if abs(one.temperature[0] - boiling) < 0.01 else ("T", one.temperature[0])
-                value = coolprop.PropsSI(code, "P", 101325.0, *at, record.facts["coolprop"])
+                value = coolprop.PropsSI(code, "P", 101325.0, *at, record.content.coolprop)
                 assert one.value == pytest.approx(value, rel=5e-5), (name, key)
 
 
@@ -380,14 +383,6 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
     block = page.split("```toml\n")[1].partition("```")[0]
     content = library.joined([reading.library_of_text(block, "page")])
     assert content.material("cage material", "Our compound", 77.0).elastic_modulus == 9e9
-    keys = [
-        *records.PROPERTIES,
-        *records.CONFIDENCES,
-        *reading._FACTS,
-        "environments",
-        "friction",
-        "replaces",
-    ]
-    keys += [key for key in Datum.__dataclass_fields__ if key != "unit"]
-    for key in (*keys, "composition", *records.CONDITIONS):
+    schemas = (records.Datum, records.Solid, records.Fluid, records.FrictionTable, records.Measured)
+    for key in (*records.CONFIDENCES, *(key for schema in schemas for key in keys_of(schema))):
         assert f"`{key}`" in page, key

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.toml import lines_of_keys
+from separatrix.ground.toml import parsed
 from separatrix.study.reading import read_study, require
 
 VALID = """\
@@ -422,13 +422,16 @@ material.density = 4
 
 def test_the_line_of_a_key_is_not_looked_for_in_texts_and_lists():
     """What looks like a header or a key inside a text, a list or a comment is none; U+2028 ends no line."""
-    assert lines_of_keys(SCANNED) == {
+    _, lines = parsed(SCANNED, "study.toml")
+    assert {".".join(map(str, path)): line for path, line in lines.items()} == {
         "title": 1,
         "samples": 5,
         "after": 9,
         "film": 10,
         "film.thickness": 11,
         "film.note": 12,
+        "ranking": 15,
+        "ranking.candidates": 15,
         "ranking.candidates.0": 15,
         "ranking.candidates.0.name": 16,
         "ranking.candidates.1": 17,

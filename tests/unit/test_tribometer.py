@@ -46,7 +46,7 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
     """One path or several; a map as an object; the tests as a friction file keeps them."""
     found = separatrix.tribometer([folder / "a2.csv"], column_map=column_map(MAP), run_in="60 s")
     (test,) = found.friction_tests
-    assert (test.material, test.environment, test.run_in_end) == ("Armalon", "air, 440C", 60.0)
+    assert (test.material, test.environment, test.run_in_end.value) == ("Armalon", "air, 440C", 60.0)
     assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
 
 

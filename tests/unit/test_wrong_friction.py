@@ -20,73 +20,58 @@ def text_of(**changes):
     return "[[test]]\n" + "".join(f"{k} = {v}\n" for k, v in (GOOD | changes).items() if v is not None)
 
 
-WRONG_FILES = {
-    "empty": ("", ("is empty", "separatrix tribometer")),
-    "no test": ('title = "mine"', ("holds no test", "[[test]]")),
-    "one bracket": (text_of().replace("[[test]]", "[test]"), ("test must be 1 to", "[[test]]")),
-    "test is a number": ("test = 3", ("line 1: test must be 1 to", "got 3")),
-    "tests are numbers": ("test = [1]", ("must be a table", "got 1")),
-    "tests without end": ("test = []", ("must be 1 to 10000", "0 tests")),
-    "unknown section": (text_of() + "[tests]\n", ("line 6: tests is not a key", "Did you mean test?")),
-    "title is a number": ("title = 3\n" + text_of(), ("title must be text",)),
-    "not TOML": ("[[test]\n", ("line 1", "not valid TOML")),
-    "decimal comma": (text_of(friction="0,08"), ("line 5", "Write a decimal point: 0.08")),
-    "key twice": (text_of() + "friction = 0.1\n", ("line 6", "friction a second time")),
-    "no material": (text_of(material=None), ("line 1: [[test]] lacks: material",)),
-    "no medium and counterface": (text_of(medium=None, counterface=None), ("lacks: counterface, medium",)),
-    "no friction": (text_of(friction=None), ("lacks: friction",)),
-    "unknown key": (text_of(speed='"1 m/s"'), ("line 6", "speed is not a key", "Did you mean")),
-    "friction is text": (text_of(friction='"0.08"'), ("line 5", "plain number", "as a number, not as text")),
-    "friction 0": (text_of(friction="0"), ("line 5", "friction must be > 0", "logarithm")),
-    "friction negative": (text_of(friction="-0.1"), ("friction must be > 0", "got -0.1")),
-    "friction 3": (text_of(friction="3"), ("friction must be <= 2", "got 3")),
-    "friction nan": (text_of(friction="nan"), ("friction must be a finite number", "got nan")),
-    "friction true": (text_of(friction="true"), ("plain number", "got true")),
-    "error negative": (text_of(standard_error="-0.01"), ("line 6", "standard_error must be >= 0")),
-    "error with percent": (text_of(standard_error='"5 %"'), ("standard_error must be a plain number",)),
-    "scatter infinite": (text_of(standard_deviation="inf"), ("standard_deviation must be a finite number",)),
-    "count 0": (text_of(effective_count="0"), ("effective_count must be > 0",)),
-    "speed without unit": (text_of(slip_speed="2"), ("slip_speed needs a unit of speed", '"2 m/s"')),
-    "speed in mm": (text_of(slip_speed='"2 mm"'), ("slip_speed needs a unit of speed", "which is a length")),
-    "speed 0": (text_of(slip_speed='"0 m/s"'), ("line 6", "slip_speed must lie between")),
-    "speed with comma": (text_of(slip_speed='"2,5 m/s"'), ("decimal point, not a comma", '"2.5 m/s"')),
-    "three speeds": (text_of(slip_speed='["1 m/s", "2 m/s", "3 m/s"]'), ("[lowest, highest]", "3 of them")),
-    "speeds the wrong way": (text_of(slip_speed='["5 m/s", "1 m/s"]'), ("must name the lowest first",)),
-    "speeds, one bare": (text_of(slip_speed='["1 m/s", 5]'), ("slip_speed, item 2,", "needs a unit")),
-    "pressure as force": (text_of(pressure='"20 N"'), ("pressure needs a unit of pressure", "a force")),
-    "pressure beyond": (text_of(pressure='"1e9 GPa"'), ("pressure must lie between", "1000 GPa")),
-    "temperature 0": (text_of(temperature='"0 K"'), ("temperature must lie between 0.1 K",)),
-    "comma in the medium": (text_of(medium='"air, dry"'), ("medium must not hold a comma", "got")),
-    "material empty": (text_of(material='""'), ("material must be one line of 1 to 200",)),
-    "material over lines": (text_of(material='"a\\nb"'), ("material must be one line",)),
-    "running-in bare": (text_of(run_in_end="35"), ("run_in_end must be a time", '"200 m"')),
-    "running-in in newtons": (text_of(run_in_end='"35 N"'), ("run_in_end must be a time", "500 cycles")),
-    "flags as text": (text_of(flags='"drift"'), ("flags must be a list",)),
-    "flag a number": (text_of(flags="[1]"), ("flags, item 1,", "must be text")),
-    "the same log twice": (
-        2 * text_of(checksum='"ab"', source='"a.csv"'),
-        ("line 13", "checksum is that of test 1 once more", "remove one"),
-    ),
-    "a copy of a log": (
-        text_of(checksum='"ab"', source='"a.csv"') + text_of(checksum='"ab"', source='"b.csv"'),
-        ("line 13", "checksum is that of test 1 once more", "remove one"),
-    ),
-    "material with a space behind": (text_of(material='"Armalon "'), ("must not begin or end with a space",)),
-    "material in other capitals": (
-        text_of() + text_of(material='"armalon"'),
-        ("line 7: [[test]].material differs from that of test 1", 'instance "Armalon"'),
-    ),
-    "medium with two spaces": (
-        text_of() + text_of(medium='"liquid  nitrogen"'),
-        ("line 9: [[test]].medium differs from that of test 1 only in capitals or spaces",),
-    ),
-}
+WRONG_FILES = r"""
+material = "Armalon" => :: line 1: [[test]] lacks: material
+^[[test]] => [test] :: line 1: [test] must be a list in [brackets]; got a table. Write [[test]]
+^title = "mine" :: friction.toml lacks: test. Write [[test]]
+^ :: friction.toml is empty. `separatrix tribometer
+^test = [] :: line 1: test must have 1 to 10000 items; got 0 of them
+^test = [1] :: line 1: test[1] must be a table with material, counterface, medium, friction; got 1
++[tests] :: line 6: [tests] is not a section of a friction file. Did you mean test?
++speed = "1 m/s" :: line 6: [[test]] speed is not a valid key. Did you mean
+"Armalon" => "Armalon " :: line 2: [[test]] material must not begin or end with a space
+"Armalon" => "" :: line 2: [[test]] material must be one line of 1 to 200
+nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got "liquid nitrogen, wet"
+0.08 => 0 :: line 5: [[test]] friction must be > 0; got 0. Its logarithm is fitted
+0.08 => 3 :: line 5: [[test]] friction must be <= 2; got 3
+0.08 => "8 %" :: line 5: [[test]] friction must be a plain number, without a unit; got "8 %". Write 0.08
++standard_error = -0.01 :: line 6: [[test]] standard_error must be >= 0
++standard_deviation = inf :: line 6: [[test]] standard_deviation must be a finite number
++effective_count = 0 :: line 6: [[test]] effective_count must be > 0
++slip_speed = "0 m/s" :: line 6: [[test]] slip_speed must lie between 1e-09 m/s and 1000 m/s; got 0 m/s
++slip_speed = ["5 m/s", "1 m/s"] :: line 6: [[test]] slip_speed must have the lowest value first
++pressure = "20 N" :: line 6: [[test]] pressure needs a unit of pressure
++pressure = "1e9 GPa" :: line 6: [[test]] pressure must lie between 0.001 Pa and 1000 GPa
++temperature = "0 K" :: line 6: [[test]] temperature must lie between 0.1 K
++run_in_end = "35 N" :: line 6: [[test]] run_in_end must be a time, a distance or a number of cycles
++flags = [1] :: line 6: [[test]] flags[1] must be text
++checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "a.csv"
+    :: line 13: [[test]] checksum is that of test 1 once more. Each log counts once; remove one
++checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "b.csv"
+    :: line 13: [[test]] checksum is that of test 1 once more
++GOODfriction = 0.1 :: line 11 has friction a second time
++\n[[test]]\nmaterial = "armalon"\ncounterface = "440C"\nmedium = "liquid  nitrogen"\nfriction = 1
+    :: line 8: [[test]] material differs from that of test 1 only in capitals or spaces; got "armalon"
+    :: line 10: [[test]] medium differs from that of test 1 only in capitals or spaces
+"""
+"""A change of a good file, one added (+) or the file itself (^); place and rule of each mistake."""
 
 
-@pytest.mark.parametrize("name", WRONG_FILES)
-def test_a_wrong_friction_file_is_refused_in_one_line(tmp_path, name):
+def wrong_files():
+    """Text of a wrong file, and the begin of each line of its refusal."""
+    for number, line in enumerate(WRONG_FILES.strip().replace("\n    ::", " ::").splitlines()):
+        change, *refusal = line.split(" :: ")
+        change = change.replace(r"\n", "\n").replace("GOOD", text_of())
+        old, arrow, new = change.removeprefix("^").partition(" =>")
+        text = text_of() + change[1:] + "\n" if change[0] == "+" else change[1:] + "\n"
+        yield pytest.param(
+            text_of().replace(old, new.strip()) if arrow else text, refusal, id=f"{number} {old[:30]}"
+        )
+
+
+@pytest.mark.parametrize(("text", "refusal"), list(wrong_files()))
+def test_a_wrong_friction_file_is_refused_a_line_a_mistake(tmp_path, text, refusal):
     """The line names the file, the rule and the value; a study that names the file passes it on."""
-    text, words = WRONG_FILES[name]
     (tmp_path / "friction.toml").write_text(text)
     (tmp_path / "study.toml").write_text(
         'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n'
@@ -97,10 +82,8 @@ def test_a_wrong_friction_file_is_refused_in_one_line(tmp_path, name):
     ):
         with pytest.raises(InputError) as refused:
             read()
-        line = str(refused.value)
-        assert "\n" not in line
-        assert line.startswith("friction.toml")
-        assert [word for word in words if word not in line] == [], line
+        lines = [line.replace("friction.toml, ", "", 1) for line in str(refused.value).splitlines()]
+        assert [line[: len(one)] for line, one in zip(lines, refusal, strict=True)] == refusal
 
 
 WRONG_STUDIES = {

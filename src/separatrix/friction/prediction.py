@@ -69,6 +69,10 @@ class Friction:
         _check.settle(_check.each_field(self))
 
 
+SCATTER_RULE = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
+SCATTER_CURE = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
+
+
 def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:
     """Return the friction as it was read, unless it scatters about a mean that is none.
 
@@ -78,7 +82,5 @@ def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:
         It has a standard deviation, and a mean of 0 or nearly so.
     """
     if friction.standard_deviation and friction.mean < LEAST_FRICTION:
-        rule = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
-        cure = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
-        raise InputError(f"{where}.mean", rule, f"{friction.mean:g}", cure)
+        raise InputError(f"{where}.mean", SCATTER_RULE, f"{friction.mean:g}", SCATTER_CURE)
     return friction

@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TypeVar
 
-from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest, place
+from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest, Place, place
 from separatrix.friction.fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
@@ -221,6 +221,7 @@ def friction_test(test: TestFriction) -> FrictionTest:
     own = {f.name for f in fields(FrictionTest)}
     given = {f.name: getattr(one, f.name) for one in (known, test) for f in fields(one) if f.name in own}
     given |= {name: (given[name], given[name]) for name in CONDITIONS if given[name] is not None}
+    given["run_in_end"] = Place(test.run_in_axis, test.run_in_end)
     try:
         return FrictionTest(reduced_by=f"separatrix {__version__}", **given)
     except InputError as error:

@@ -9,7 +9,7 @@ from enum import Enum
 from functools import cache
 from itertools import pairwise
 from numbers import Real
-from typing import TYPE_CHECKING, Concatenate, ParamSpec
+from typing import TYPE_CHECKING, Concatenate, NamedTuple, ParamSpec, TypeGuard
 
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import UNITS, format_quantity, parse, shown, unit_of
@@ -78,6 +78,35 @@ def settle(*checks: Iterable[InputError]) -> None:
         raise together(list(found.values()))
 
 
+class Bound(NamedTuple):
+    """Numbers that a quantity takes."""
+
+    low: float
+    high: float
+    open_low: bool = False
+    open_high: bool = False
+    sign: str = ""
+    """``"> 0"`` or ``">= 0"`` of a one-sided bound: it names only the side that is wrong."""
+
+    def rule(self, value: object, unit: str) -> str:
+        """Rule that a value breaks; empty if it breaks none."""
+        low, high = self.low, self.high
+        if not is_number(value) or not math.isfinite(value):
+            return f"must be a finite number{f' {self.sign}' if self.sign else ''}"
+        is_end = (self.open_low and value == low) or (self.open_high and value == high)
+        if low <= value <= high and not is_end:
+            return ""
+        bottom, top = ("0" if end == 0.0 else format_quantity(end, unit) for end in (low, high))
+        if self.sign and (value < 0.0 or (value == 0.0 and self.sign == "> 0")):
+            return f"must be {self.sign}"
+        if self.sign:
+            return f"must be >= {bottom}" if value < low else f"must be <= {top}"
+        if self.open_low or self.open_high:
+            below, above = ">" if self.open_low else ">=", "<" if self.open_high else "<="
+            return f"must be {below} {bottom} and {above} {top}"
+        return f"must lie between {bottom} and {top}"
+
+
 def between(
     record: object,
     field: str,
@@ -89,42 +118,23 @@ def between(
     open_high: bool = False,
 ) -> Problems:
     """Refuse what is not a finite number in [low, high], without its open ends. None passes."""
-    value = getattr(record, field)
-    if value is None:
-        return
-    if not is_number(value) or not math.isfinite(value):
-        yield problem(record, field, "must be a finite number", hint)
-    elif not low <= value <= high or (open_low and value == low) or (open_high and value == high):
-        yield problem(
-            record, field, _range(unit_of(type(record), field), low, high, open_low, open_high), hint
-        )
+    yield from _within(record, field, Bound(low, high, open_low, open_high), hint)
 
 
 def positive(record: object, field: str, low: float, high: float, *, hint: str = "") -> Problems:
     """Refuse what is not above zero, or outside [low, high], where nothing real lies. None passes."""
-    yield from _one_sided(record, field, low, high, "> 0", hint)
+    yield from _within(record, field, Bound(low, high, sign="> 0"), hint)
 
 
 def not_negative(record: object, field: str, high: float, *, hint: str = "") -> Problems:
     """Refuse what is below zero, or above `high`, where nothing real lies. None passes."""
-    yield from _one_sided(record, field, 0.0, high, ">= 0", hint)
+    yield from _within(record, field, Bound(0.0, high, sign=">= 0"), hint)
 
 
-def _one_sided(record: object, field: str, low: float, high: float, sign: str, hint: str) -> Problems:
-    """Like `between`, but says only which side is wrong: the other one would not help."""
+def _within(record: object, field: str, bound: Bound, hint: str) -> Problems:
     value = getattr(record, field)
-    if value is None or (is_number(value) and low <= value <= high):
-        return
-    unit = unit_of(type(record), field)
-    if not is_number(value) or not math.isfinite(value):
-        rule = f"must be a finite number {sign}"
-    elif value < 0.0 or (value == 0.0 and sign == "> 0"):
-        rule = f"must be {sign}"
-    else:
-        rule = (
-            f"must be {'>=' if value < low else '<='} {format_quantity(low if value < low else high, unit)}"
-        )
-    yield problem(record, field, rule, hint)
+    if value is not None and (rule := bound.rule(value, unit_of(type(record), field))):
+        yield problem(record, field, rule, hint)
 
 
 def whole(record: object, field: str, low: int, high: int, *, hint: str = "") -> Problems:
@@ -179,14 +189,7 @@ def increasing(
         yield InputError(where, f"must be strictly increasing{of_unit}", falls[0])
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """True for a real number that is not a bool, nor an integer too long for a float."""
     too_long = isinstance(value, int) and abs(value) >= 10**300
     return isinstance(value, Real) and not isinstance(value, bool) and not too_long
-
-
-def _range(unit: str, low: float, high: float, open_low: bool, open_high: bool) -> str:
-    top, bottom = format_quantity(high, unit), "0" if low == 0.0 else format_quantity(low, unit)
-    if open_low or open_high:
-        return f"must be {'>' if open_low else '>='} {bottom} and {'<' if open_high else '<='} {top}"
-    return f"must lie between {bottom} and {top}"

@@ -21,6 +21,9 @@ from separatrix.ground.units import NUMBER, missing_unit, parse, printable, show
 Made = TypeVar("Made")
 Choice = TypeVar("Choice", bound=Enum)
 Reader = Callable[[object, str], Made]
+KeyPath = tuple[str | int, ...]
+"""Keys from the top of a file to a value; a number is the place in a list, from 0."""
+
 Values = dict[str, Any]
 """Values of a table by their keys, each of the type that the reader of its key returns."""
 
@@ -71,8 +74,8 @@ def path_text(path: Path) -> str:
     return text if len(text) <= 80 else label_of(path)
 
 
-def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, object], dict[str, int]]:
-    """Content of a TOML file, and the line of each key as a dotted path.
+def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, object], dict[KeyPath, int]]:
+    """Content of a TOML file, and the line of each key.
 
     Raises
     ------
@@ -82,9 +85,9 @@ def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, object], dict[s
     return parsed(read_text(path, kind), label_of(path), kind)
 
 
-def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object], dict[str, int]]:
-    """Content of TOML text, and the line of each key as a dotted path."""
-    _, too_deep = _statements(text)
+def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object], dict[KeyPath, int]]:
+    """Content of TOML text, and the line of each key."""
+    begins, too_deep = _statements(text)
     if too_deep:
         raise InputError(f"{label}, line {too_deep}", f"nests brackets more than {DEEPEST} deep")
     try:
@@ -93,27 +96,31 @@ def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object]
         raise _invalid_toml(error, text, label) from None
     if not data:
         raise InputError(label, "is empty", cure=kind.empty)
-    return data, lines_of_keys(text)
+    return data, lines_of_keys(text, begins)
 
 
-def lines_of_keys(text: str) -> dict[str, int]:
-    """Line number of each key by its dotted path: ``bearing.bore``, ``ranking.candidates.0.name``."""
-    found: dict[str, int] = {}
-    seen: dict[str, int] = {}
-    prefix, lines = "", text.split("\n")
-    for number in _statements(text)[0]:
-        line = lines[number - 1]
+def lines_of_keys(text: str, begins: Iterable[int]) -> dict[KeyPath, int]:
+    """Line of each key of valid TOML; what is inside a value has the line of the value."""
+    found: dict[KeyPath, int] = {}
+    items: dict[KeyPath, int] = {}
+    prefix: KeyPath = ()
+    lines = text.split("\n")
+    for number in begins:
+        line, path = lines[number - 1], prefix
         if header := _HEADER.match(line):
-            name = _plain(header[2])
-            if header[1] == "[[":
-                seen[name] = seen.get(name, -1) + 1
-                name = f"{name}.{seen[name]}"
-            prefix = name + "."
-            found.setdefault(name, number)
+            path, parts = (), _plain(header[2])
+            for depth, part in enumerate(parts, 1):
+                path = (*path, part)
+                if header[1] == "[[" and depth == len(parts):
+                    items[path] = items.get(path, -1) + 1
+                if path in items:  # below a list of tables: in the last of them
+                    path = (*path, items[path])
+                for length in range(len(prefix := path)):
+                    found.setdefault(path[: length + 1], number)
         elif key := _KEY_LINE.match(line):
-            parts = _plain(key[1]).split(".")
-            for depth in range(1, min(len(parts), 4) + 1):
-                found.setdefault(prefix + ".".join(parts[:depth]), number)
+            for part in _plain(key[1])[:4]:
+                path = (*path, part)
+                found.setdefault(path, number)
     return found
 
 
@@ -136,18 +143,18 @@ class Places:
         return f"{self.of(path)}: {path}" if path else self.label
 
 
-def places_of(label: str, data: Mapping[str, object], lines: Mapping[str, int]) -> Places:
-    """Return the places of the keys of a TOML file, from the lines of its dotted keys."""
+def places_of(label: str, data: Mapping[str, object], lines: Mapping[KeyPath, int]) -> Places:
+    """Return the places of the keys of a TOML file, from their lines."""
     places = Places(label)
-    for dotted, line in lines.items():
-        for path in _paths(dotted, data):
+    for keys, line in lines.items():
+        for path in _paths(keys, data):
             places.known.setdefault(path, f"{label}, line {line}")
     return places
 
 
-def _paths(dotted: str, data: Mapping[str, object]) -> Iterator[str]:
-    """Yield a dotted key as the paths of faults, with those of the tables around it."""
-    name, *keys = dotted.split(".")
+def _paths(path_of_keys: KeyPath, data: Mapping[str, object]) -> Iterator[str]:
+    """Yield the keys as the paths of faults, with those of the tables around them."""
+    name, *keys = map(str, path_of_keys)
     inside = data.get(name)
     if not keys and not isinstance(inside, dict | list):
         yield name
@@ -179,8 +186,8 @@ def _statements(text: str) -> tuple[list[int], int]:
     return begins, 0
 
 
-def _plain(key: str) -> str:
-    return ".".join(part.strip("\"'") for part in re.findall(_KEY, key))
+def _plain(dotted: str) -> list[str]:
+    return [part.strip("\"'") for part in re.findall(_KEY, dotted)]
 
 
 def read_text(path: Path, kind: Kind = STUDY) -> str:
@@ -219,7 +226,9 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
     line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
     if "overwrite" in message or "twice" in message:
         key = _KEY_LINE.match(line)
-        return InputError(where, f"has {printable(_plain(key[1])) if key else shown(line)} a second time")
+        return InputError(
+            where, f"has {printable('.'.join(_plain(key[1]))) if key else shown(line)} a second time"
+        )
     reason = message[: found.start()]
     rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
     return InputError(where, rule, printable(line), _cure(line))
@@ -290,12 +299,14 @@ def truth(value: object, where: str) -> bool:
     return value
 
 
-def text(value: object, where: str, longest: int = 200, cure: str = "") -> str:
+def text(value: object, where: str, longest: int = 200, cure: str = "", *, least: int = 1) -> str:
     """Read a line of printable text."""
     if not isinstance(value, str):
         raise InputError(where, "must be text", shown(value), cure)
-    if not 0 < len(value.strip()) <= longest or not value.isprintable():
-        raise InputError(where, f"must be one line of 1 to {longest} printable characters", shown(value))
+    if not least <= len(value.strip()) <= longest or not value.isprintable():
+        raise InputError(
+            where, f"must be one line of {least} to {longest} printable characters", shown(value)
+        )
     return value
 
 

@@ -17,9 +17,7 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.study.library.records import Datum, Facts, FrictionTable, Record
-
-AnyRecord = Record | FrictionTable
+from separatrix.study.library.records import CONDITIONS, UNITS, AnyRecord, Datum, Fluid, FrictionTable
 
 WORDS = {
     "poisson_ratio": "Poisson's ratio",
@@ -61,27 +59,31 @@ def listed(records: Sequence[AnyRecord]) -> str:
 
 def _row(record: AnyRecord) -> list[str]:
     """Return what the list has of a record between its name and its library."""
-    if isinstance(record, FrictionTable):
-        sizes = (str(len(record.friction)), str(len(record.environments)))
-        return [*sizes, record.confidence.partition(";")[0]]
+    content = record.content
+    if isinstance(content, FrictionTable):
+        sizes = (str(len(content.friction)), str(len(content.columns)))
+        return [*sizes, content.confidence.partition(";")[0]]
     first = {key: data[0] for key, data in record.data.items()}
-    if record.kind == "fluid":
+    if isinstance(content, Fluid):
         points = (first.get(f"{key}_temperature") for key in ("boiling", "critical"))
-        also = ", ".join(record.facts.get("aliases") or ()) or ABSENT
-        return [also, record.facts["phase"], *map(_given, points)]
+        return [
+            ", ".join(content.aliases) or ABSENT,
+            content.phase,
+            *(_given(point, "K") for point in points),
+        ]
     modulus, density = first["elastic_modulus"], first.get("density")
     count = len(record.data["elastic_modulus"])
     return [
-        _given(modulus) + (f" (first of {count})" if count > 1 else ""),
+        _given(modulus, "Pa") + (f" (first of {count})" if count > 1 else ""),
         number(first["poisson_ratio"].value),
-        _given(density),
+        _given(density, UNITS["density"]),
         ABSENT if modulus.temperature is None else _span(modulus.temperature, "K"),
         modulus.confidence.partition(";")[0],
     ]
 
 
-def _given(datum: Datum | None) -> str:
-    return ABSENT if datum is None else quantity(datum.value, datum.unit)
+def _given(datum: Datum | None, unit: str) -> str:
+    return ABSENT if datum is None else quantity(datum.value, unit)
 
 
 def shown(records: Sequence[Shown]) -> str:
@@ -90,40 +92,34 @@ def shown(records: Sequence[Shown]) -> str:
 
 
 def _whole(one: Shown) -> str:
-    record, file = one.record, one.record.file
+    record, content, file = one.record, one.record.content, one.record.file
     keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
-    known: Facts = record.facts if isinstance(record, Record) else {}
-    values = ((key, known.get(key) or getattr(record, key, None)) for key in keys)
+    values = ((key, getattr(content, key, None)) for key in keys)
     about = [(key.capitalize(), str(value)) for key, value in values if value]
-    if isinstance(record, FrictionTable):
-        for key, unit in (
-            ("temperature", "K"),
-            ("slip_speed", "m/s"),
-            ("normal_force", "N"),
-            ("pressure", "Pa"),
-        ):
-            if key in record.conditions:
-                about.append((key.replace("_", " ").capitalize(), _span(record.conditions[key], unit)))
-        whole = section("Friction", friction_table(record.environments, record.friction))
+    if isinstance(content, FrictionTable):
+        for key, limits in content.conditions.items():
+            about.append((key.replace("_", " ").capitalize(), _span(limits, CONDITIONS[key])))
+        whole = section("Friction", friction_table(content.columns, content.rows))
     else:
         whole = section("Data", *_data(record, one))
-    if aliases := known.get("aliases"):
-        about.append(("Also", ", ".join(aliases)))
+    if record.aliases:
+        about.append(("Also", ", ".join(record.aliases)))
     origin = "shipped" if file.shipped else "of the user"
     about.append(("Library", f"{file.label}, {origin}, sha256 {file.checksum[:12]}..."))
     blocks = [heading(f"{record.name} ({record.kind})"), facts(about), whole]
     return "\n\n".join([*blocks, *(paragraph(f"Note: {caution}", indent="") for caution in one.cautions)])
 
 
-def _data(record: Record, one: Shown) -> list[str]:
+def _data(record: AnyRecord, one: Shown) -> list[str]:
     """Return every datum of a record on lines of its own, those that serve with a mark."""
     lines = []
     for key, data in record.data.items():
+        unit = UNITS[key]
         words = WORDS.get(key, key.replace("_", " "))
         for i, datum in enumerate(data):
-            text = f"{words} {format_quantity(datum.value, datum.unit, 5)}"
+            text = f"{words} {format_quantity(datum.value, unit, 5)}"
             if datum.range is not None:
-                text += f" ({_span(datum.range, datum.unit)})"
+                text += f" ({_span(datum.range, unit)})"
             at = "" if words.endswith(POINTS) else "at no stated temperature"
             parts = [
                 at if datum.temperature is None else _span(datum.temperature, "K"),

@@ -10,14 +10,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from separatrix.ground.errors import DataError, InputError
 from separatrix.ground.toml import folded, path_text
 from separatrix.ground.units import Kelvin, printable, shown
 from separatrix.study.ball_bearing import ROOM, Expansion
-from separatrix.study.library.reading import Content, read_library
-from separatrix.study.library.records import PROPERTIES, FrictionTable, LibraryFile, Record, choose
+from separatrix.study.library.reading import read_library
+from separatrix.study.library.records import (
+    AnyRecord,
+    Fluid,
+    FrictionTable,
+    LibraryFile,
+    Record,
+    Solid,
+    choose,
+)
 from separatrix.study.study import Material
 
 SHIPPED_FILES = {
@@ -33,8 +41,16 @@ ALONE, FOLDER = "materials.toml", "materials"
 """Library beside a study, and folder beside it whose files are all read."""
 
 MOST_FILES = 200
-Records = Mapping[str, Record | FrictionTable]
-Wanted = TypeVar("Wanted", Record, FrictionTable)
+Records = Mapping[str, AnyRecord]
+Wanted = TypeVar("Wanted", Solid, Fluid, FrictionTable)
+
+WORDS = {
+    "elastic_modulus": "modulus",
+    "poisson_ratio": "Poisson's ratio",
+    "density": "density",
+    "compressive_strength": "compressive strength",
+}
+"""Properties of which one datum serves, in words; of the thermal expansion all serve, at any temperature."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,17 +73,17 @@ class Library:
 
     def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
         """One solid by its exact name, with the data that serve at a temperature."""
-        return as_material(self._found(Record, kind, name), temperature)
+        return as_material(self._found(Solid, kind, name), temperature)
 
-    def friction_table(self, name: str) -> FrictionTable:
+    def friction_table(self, name: str) -> Record[FrictionTable]:
         """One table of measured friction by its exact name."""
         return self._found(FrictionTable, "friction table", name)
 
-    def _found(self, wanted: type[Wanted], kind: str, name: str) -> Wanted:
+    def _found(self, wanted: type[Wanted], kind: str, name: str) -> Record[Wanted]:
         found = self.records(kind).get(name)
-        if not isinstance(found, wanted):
+        if found is None or not isinstance(found.content, wanted):
             raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
-        return found
+        return cast("Record[Wanted]", found)
 
     def named(self, kind: str, name: str) -> str | None:
         """Exact name of a record by its name or another name of it, in any spelling; None if unknown.
@@ -78,32 +94,28 @@ class Library:
         if name in records:
             return name
         found = [known for known in records if folded(known) == wanted]
-        found = found or [one.name for one in records.values() if wanted in map(folded, _aliases(one))]
+        found = found or [one.name for one in records.values() if wanted in map(folded, one.aliases)]
         return found[0] if wanted and len(found) == 1 else None
 
-    def fluid(self, name: str) -> Record | None:
+    def fluid(self, name: str) -> Record[Fluid] | None:
         """Record of a fluid by its name or another name of it, in any spelling; None if unknown."""
         known = self.named("fluid", name)
-        return None if known is None else self._found(Record, "fluid", known)
+        return None if known is None else self._found(Fluid, "fluid", known)
 
 
-def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
+def as_material(record: Record[Solid], temperature: Kelvin | None = None) -> Material:
     """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
-    chosen = {
-        key: choose(data, temperature, PROPERTIES[key].words)
-        for key, data in record.data.items()
-        if key != "thermal_expansion"  # of which all data serve, at any temperature
-    }
-    sources = [f"{PROPERTIES[key].words}: {choice.datum.source}" for key, choice in chosen.items()]
-    confidences = [f"{PROPERTIES[key].words}: {choice.datum.confidence}" for key, choice in chosen.items()]
-    composition = [f"Composition: {record.composition}"] if record.composition else []
-    remark = [record.remark.rstrip(".")] if record.remark else []
+    solid, data = record.content, record.data
+    chosen = {key: choose(data[key], temperature, words) for key, words in WORDS.items() if key in data}
+    sources = [f"{WORDS[key]}: {choice.datum.source}" for key, choice in chosen.items()]
+    confidences = [f"{WORDS[key]}: {choice.datum.confidence}" for key, choice in chosen.items()]
+    composition = [f"Composition: {solid.composition}"] if solid.composition else []
+    remark = [solid.remark.rstrip(".")] if solid.remark else []
     # numbers on which any answer depends
     acting = ("elastic_modulus", "poisson_ratio", *["density"] * (record.kind == "bearing material"))
-    taken = {key: record.data[key].index(choice.datum) for key, choice in chosen.items()}
+    taken = {key: data[key].index(choice.datum) for key, choice in chosen.items()}
     expansions = (
-        Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence)
-        for d in record.data.get("thermal_expansion", ())
+        Expansion(*(d.temperature or (ROOM, ROOM)), d.value, d.confidence) for d in solid.thermal_expansion
     )
     return Material(
         name=record.name,
@@ -116,61 +128,52 @@ def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     )
 
 
-def joined(contents: Sequence[Content]) -> Library:
+def joined(contents: Sequence[Sequence[AnyRecord]]) -> Library:
     """Library of files of the user over the shipped records."""
-    own: dict[str, dict[str, Record | FrictionTable]] = {}
-    for content in contents:
-        for record in content.records:
+    own: dict[str, dict[str, AnyRecord]] = {}
+    for records in contents:
+        for record in records:
             kind = own.setdefault(record.kind, {})
             _refuse_hiding(kind.get(record.name) or shipped_records(record.kind).get(record.name), record)
             kind[record.name] = record
-    for name, records in own.items():
-        _refuse_alike({**shipped_records(name), **records}.values())
-    return Library(files=tuple(content.file for content in contents), own=own)
+    for name, of_kind in own.items():
+        _refuse_alike({**shipped_records(name), **of_kind}.values())
+    return Library(files=tuple(records[0].file for records in contents), own=own)
 
 
-def _refuse_hiding(old: Record | FrictionTable | None, new: Record | FrictionTable) -> None:
+def _refuse_hiding(old: AnyRecord | None, new: AnyRecord) -> None:
     """Refuse a record that would replace another without stating so."""
-    if old is None and new.replaces:
+    if old is None and new.content.replaces:
         rule = f"replaces a {new.kind} that is not shipped"
         raise InputError(_header(new), rule, cure="Leave replaces out, or correct the name.")
     if old is not None and not old.file.shipped:
         cure = "Rename or remove one of them."
-        raise InputError(_header(new), f"is in {_place(old)} too", shown(new.name), cure)
-    if old is not None and not new.replaces:
+        raise InputError(_header(new), f"is in {old.place} too", shown(new.name), cure)
+    if old is not None and not new.content.replaces:
         cure = "Give it another name, or write replaces = true."
         raise InputError(_header(new), f"has the name of a shipped {new.kind}", shown(new.name), cure)
 
 
-def _refuse_alike(records: Iterable[Record | FrictionTable]) -> None:
+def _refuse_alike(records: Iterable[AnyRecord]) -> None:
     """Refuse a name that an earlier record has, but for capitals and spaces."""
-    known: dict[str, Record | FrictionTable] = {}
+    known: dict[str, AnyRecord] = {}
     for record in records:
-        for name in (record.name, *_aliases(record)):
+        for name in (record.name, *record.aliases):
             old = known.setdefault(" ".join(name.casefold().split()), record)
             if old is not record:
-                rule = f"has a name of {printable(old.name)} ({_place(old)})"
+                rule = f"has a name of {printable(old.name)} ({old.place})"
                 raise InputError(_header(record), rule, shown(name), "Give it another name.")
 
 
-def _aliases(record: Record | FrictionTable) -> Sequence[str]:
-    return record.facts.get("aliases") or () if isinstance(record, Record) else ()
-
-
-def _header(record: Record | FrictionTable) -> str:
-    return f"{_place(record)}: [{record.kind.replace(' ', '_')}] {printable(record.name)}"
-
-
-def _place(record: Record | FrictionTable) -> str:
-    """File and line of a record."""
-    return record.file.label if record.line is None else f"{record.file.label}, line {record.line}"
+def _header(record: AnyRecord) -> str:
+    return f"{record.place}: [{record.kind.replace(' ', '_')}] {printable(record.name)}"
 
 
 @cache
 def shipped_records(kind: str) -> Records:
     """Records of one kind that come with the package, by name."""
-    content = read_library(Path(__file__).with_name("data") / SHIPPED_FILES[kind], shipped=True)
-    return {record.name: record for record in content.records}
+    records = read_library(Path(__file__).with_name("data") / SHIPPED_FILES[kind], shipped=True)
+    return {record.name: record for record in records}
 
 
 def with_files(paths: Iterable[Path]) -> Library:

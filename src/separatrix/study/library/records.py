@@ -1,13 +1,21 @@
-"""Records of the library: every number with its source, conditions and confidence."""
+"""Schema of a library file, and its records: every number with its source, conditions and confidence."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple, TypedDict
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Generic, Literal, NamedTuple, TypeVar
 
-from separatrix.ground.units import Kelvin, format_quantity
-from separatrix.study.study import Friction
+from separatrix.friction.prediction import (
+    FRICTION_LIMIT,
+    LEAST_FRICTION,
+    SCATTER_CURE,
+    SCATTER_RULE,
+    Friction,
+)
+from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, not_negative, record
+from separatrix.ground.toml import Kind, nearest
+from separatrix.ground.units import Kelvin, MetrePerSecond, Newton, Pascal, Ratio, format_quantity, shown
 
 KINDS = ("bearing material", "cage material", "film", "fluid", "friction table")
 """Kinds of records; in a file the section is the same word with an underscore."""
@@ -18,65 +26,26 @@ CONFIDENCES = ("measured", "maker", "literature", "handbook", "guess")
 NEAR: Kelvin = 10.0
 """A datum with one temperature serves this far to either side of it."""
 
-
-class Property(NamedTuple):
-    """A number of a record: its SI unit, its words, and the range of real values."""
-
-    unit: str
-    words: str
-    low: float
-    high: float
+LONG = (1, 1000)
+BLANK = "What is not known is left out, never given as 0."
 
 
-PROPERTIES = {
-    "elastic_modulus": Property("Pa", "modulus", 1e5, 5e12),
-    "poisson_ratio": Property("-", "Poisson's ratio", 0.001, 0.499),
-    "density": Property("kg/m3", "density", 1e-6, 1e5),
-    "compressive_strength": Property("Pa", "compressive strength", 1e4, 1e11),
-    "thermal_expansion": Property("m/m/K", "thermal expansion", -1e-4, 1e-3),
-    "viscosity": Property("Pa s", "viscosity", 1e-8, 1e3),
-    "heat_capacity": Property("J/kg/K", "heat capacity", 1.0, 1e6),
-    "triple_temperature": Property("K", "triple point", 0.1, 5000.0),
-    "boiling_temperature": Property("K", "boiling point at 1 atm", 0.1, 5000.0),
-    "critical_temperature": Property("K", "critical temperature", 0.1, 5000.0),
-    "critical_pressure": Property("Pa", "critical pressure", 1.0, 1e9),
-}
-"""Every number that a record may have."""
-
-ELASTIC = ("elastic_modulus", "poisson_ratio")
-SOLID_ONLY = (*ELASTIC, "compressive_strength", "thermal_expansion")
-SOLID = {key: PROPERTIES[key] for key in SOLID_ONLY} | {"density": PROPERTIES["density"]._replace(low=1.0)}
-"""Numbers of a solid; its density is not that of a gas."""
-
-FLUID = {key: known for key, known in PROPERTIES.items() if key not in SOLID_ONLY}
-"""Numbers of a fluid."""
-
-CONDITIONS = {
-    "temperature": ("K", 1e-3, 5000.0),
-    "slip_speed": ("m/s", 1e-9, 1e4),
-    "normal_force": ("N", 1e-9, 1e9),
-    "pressure": ("Pa", 1e-3, 1e12),
-}
-"""Conditions of a friction table: SI unit and range of each."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class Datum:
     """One number with its source and its conditions; what is not known is None."""
 
-    value: float
-    unit: str
-    range: tuple[float, float] | None = None
+    value: Open = key()
+    range: tuple[Open, ...] | None = key(default=None, length=(2, 2))
     """Where the true value is expected."""
 
-    temperature: tuple[Kelvin, Kelvin] | None = None
+    temperature: tuple[Kelvin, Kelvin] | None = key(between(1e-3, 5000.0), default=None)
     """Lowest and highest temperature of the source; both are the same where it states one."""
 
-    pressure: float | None = None
-    medium: str | None = None
-    form: str | None = None
-    source: str
-    confidence: str
+    pressure: Pascal | None = key(between(1e-9, 1e11), default=None)
+    medium: str | None = key(default=None, letters=LONG)
+    form: str | None = key(default=None, letters=LONG)
+    source: str = key(letters=(3, 1000), hint="Give who measured or printed it, and where.")
+    confidence: str = key(letters=LONG, hint='A guess is allowed and marked: "guess".')
 
     def serves_at(self, temperature: Kelvin) -> bool:
         """Whether its stated temperatures include this one."""
@@ -86,10 +55,188 @@ class Datum:
         margin = NEAR if low == high else 0.0
         return low - margin <= temperature <= high + margin
 
-    def plain(self) -> dict[str, object]:
+    def plain(self, unit: str) -> dict[str, object]:
         """Return it as plain data with every condition, None where it is not known."""
-        values = ((f.name, getattr(self, f.name)) for f in fields(self))
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
+        values = {name: getattr(self, name) for name in keys_of(Datum)}
+        values = {name: list(one) if isinstance(one, tuple) else one for name, one in values.items()}
+        return {"value": values.pop("value"), "unit": unit, **values}
+
+
+@check(Datum)
+def _value_in_its_range(value: Open, range: tuple[Open, ...]) -> Faults:
+    if not range[0] <= value <= range[1]:
+        yield Fault("range", "must have the value between its ends, the lower one first")
+
+
+Data = tuple[Datum, ...]
+"""One datum of a property, or several under different conditions."""
+
+_EXAMPLE = '{ value = "5 GPa", source = "our test 12", confidence = "measured" }'
+
+
+def data(low: float, high: float, **properties: Any) -> Any:
+    """Key of a property: the range of real values."""
+    properties = {"hint": f"Check the unit. {BLANK}", "example": _EXAMPLE, "length": (1, 100), **properties}
+    conditions = ("temperature", "pressure", "medium", "form")
+    return key(between(low, high), single=True, distinct=conditions, **properties)
+
+
+@record
+class Solid:
+    """A material of balls, rings or cage, or a film."""
+
+    elastic_modulus: Annotated[Data, "Pa"] = data(1e5, 5e12)
+    poisson_ratio: Annotated[Data, "-"] = data(0.001, 0.499)
+    density: Annotated[Data, "kg/m3"] = data(1.0, 1e5, default=())
+    compressive_strength: Annotated[Data, "Pa"] = data(1e4, 1e11, default=())
+    thermal_expansion: Annotated[Data, "m/m/K"] = data(-1e-4, 1e-3, default=())
+    """Mean from 293 K."""
+
+    aliases: tuple[str, ...] = key(default=(), length=(1, 20))
+    composition: str | None = key(default=None, letters=LONG)
+    remark: str | None = key(default=None, letters=LONG)
+    replaces: bool = key(default=False)
+    """Whether it hides a shipped record of its name."""
+
+
+@record
+class Fluid:
+    """A liquid or a gas, with the name of its substance in CoolProp."""
+
+    substance: str = key()
+    phase: Literal["liquid", "gas"] = key()
+    coolprop: str | None = key(default=None)
+    triple_temperature: Annotated[Data, "K"] = data(0.1, 5000.0, default=())
+    boiling_temperature: Annotated[Data, "K"] = data(0.1, 5000.0, default=())
+    critical_temperature: Annotated[Data, "K"] = data(0.1, 5000.0, default=())
+    critical_pressure: Annotated[Data, "Pa"] = data(1.0, 1e9, default=())
+    density: Annotated[Data, "kg/m3"] = data(1e-6, 1e5, default=())
+    viscosity: Annotated[Data, "Pa s"] = data(1e-8, 1e3, default=())
+    heat_capacity: Annotated[Data, "J/kg/K"] = data(1.0, 1e6, default=())
+    aliases: tuple[str, ...] = key(default=(), length=(1, 20))
+    remark: str | None = key(default=None, letters=LONG)
+    replaces: bool = key(default=False)
+
+
+@check(Fluid)
+def _coolprop_is_a_pure_fluid(coolprop: str) -> Faults:
+    if not (coolprop.isascii() and coolprop.replace("-", "").isalnum()):
+        yield Fault("coolprop", "must be the plain name of a pure fluid, letters and digits")
+
+
+UNITS = {
+    name: one.unit for owner in (Solid, Fluid) for name, one in keys_of(owner).items() if one.hint == Data
+}
+"""SI unit of each property."""
+
+
+@record
+class Measured:
+    """A measured friction of a table."""
+
+    SHORT: ClassVar = "mean"
+
+    mean: Ratio = key(between(0.0, FRICTION_LIMIT))
+    standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None)
+    count: int | None = key(between(1, 1e9), default=None)
+
+
+@check(Measured)
+def _friction_above_zero(mean: Ratio, standard_deviation: Ratio | None) -> Faults:
+    if mean == 0.0:
+        yield Fault("mean", "must be above 0", BLANK)
+    elif standard_deviation and mean < LEAST_FRICTION:
+        yield Fault("mean", SCATTER_RULE, SCATTER_CURE)
+
+
+@record
+class FrictionTable:
+    """Measured ball/cage friction of several materials in several environments."""
+
+    title: str = key(letters=LONG)
+    source: str = key(letters=LONG)
+    confidence: str = key(letters=LONG)
+    environments: tuple[str, ...] = key(default=(), length=(1, 2000))
+    """Their order, if not that of the frictions."""
+
+    friction: Mapping[str, Mapping[str, Measured]] = key(
+        length=(1, 2000), hint='Write a section [friction_table."NAME".friction."MATERIAL"] for each.'
+    )
+    temperature: tuple[Kelvin, Kelvin] | None = key(between(1e-3, 5000.0), default=None)
+    slip_speed: tuple[MetrePerSecond, MetrePerSecond] | None = key(between(1e-9, 1e4), default=None)
+    normal_force: tuple[Newton, Newton] | None = key(between(1e-9, 1e9), default=None)
+    pressure: tuple[Pascal, Pascal] | None = key(between(1e-3, 1e12), default=None)
+    remark: str | None = key(default=None, letters=LONG)
+    replaces: bool = key(default=False)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Environments in their order."""
+        return self.environments or tuple(dict.fromkeys(env for row in self.friction.values() for env in row))
+
+    @property
+    def rows(self) -> dict[str, dict[str, Friction | None]]:
+        """Friction of each material in each environment; None where it was not measured."""
+        return {
+            name: {env: self._friction(row[env]) if env in row else None for env in self.columns}
+            for name, row in self.friction.items()
+        }
+
+    def _friction(self, one: Measured) -> Friction:
+        numbers = {name: getattr(one, name) for name in keys_of(Measured)}
+        return Friction(source=self.source, confidence=self.confidence, **numbers)
+
+    @property
+    def conditions(self) -> dict[str, tuple[float, float]]:
+        """Lowest and highest value of each condition that is known, in SI."""
+        return {name: limits for name in CONDITIONS if (limits := getattr(self, name)) is not None}
+
+
+CONDITIONS = {name: one.unit for name, one in keys_of(FrictionTable).items() if one.unit}
+"""SI unit of each condition of a friction table."""
+
+
+@check(FrictionTable)
+def _environments_of_the_rows(
+    environments: tuple[str, ...], friction: Mapping[str, Mapping[str, Measured]]
+) -> Faults:
+    if len(set(environments)) < len(environments):
+        yield Fault("environments", "names an environment twice")
+    unknown = [env for row in friction.values() for env in row if environments and env not in environments]
+    if unknown:
+        rule, cure = "lacks an environment that the table uses", nearest(unknown[0], environments)
+        yield Fault("environments", rule, cure, shown(unknown[0]))
+
+
+@check(Datum, FrictionTable)
+def _confidence_is_known(confidence: str) -> Faults:
+    if confidence.partition(";")[0].strip() not in CONFIDENCES:
+        rule = f"must be one of {', '.join(CONFIDENCES)}, perhaps with a remark after a semicolon"
+        yield Fault("confidence", rule, 'A guess is allowed and marked: "guess".')
+
+
+@record
+class Content:
+    """The keys of a library file."""
+
+    FILE: ClassVar = Kind(
+        noun="a library of materials",
+        most_bytes=1024 * 1024,
+        empty="`separatrix materials show 440C` shows what a record holds.",
+    )
+
+    title: str | None = key(default=None, letters=LONG)
+    bearing_material: Mapping[str, Solid] = key(default={})
+    cage_material: Mapping[str, Solid] = key(default={})
+    film: Mapping[str, Solid] = key(default={})
+    fluid: Mapping[str, Fluid] = key(default={})
+    friction_table: Mapping[str, FrictionTable] = key(default={})
+
+
+@check(Content)
+def _has_a_record(content: Content) -> Faults:
+    if not any(getattr(content, kind.replace(" ", "_")) for kind in KINDS):
+        yield Fault("", 'has no record: it needs a section such as [cage_material."My compound"]', got="")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,72 +254,60 @@ class LibraryFile:
         return {"file": self.label, "sha256": self.checksum, "shipped": self.shipped}
 
 
-class Facts(TypedDict, total=False):
-    """Other names of a material or a fluid; substance and phase of a fluid."""
-
-    substance: str
-    phase: str
-    coolprop: str | None
-    aliases: list[str] | None
+Thing = TypeVar("Thing", bound=Solid | Fluid | FrictionTable, covariant=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Record:
-    """A material or a fluid of a library file."""
+class Record(Generic[Thing]):
+    """A material, fluid or friction table under its name, and where it is from."""
 
     kind: str
     name: str
+    content: Thing
     file: LibraryFile
-    line: int | None
-    remark: str | None = None
-    composition: str | None = None
-    replaces: bool = False
-    data: Mapping[str, tuple[Datum, ...]]
-    facts: Facts
+    place: str
+    """File and line."""
+
+    @property
+    def data(self) -> dict[str, Data]:
+        """Data of each property that is known; of a friction table none."""
+        return {name: data for name in UNITS if (data := getattr(self.content, name, ()))}
+
+    @property
+    def aliases(self) -> tuple[str, ...]:
+        """Other names of it."""
+        return getattr(self.content, "aliases", ())
 
     def plain(self) -> dict[str, object]:
         """Return the whole record as plain data."""
-        words = {key: getattr(self, key) for key in ("kind", "name", "remark", "composition")}
-        data = {key: [datum.plain() for datum in data] for key, data in self.data.items()}
-        return {**words, **self.facts, "library": self.file.plain(), "data": data}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FrictionTable:
-    """Measured ball/cage friction of several materials in several environments; None where not measured."""
-
-    kind: str = "friction table"
-    name: str
-    title: str
-    source: str
-    confidence: str
-    environments: tuple[str, ...]
-    friction: Mapping[str, Mapping[str, Friction | None]]
-    file: LibraryFile
-    line: int | None = None
-    remark: str | None = None
-    replaces: bool = False
-    conditions: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Lowest and highest temperature, slip_speed, normal_force and pressure, in SI, where they are known."""
-
-    def plain(self) -> dict[str, object]:
-        """Return the whole table as plain data."""
-        keys = ("mean", "standard_deviation", "count")
-        words = ("kind", "name", "title", "remark", "source", "confidence")
+        content, words = self.content, {"kind": self.kind, "name": self.name, "library": self.file.plain()}
+        if isinstance(content, FrictionTable):
+            return {
+                **words,
+                **{name: getattr(content, name) for name in ("title", "remark", "source", "confidence")},
+                "conditions": {
+                    name: {"value": getattr(content, name) and list(getattr(content, name)), "unit": unit}
+                    for name, unit in CONDITIONS.items()
+                },
+                "environments": list(content.columns),
+                "friction": {
+                    material: {
+                        env: one and {n: getattr(one, n) for n in keys_of(Measured)}
+                        for env, one in row.items()
+                    }
+                    for material, row in content.rows.items()
+                },
+            }
+        facts = ("substance", "phase", "coolprop") if isinstance(content, Fluid) else ()
         return {
-            **{key: getattr(self, key) for key in words},
-            "conditions": {
-                key: {"value": list(self.conditions[key]) if key in self.conditions else None, "unit": unit}
-                for key, (unit, _, _) in CONDITIONS.items()
-            },
-            "environments": list(self.environments),
-            "library": self.file.plain(),
-            "friction": {
-                material: {env: f and {key: getattr(f, key) for key in keys} for env, f in row.items()}
-                for material, row in self.friction.items()
-            },
+            **words,
+            **{name: getattr(content, name, None) for name in ("remark", "composition", *facts)},
+            "aliases": list(content.aliases) or None,
+            "data": {name: [one.plain(UNITS[name]) for one in data] for name, data in self.data.items()},
         }
 
+
+AnyRecord = Record[Solid | Fluid | FrictionTable]
 
 _NOWHERE = (1e9, 2e9)
 """Temperatures of a datum whose source states none: it serves last."""

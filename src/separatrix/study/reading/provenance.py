@@ -205,8 +205,13 @@ def _friction(friction: Friction) -> dict[str, object]:
 
 def _test(test: FrictionTest) -> dict[str, object]:
     """A friction test in SI units; pairs are the lowest and the highest value."""
-    values = ((f.name, getattr(test, f.name)) for f in fields(test))
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in values}
+    values: dict[str, object] = {}
+    for name, value in ((f.name, getattr(test, f.name)) for f in fields(test)):
+        if name == "run_in_end":
+            values[name], values["run_in_axis"] = (value.value, value.axis) if value else (None, None)
+        else:
+            values[name] = list(value) if isinstance(value, tuple) else value
+    return values
 
 
 KEPT, ASKED = "provenance.files", "provenance.command"

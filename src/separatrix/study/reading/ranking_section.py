@@ -63,11 +63,11 @@ def _of_tests(document: Document, given: Values) -> tuple[tuple[str, ...], tuple
         environments, frictions = _of_file(place(document.friction_folder, name), given, scatter)
     else:
         name = known_name(name, "friction table", "[ranking] friction", FROM_LOGS)
-        found = context().library.friction_table(name)
-        environments = found.environments
+        found = context().library.friction_table(name).content
+        environments = found.columns
         frictions = {
             name: {env: f and _stated(f, env, found, scatter) for env, f in row.items()}
-            for name, row in found.friction.items()
+            for name, row in found.rows.items()
         }
     library, kind = context().library, "cage material"
     temperature, known = context().temperature, library.names(kind)

@@ -253,7 +253,8 @@ def tested_materials(document: Document) -> tuple[str, ...]:
     try:
         if not name.endswith(".toml"):
             library = library_of(document)
-            return tuple(library.friction_table(library.named("friction table", name) or name).friction)
+            table = library.friction_table(library.named("friction table", name) or name)
+            return tuple(table.content.friction)
         from separatrix.friction.file import read_friction
 
         tests = read_friction(place(document.friction_folder, name))

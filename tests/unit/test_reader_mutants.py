@@ -1,0 +1,126 @@
+"""Every value of a library and of a friction file wrong in nine ways: decided as by the readers before.
+
+The decisions are in reader_mutants.json: the lines that are refused, or "read". Those of the hand-written
+readers were the same, but that a wrong row of a friction table had the line of its header.
+Written anew, after a look at each difference, by `python tests/unit/test_reader_mutants.py`.
+"""
+
+import json
+import re
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from separatrix.friction.file import read_friction
+from separatrix.ground.errors import InputError
+from separatrix.study.library.reading import read_library
+
+FROZEN = Path(__file__).with_name("reader_mutants.json")
+READERS = {"library": read_library, "friction": read_friction}
+FILES = {
+    "library": """\
+title = "Ours"
+[cage_material."Ours"]
+elastic_modulus = { value = "9 GPa", range = ["8 GPa", "9.5 GPa"], source = "test 12", confidence = "guess" }
+poisson_ratio = { value = 0.38, temperature = ["4 K", "400 K"], source = "as PEEK", confidence = "guess" }
+density = { value = "1400 kg/m3", pressure = "1 bar", form = "ring", source = "sheet", confidence = "maker" }
+aliases = ["Our compound", "C7"]
+replaces = false
+[fluid."slush"]
+substance = "nitrogen"
+phase = "liquid"
+coolprop = "Nitrogen"
+boiling_temperature = { value = "77.4 K", medium = "none", source = "table", confidence = "handbook; old" }
+[friction_table."rig"]
+title = "Our rig"
+source = "Report 5"
+confidence = "measured; three tests each"
+environments = ["air, 440C", "LN2, 440C"]
+slip_speed = ["1 m/s", "4 m/s"]
+normal_force = "10 N"
+[friction_table."rig".friction."Ours"]
+"LN2, 440C" = { mean = 0.12, standard_deviation = 0.01, count = 3 }
+"air, 440C" = 0.2
+""",
+    "friction": """\
+title = "Ours"
+[[test]]
+material = "Armalon"
+counterface = "440C"
+medium = "liquid nitrogen"
+friction = 0.08
+standard_error = 0.01
+standard_deviation = 0.02
+effective_count = 30.5
+temperature = "77 K"
+slip_speed = ["1 m/s", "5 m/s"]
+pressure = ["1 MPa", "2 MPa"]
+sample = "s1"
+test = "t1"
+run_in_end = "200 m"
+flags = ["drift", "too short"]
+source = "a.csv"
+checksum = "ab"
+reduced_by = "separatrix"
+""",
+}
+PAIR = re.compile(r'("[^"\n]*"|[a-z_]+)( = )("[^"\n]*"|\[[^]\n{}]*\]|[0-9.]+|false)(, )?')
+CHANGES = {
+    "dropped": "",
+    "misspelt": "{wrong} = {value}",
+    "another unit": (r'(\d) [A-Za-z/0-9]+"', r'\1 mm"'),
+    "bare": (r'"([0-9.]+) [^"]*"', r"\1"),
+    "negative": (r"(?<![\w.])(\d)", r"-\1"),
+    "huge": (r"(?<![\w.])(\d)", r"999999999999\1"),
+    "text": '{key} = "x"',
+    "nan": "{key} = nan",
+    "list": "{key} = []",
+}
+
+
+def decisions(dialect, folder):
+    """Refused lines of every mutant, in the order of the values, by the change."""
+    text, path = FILES[dialect], folder / f"{dialect}.toml"
+    for change, changed in CHANGES.items():
+        found = []
+        for pair in PAIR.finditer(text):
+            key, value = pair[1], pair[3]
+            wrong = f'{key[:-2]}q"' if key[0] == '"' else f"{key[:-1]}q"
+            if isinstance(changed, tuple):
+                new = f"{key} = {re.sub(*changed, value)}"
+            else:
+                new = changed.format(key=key, value=value, wrong=wrong)
+            path.write_text(
+                text[: pair.start()] + (new + (pair[4] or "") if new else "") + text[pair.end() :]
+            )
+            try:
+                READERS[dialect](path)
+                found.append("read")
+            except InputError as error:
+                found.append(" ".join(sorted(set(re.findall(r"toml, line (\d+)", str(error))), key=int)))
+        yield change, found
+
+
+@pytest.mark.parametrize("dialect", FILES)
+def test_mutants_are_decided_as_before(dialect, tmp_path):
+    """Which are read, and the lines of those that are not."""
+    assert dict(decisions(dialect, tmp_path)) == json.loads(FROZEN.read_text(encoding="utf-8"))[dialect]
+
+
+def test_the_files_that_are_changed_are_right(tmp_path):
+    """So that each refusal is for its change alone."""
+    for dialect, text in FILES.items():
+        (tmp_path / "right.toml").write_text(text)
+        READERS[dialect](tmp_path / "right.toml")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as made:
+        rows = {dialect: dict(decisions(dialect, Path(made))) for dialect in FILES}
+    one = {
+        d: ",\n".join(f"{json.dumps(c)}: {json.dumps(f)}" for c, f in of.items()) for d, of in rows.items()
+    }
+    FROZEN.write_text(
+        "{" + ",\n".join(f'"{d}": {{\n{lines}}}' for d, lines in one.items()) + "}\n", encoding="utf-8"
+    )
