@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from separatrix.ground import bounds as _check
 from separatrix.ground.errors import InputError
+from separatrix.ground.schema import between, key, not_negative, record
 from separatrix.ground.units import Kelvin, MetrePerSecond, Pascal, Ratio
 
 FRICTION_LIMIT = 2.0
@@ -41,10 +41,7 @@ class FrictionLaw(Protocol):
         """Friction for these conditions; one that is None is not known. The medium by all its names."""
 
 
-_SPREAD = _check.must(_check.not_negative, FRICTION_LIMIT)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class Friction:
     """A measured ball/cage friction: its mean and, if known, its scatter.
 
@@ -54,19 +51,16 @@ class Friction:
     `widening` is the part of the standard deviation that stands for it.
     """
 
-    mean: Ratio = field(metadata=_check.must(_check.between, 0.0, FRICTION_LIMIT))
-    standard_deviation: Ratio | None = field(default=None, metadata=_SPREAD)
-    count: int | None = field(default=None, metadata=_check.must(_check.whole, 1, 1_000_000_000))
-    standard_error: Ratio | None = field(default=None, metadata=_SPREAD)
+    mean: Ratio = key(between(0.0, FRICTION_LIMIT), certain=True, example="0.12")
+    standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None, certain=True)
+    count: int | None = key(between(1, 1e9), default=None, certain=True)
+    source: str = key(default="given in the study", letters=(1, 2000))
+    standard_error: Ratio | None = None
     assumed_scatter: bool = False
     extrapolation: tuple[str, ...] = ()
     widening: Ratio = 0.0
     law: FrictionLaw | None = field(default=None, compare=False, repr=False)
-    source: str = "given in the study"
     confidence: str = "given in the study"
-
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
 
 
 SCATTER_RULE = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"

@@ -1,24 +1,28 @@
 """One reader of the files that people write: ``read(Schema, path) -> Loaded(value, sources, notes)``.
 
-From a TOML file to the record of its schema: keys to values by their types, all mistakes at once, each with
-its line, key, rule, value and cure. The rules themselves are in `schema`. A mistake carries the path of its
-key, and `Document` has the place of a path: a line of a file, or a cell of a sheet.
+From a TOML file, a workbook or a file over the one that it extends, to the record of its schema: keys to
+values by their types, all mistakes at once, each with its line, key, rule, value and cure. The rules
+themselves are in `schema`. A mistake carries the path of its key, and `Document` has the place of a path: a
+line of a file, or a cell of a sheet. Uncertain numbers and names of a library are read by a `Helper`.
 """
 
 from __future__ import annotations
 
 import typing
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from os.path import isfile
 from pathlib import Path
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from separatrix.ground import toml
 from separatrix.ground.errors import InputError, together
+from separatrix.ground.input_files import place
 from separatrix.ground.schema import (
     Described,
     Fault,
+    OneOf,
     built,
     defaults_of,
     faults_of,
@@ -32,6 +36,25 @@ from separatrix.ground.units import printable, shown
 
 Schema = TypeVar("Schema")
 MOST_FAULTS = 100
+MOST_BASES = 8
+
+
+class Elsewhere(InputError):  # noqa: N818 - it never leaves a reading
+    """Mistakes in a file that a value names: they have places of their own."""
+
+    def __init__(self, error: InputError) -> None:
+        super().__init__(error.path, error.rule, error.got, error.cure)
+        self.problems = error.problems or (error,)
+
+
+class Helper(Protocol):
+    """What reads the values of a file that have a form of their own in it."""
+
+    def number(self, raw: object, unit: str, one: Described) -> tuple[float, object]:
+        """Number of a quantity or, with an empty unit, whole one; and its distribution, None if certain."""
+
+    def named(self, raw: object, one: Described, path: KeyPath, reading: Reading) -> Any:
+        """Record of a library that a text names, or None if the value is not a name."""
 
 
 class Origin(Enum):
@@ -56,6 +79,8 @@ class Loaded(Generic[Schema]):
     value: Schema
     sources: Mapping[KeyPath, Source]
     notes: tuple[str, ...] = ()
+    distributions: Mapping[KeyPath, Any] = field(default_factory=dict)
+    """Of the uncertain numbers, which have their means in the record."""
 
 
 class Document(NamedTuple):
@@ -64,6 +89,17 @@ class Document(NamedTuple):
     label: str
     data: Mapping[str, Any]
     places: Mapping[KeyPath, str]
+    folders: Mapping[KeyPath, Path] = {}
+    """Where the files are that a value names, by the top of its path."""
+
+    notes: tuple[str, ...] = ()
+    chain: tuple[tuple[Path, Mapping[str, Any]], ...] = ()
+    """The file and those that it extends, each with its own content."""
+
+    def folder(self, path: KeyPath) -> Path:
+        """Folder of the file that gives a key."""
+        parts = (path[:length] for length in range(len(path), -1, -1))
+        return next((self.folders[part] for part in parts if part in self.folders), Path())
 
     def place(self, path: KeyPath) -> str:
         """Place of the longest part of a path that has one."""
@@ -108,24 +144,102 @@ def read(schema: type[Schema], path: Path) -> Loaded[Schema]:
     InputError
         Everything that is wrong, a line each: place, key, rule, value, cure.
     """
-    return read_text(schema, toml.read_text(path, _kind(schema)), toml.label_of(path))
+    return read_document(schema, document_of(schema, path))
 
 
 def read_text(schema: type[Schema], text: str, label: str) -> Loaded[Schema]:
     """Record of the text of a file."""
+    return read_document(schema, _document_of_text(schema, text, label))
+
+
+def _document_of_text(schema: type, text: str, label: str) -> Document:
     data, lines = toml.parsed(text, label, _kind(schema))
-    places = {path: f"{label}, line {line}" for path, line in lines.items()}
-    return read_document(schema, Document(label, data, places))
+    return Document(label, data, {path: f"{label}, line {line}" for path, line in lines.items()})
 
 
-def read_document(schema: type[Schema], document: Document) -> Loaded[Schema]:
+def read_document(schema: type[Schema], document: Document, helper: Helper | None = None) -> Loaded[Schema]:
     """Record of a document."""
-    reading = Reading(schema, document)
+    reading = Reading(schema, document, helper)
     try:
         value = reading.record(schema, document.data, ())
     except Refused:
         raise together(reading.faults) from None
-    return Loaded(value=value, sources=reading.sources, notes=tuple(reading.notes))
+    notes = (*document.notes, *reading.notes)
+    return Loaded(value=value, sources=reading.sources, notes=notes, distributions=reading.distributions)
+
+
+# ---- a file over the file that it extends
+
+
+def document_of(schema: type, path: Path, above: tuple[Path, ...] = ()) -> Document:
+    """Document of a file, over that of the file that it extends."""
+    kind = _kind(schema)
+    if kind.sheets is not None and kind.sheets(path):
+        from separatrix.ground.sheet import read_sheets
+
+        document = read_sheets(schema, path)
+    else:
+        document = _document_of_text(schema, toml.read_text(path, kind), toml.label_of(path))
+    folders = {(): path.parent}
+    for name, one in document.data.items():
+        folders |= {(name, key): path.parent for key in one} if isinstance(one, dict) else {}
+    document = document._replace(folders=folders, chain=((path, document.data),))
+    if "extends" not in document.data or "extends" not in keys_of(schema):
+        return document
+    where, base = f"{document.place(('extends',))}: extends", document.data["extends"]
+    shipped = kind.shipped()
+    if not isinstance(base, str):
+        raise InputError(where, "must be a path or the name of a shipped example", shown(base))
+    beside_it = place(path.parent, base)
+    target = beside_it if base and isfile(beside_it) else shipped.get(base)
+    if target is None:
+        cure = toml.nearest(base, shipped).replace("Known:", "Shipped examples:")
+        raise InputError(where, "does not name a file beside this one", shown(base), cure)
+    chain = (*above, path.resolve())
+    if target.resolve() in chain:
+        raise InputError(where, "leads back to a file that extends this one", shown(base))
+    if len(chain) > MOST_BASES:
+        raise InputError(where, f"makes a chain of more than {MOST_BASES} files", shown(base))
+    return _over(schema, document_of(schema, target, chain), document)
+
+
+def _over(schema: type, base: Document, variant: Document) -> Document:
+    """A document over its base: a section key by key, all else as a whole."""
+    data = {name: value for name, value in base.data.items() if name not in ("extends", "library")}
+    own: set[KeyPath] = set()
+    for name, value in variant.data.items():
+        one, below = keys_of(schema).get(name), data.get(name)
+        is_section = one is not None and is_record(one.key.form or one.hint)
+        if one is not None and is_section and isinstance(value, dict) and isinstance(below, dict):
+            dropped = set(_dropped(one.key.form or one.hint, value))
+            data[name] = {key: item for key, item in below.items() if key not in dropped} | value
+            own |= {(name, key) for key in value}
+        else:
+            data[name] = value
+            own.add((name,))
+    hidden = {path for path in base.places if path[:1] in own or path[:2] in own}
+    places = {path: where for path, where in base.places.items() if path not in hidden}
+    return variant._replace(
+        data=data,
+        places=places | variant.places,
+        folders=base.folders | variant.folders,
+        notes=base.notes + variant.notes,
+        chain=variant.chain + base.chain,
+    )
+
+
+def _dropped(section: Any, variant: Mapping[str, Any]) -> Iterator[str]:
+    """Keys of the base that the variant replaces by an alternative, or makes meaningless."""
+    for rule in getattr(section, "RULES", ()):
+        if isinstance(rule, OneOf) and any(key in variant for group in rule.groups for key in group):
+            yield from (
+                key for group in rule.groups if not any(one in variant for one in group) for key in group
+            )
+    for name, one in keys_of(section).items():
+        for only in one.key.only:
+            words = [toml.folded(str(getattr(value, "value", value))) for value in only.values]
+            if only.key in variant and toml.folded(str(variant[only.key])) not in words:
+                yield name
 
 
 def _kind(schema: Any) -> toml.Kind:
@@ -143,14 +257,20 @@ class Reading:
 
     schema: type
     document: Document
+    helper: Helper | None = None
     faults: list[InputError] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     sources: dict[KeyPath, Source] = field(default_factory=dict)
+    distributions: dict[KeyPath, Any] = field(default_factory=dict)
+    done: dict[str, Any] = field(default_factory=dict)
+    """Values of the keys at the top that were read before."""
 
     def refuse(self, path: KeyPath, error: InputError) -> None:
         """Note a mistake in the value of a path."""
         for one in error.problems or (error,):
-            if len(self.faults) < MOST_FAULTS:
+            if isinstance(error, Elsewhere):
+                self.faults.append(one)
+            elif len(self.faults) < MOST_FAULTS:
                 place, name = self.document.place(path), self.document.name(path)
                 self.faults.append(one.at(f"{place}: {name}{one.path}" if path else place))
             elif len(self.faults) == MOST_FAULTS:
@@ -181,21 +301,44 @@ class Reading:
             values[name] = found
             if found is _NOTHING:
                 refused.add(name)
+            elif not path:
+                self.done[name] = found
         for name in raw:
             if name not in keys and len(self.faults) <= MOST_FAULTS:
                 refused.add(name)
                 self._unknown(name, raw[name], path, keys)
         for fault in faults_of(owner, keys, values, written, refused):
             self._refuse_fault(fault, path)
+        self._ignore_silent_keys(keys, values, written, refused, raw, path)
+        if len(self.faults) > before:
+            raise Refused
+        return built(owner, values)
+
+    def checked(self, owner: type[Schema], values: Mapping[str, Any], path: KeyPath) -> Schema:
+        """Record of values that follow from those of a table."""
+        faults = tuple(faults_of(owner, keys_of(owner), values, set(values), set()))
+        for fault in faults:
+            self._refuse_fault(fault, path)
+        if faults:
+            raise Refused
+        return built(owner, values)
+
+    def _ignore_silent_keys(
+        self,
+        keys: Mapping[str, Described],
+        values: dict[str, Any],
+        written: Set[str],
+        refused: Set[str],
+        raw: Mapping[str, Any],
+        path: KeyPath,
+    ) -> None:
+        """Note written keys that have no effect beside the value of another, and take their defaults."""
         for name, only in silent_keys(keys, values, written, refused).items():
             if only.ignored and only.key in written:
                 at = (*path, name)
                 because = f"not used, because {only.key} is {shown(raw[only.key])}."
                 self.notes.append(f"{self.document.place(at)}: {self.document.name(at)}: {because}")
                 values[name] = keys[name].default
-        if len(self.faults) > before:
-            raise Refused
-        return built(owner, values)
 
     def _noted(self, hint: Any, one: Described, raw: Any, path: KeyPath) -> Any:
         """Value of a path and its source; `_NOTHING` where it was refused."""
@@ -236,12 +379,14 @@ class Reading:
         origin, arguments = typing.get_origin(hint), typing.get_args(hint)
         if one.key.read is not None:
             return one.key.read(raw, path, self)
-        if hint is float:
-            return toml.quantity(one.unit)(raw, "")
-        if hint is int:
-            return toml.whole(raw, "")
+        if hint in (float, int):
+            return self.number(one, raw, path, hint)
         if hint is bool:
             return toml.truth(raw, "")
+        if one.key.named and self.helper is not None:
+            found = self.helper.named(raw, one, path, self)
+            if found is not None:
+                return found
         if is_record(hint):
             return self.record(hint, raw, path, one)
         if isinstance(hint, type) and issubclass(hint, Enum):
@@ -249,15 +394,31 @@ class Reading:
         if origin is tuple and arguments[-1] is not Ellipsis:
             return self._pair(one, raw)
         if origin is tuple:
-            if not isinstance(raw, list) and not one.key.single:
-                raise InputError("", "must be a list in [brackets]", shown(raw), one.key.hint)
-            if not isinstance(raw, list):
-                return (self.convert(without_unit(arguments[0])[0], one, raw, path),)
-            items = (((*path, i), item) for i, item in enumerate(raw))
-            return tuple(self._each(arguments[0], one, items))
+            return self.list_of(arguments[0], one, raw, path)
         if isinstance(origin, type) and issubclass(origin, Mapping):
             return self._names(arguments[1], one, raw, path)
         return raw  # a text, or a choice that is the text itself: `faults_of` has its rules
+
+    def list_of(self, hint: Any, one: Described, raw: Any, path: KeyPath) -> tuple[Any, ...]:
+        """Values of a list, or of one that may stand without its brackets."""
+        if not isinstance(raw, list) and not one.key.single:
+            raise InputError("", "must be a list in [brackets]", shown(raw), one.key.hint)
+        if not isinstance(raw, list):
+            return (self.convert(without_unit(hint)[0], one, raw, path),)
+        if not raw and one.unit:
+            raise InputError("", "must not be empty", cure="Leave it out, or give its values.")
+        one = one._replace(key=replace(one.key, read=None))
+        made = self._each(hint, one, (((*path, i), item) for i, item in enumerate(raw)))
+        return tuple(sorted(made) if one.key.ordered else made)
+
+    def number(self, one: Described, raw: Any, path: KeyPath, hint: type = float) -> float:
+        """Number of a key: of an uncertain one the mean."""
+        if self.helper is None:
+            return toml.quantity(one.unit)(raw, "") if hint is float else toml.whole(raw, "")
+        value, distribution = self.helper.number(raw, one.unit if hint is float else "", one)
+        if distribution is not None:
+            self.distributions[path] = distribution
+        return value
 
     def _pair(self, one: Described, raw: Any) -> tuple[float, ...]:
         """One quantity, or a list of the lowest and the highest."""
@@ -281,6 +442,8 @@ class Reading:
             except InputError as error:
                 self.refuse((*path, name), error)
         items = (((*path, name), item) for name, item in raw.items())
+        if one.key.item is not None:
+            one = one._replace(key=replace(one.key, read=one.key.item))
         made = self._each(hint, one, items)
         if len(self.faults) > before:
             raise Refused

@@ -22,8 +22,10 @@ A field without `key` is not in the file; what follows from the keys is a proper
 
 from __future__ import annotations
 
+import ast
 import inspect
 import math
+import textwrap
 import typing
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import MISSING, dataclass, field, fields
@@ -150,8 +152,23 @@ class Key:
     """Another key without which it has no effect, and why."""
 
     only: tuple[Only, ...] = ()
-    read: Callable[[object, KeyPath, Any], Any] | None = None
+    certain: bool = False
+    """Whether it takes no distribution, in a file whose numbers may be uncertain."""
+
+    named: str = ""
+    """Kind of the library's records that it may name."""
+
+    ordered: bool = False
+    """Whether the numbers of a list are put in rising order."""
+
+    read: Callable[[Any, KeyPath, Any], Any] | None = None
     """Reader of a form of its own: from the value, its path and the `reader.Reading` to the field."""
+
+    item: Callable[[Any, KeyPath, Any], Any] | None = None
+    """The same of each value of a table of names."""
+
+    form: type | None = None
+    """Record of the keys that a file has, where `read` makes another of it."""
 
 
 def key(bound: Bound | None = None, *, default: Any = MISSING, **properties: Any) -> Any:
@@ -209,6 +226,18 @@ class Described(NamedTuple):
     def is_required(self) -> bool:
         """Whether it has no default."""
         return self.default is MISSING
+
+
+@cache
+def meanings_of(owner: type) -> Mapping[str, str]:
+    """Text below each field of a record, on one line, from its source."""
+    (made,) = ast.parse(textwrap.dedent(inspect.getsource(owner))).body
+    found: dict[str, str] = {}
+    for one, below in pairwise(getattr(made, "body", [])):
+        is_field = isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name)
+        if is_field and isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
+            found[one.target.id] = " ".join(str(below.value.value).split())
+    return found
 
 
 def is_record(hint: object) -> bool:
@@ -356,7 +385,7 @@ def _rules(
 ) -> Faults:
     """What type, bound and length of each key refuse; a default is right."""
     for name in (name for name in keys if name in written and name not in bad):
-        if values[name] is None:  # from Python
+        if values[name] is None and keys[name].key.read is None:  # from Python
             yield Fault(name, "must not be None", keys[name].key.hint, "")
         elif values[name] is not MISSING:
             yield from _of_type(keys[name].hint, keys[name], values[name], (name,))
@@ -484,12 +513,15 @@ def _got(fault: Fault, keys: Mapping[str, Described], values: Mapping[str, Any])
     """Value of a fault for a message, where no file has its text."""
     if fault.got is not None or not fault.path:
         return fault.got or ""
-    value: Any = values[str(fault.path[0])]
-    for part in fault.path[1:]:
-        value = value[part]
-    unit = keys[str(fault.path[0])].unit
-    return (
-        format_quantity(value, unit, 8)
-        if unit and is_number(value) and math.isfinite(value)
-        else shown(value)
-    )
+    name, *rest = fault.path
+    value, unit = values[str(name)], keys[str(name)].unit
+    for part in rest:
+        if is_record(type(value)):
+            value, unit = getattr(value, str(part)), keys_of(type(value))[str(part)].unit
+        else:
+            value = value[part]
+    if value is None:
+        return ""
+    if unit and is_number(value) and math.isfinite(value):
+        return format_quantity(value, unit, 8) + (f" ({value:.5g} rad)" if unit == "rad" else "")
+    return shown(value)

@@ -43,6 +43,12 @@ class Kind:
     empty: str = "`separatrix new PATH` writes a study to fill in."
     """The cure of an empty one."""
 
+    shipped: Callable[[], Mapping[str, Path]] = dict
+    """Files that `extends` may name without a path."""
+
+    sheets: Callable[[Path], bool] | None = None
+    """Whether a file of this kind is a workbook; None: none is."""
+
 
 STUDY = Kind()
 

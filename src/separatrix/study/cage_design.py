@@ -1,18 +1,32 @@
-"""The cage of a study, and the rules that it shares with the moving cage (`cage.moving_cage`)."""
+"""The cage of a study, the schema of [cage], and the rules that it shares with `cage.moving_cage`."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from enum import Enum
+from functools import partial
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT
-from separatrix.ground import bounds as _check
-from separatrix.ground.bounds import between, must, not_negative, one_of, positive, whole
-from separatrix.ground.errors import InputError
+from separatrix.ground.bounds import is_number
+from separatrix.ground.reader import Reading
+from separatrix.ground.schema import (
+    Fault,
+    Faults,
+    Only,
+    all_or_none,
+    between,
+    check,
+    key,
+    keys_of,
+    not_negative,
+    one_of,
+    positive,
+    record,
+)
+from separatrix.ground.toml import KeyPath, text
 from separatrix.ground.units import (
     Kilogram,
     KilogramMetre,
@@ -26,12 +40,12 @@ from separatrix.ground.units import (
     format_quantity,
 )
 from separatrix.study.ball_bearing import Material
+from separatrix.study.helper import helper_of
 from separatrix.study.pocket_shape import Pocket, PocketShape, end_half_play, half_play
 
 SIGMAS = 3.0
 """Standard deviations at which normal scatter is cut."""
 
-LANDLESS = "has no meaning for a cage guided by its balls"
 _FULL_TURN = 2.0 * math.pi
 
 
@@ -77,183 +91,186 @@ class MotionModel(Enum):
     SPACE = "space"
 
 
-class Cage(Pocket, Protocol):
-    """A record with pockets and land: `CageDesign`, or `MovingCage`."""
-
-    @property
-    def pocket_angles(self) -> tuple[Radian, ...]:
-        """Angle of each pocket; empty where they are evenly spaced [rad]."""
-
-    @property
-    def pocket_spacing_scatter(self) -> Ratio:
-        """Largest random displacement of a pocket with its ball, as a share of the pitch [-]."""
-
-    @property
-    def pocket_position_scatter(self) -> Metre:
-        """Standard deviation of a pocket's place along the circumference [m]."""
-
-    @property
-    def ball_diameter_scatter(self) -> Metre:
-        """Standard deviation of the balls' diameters [m]."""
-
-    @property
-    def guidance(self) -> Guidance:
-        """What guides the cage."""
-
-    @property
-    def land_clearance(self) -> Metre | None:
-        """Diametral clearance of the land [m]."""
-
-    @property
-    def land_out_of_round(self) -> Metre:
-        """Amplitude of the land's departure from a circle [m]."""
-
-    @property
-    def land_lobes(self) -> int:
-        """Lobes of that departure around the land."""
+_SHAPE = "of the ring's shape"
+SCALED = "2.5 x cage speed x half the pocket clearance, at least 0.05 m/s"
+_PLAY = "0 is a pocket that grips its ball from both sides."
+_GUESS = "a guess: give that of your cage"
+_LAND = Only(
+    "guidance",
+    (Guidance.OUTER, Guidance.INNER),
+    "without it the balls guide the cage",
+    'Give guidance = "outer" or "inner", or leave it out.',
+    ignored=True,
+)
+_ELONGATED = Only(
+    "pocket_shape",
+    (PocketShape.ELONGATED,),
+    "has a meaning only for an elongated pocket",
+    'Give pocket_shape = "elongated", or leave it out.',
+)
+_ROUND = Only(
+    "pocket_shape",
+    (PocketShape.ELONGATED, PocketShape.CYLINDRICAL),
+    "changes nothing in a square pocket",
+    'Give pocket_shape = "cylindrical" or "elongated", or leave it out.',
+)
 
 
-def clearance(record: object, name: str) -> _check.Problems:
-    """Zero clearance grips the ball from both sides; one that nobody could measure is a mistake of units."""
-    if getattr(record, name) != 0.0:
-        hint = "0 is a pocket that grips its ball from both sides."
-        yield from not_negative(record, name, 10.0, hint=hint)
-        yield from positive(record, name, 1e-9, 10.0, hint=hint)
+def _read_material(raw: Any, path: KeyPath, reading: Reading) -> Material | None:
+    """A material; None of a name that the library lacks: `candidates.name_cage` looks for a candidate."""
+    library, one = helper_of(reading).library, keys_of(CageDesign)["material"]
+    if isinstance(raw, str) and library.named("cage material", text(raw, "")) is None:
+        return None
+    found: Material | None = helper_of(reading).named(raw, one, path, reading)
+    return found or reading.record(Material, raw, path, one)
 
 
-def rising_angles(record: object, name: str) -> _check.Problems:
-    """Angles rise within one turn, so that pocket and ball j are the j-th along the circumference."""
-    angles, where = getattr(record, name), f"{type(record).__name__}.{name}"
-    wrong = [a for a in angles if not _check.is_number(a) or not -_FULL_TURN <= a <= _FULL_TURN]
-    if wrong:
-        yield InputError(where, "must each be a finite angle within one turn of 0", f"{wrong[0]!s:.40}")
-        return
-    falls = [(i, a, b) for i, (a, b) in enumerate(pairwise(angles)) if not a < b]
-    if falls:
-        i, a, b = falls[0]
-        got = f"{format_quantity(b, 'rad')} after {format_quantity(a, 'rad')}"
-        yield InputError(where, f"must be strictly increasing (items {i + 1} and {i + 2})", got)
-    elif angles and angles[-1] - angles[0] >= _FULL_TURN:
-        got = f"{format_quantity(angles[0], 'rad')} to {format_quantity(angles[-1], 'rad')}"
-        yield InputError(where, "must lie within one turn: the last less than 360 deg after the first", got)
-
-
-POCKET_AND_LAND = {
-    "pocket_shape": must(one_of, PocketShape),
-    "pocket_clearance": must(clearance),
-    "pocket_axial_clearance": must(positive, 1e-9, 10.0),
-    "pocket_axial_offset": must(between, -10.0, 10.0),
-    "pocket_angles": must(rising_angles),
-    "pocket_spacing_scatter": must(
-        between, 0.0, 0.5, open_high=True, hint="Half a pitch would let neighbours change places."
+POCKET_AND_LAND: dict[str, Callable[..., Any]] = {
+    "pocket_axial_clearance": partial(key, positive(1e-9, 10.0), default=None),
+    "pocket_axial_offset": partial(key, between(-10.0, 10.0), default=0.0),
+    "pocket_spacing_scatter": partial(
+        key,
+        between(0.0, 0.5, open_high=True),
+        default=0.0,
+        hint="Half a pitch would let neighbours change places.",
     ),
-    "pocket_position_scatter": must(not_negative, 1.0),
-    "ball_diameter_scatter": must(not_negative, 1.0),
-    "guidance": must(one_of, Guidance),
-    "land_restitution": must(between, 0.0, 1.0),
-    "land_count": must(whole, 1, 2, hint="One land, or one on each side of the balls."),
-    "land_out_of_round": must(not_negative, 1.0),
-    "land_lobes": must(whole, 2, 100, hint="One lobe is an offset centre: give unbalance."),
+    "pocket_position_scatter": partial(key, not_negative(1.0), default=0.0),
+    "ball_diameter_scatter": partial(key, not_negative(1.0), default=0.0),
+    "land_restitution": partial(key, between(0.0, 1.0), default=0.5),
+    "land_count": partial(key, between(1, 2), default=1, hint="One land, or one on each side of the balls."),
+    "land_out_of_round": partial(key, not_negative(1.0), default=0.0),
+    "land_lobes": partial(
+        key, between(2, 100), default=2, hint="One lobe is an offset centre: give unbalance."
+    ),
 }
-"""Checks of the fields that `CageDesign` and `MovingCage` have alike."""
+"""Fields that `CageDesign` and `MovingCage` have alike."""
 
 _SAME = POCKET_AND_LAND
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class CageDesign:
     """The cage: inertia, pockets and guidance."""
 
-    mass: Kilogram | None = field(default=None, metadata=must(positive, 1e-9, 1e4))
-    """None: that of its shape, with the density of its material."""
+    RULES: ClassVar = (
+        one_of("pocket_spacing_scatter", "pocket_angles"),
+        all_or_none("inner_diameter", "outer_diameter", "width"),
+    )
 
-    ball: BallModel = field(default=BallModel.DAMPER, metadata=must(one_of, BallModel))
-    motion: MotionModel = field(default=MotionModel.PLANE, metadata=must(one_of, MotionModel))
-    inner_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
-    outer_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
-    width: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
-    pocket_clearance: Metre = field(metadata=_SAME["pocket_clearance"])
-    clearances: ClearanceState = field(default=ClearanceState.RUNNING, metadata=must(one_of, ClearanceState))
-    material: Material | None = None
+    mass: Kilogram | None = key(
+        positive(1e-9, 1e4), default=None, example='"25 g"', without="not given: that of the ring's shape"
+    )
+    """May be left out with the three sizes below and the density of its material."""
+
+    inner_diameter: Metre | None = key(positive(1e-9, 100.0), default=None)
+    """Of the ring, around the pitch circle; with all three sizes: mass and inertia."""
+
+    outer_diameter: Metre | None = key(positive(1e-9, 100.0), default=None)
+    width: Metre | None = key(positive(1e-9, 100.0), default=None)
+    ball_cage_stiffness: NewtonPerMetre | None = key(
+        positive(1.0, 1e12),
+        default=None,
+        example='"3e6 N/m"',
+        without="Hertz, ball in pocket, at the impact speed",
+    )
+    material: Material | None = key(
+        default=None, named="cage material", read=_read_material, example='"Armalon"'
+    )
+    """A candidate of that name gives the friction in the pockets."""
+
     material_name: str | None = None
     """Candidate of the ranking that the cage is made of; by default the one named like `material`."""
 
-    ball_cage_stiffness: NewtonPerMetre | None = field(default=None, metadata=must(positive, 1.0, 1e12))
-    impact_speed: MetrePerSecond | None = field(default=None, metadata=must(positive, 1e-6, 1e3))
-    """Speed at which a Hertz pocket's stiffness is taken; by default 2.5 times the pocket speed."""
+    impact_speed: MetrePerSecond | None = key(positive(1e-6, 1e3), default=None, without=SCALED)
+    """Of that stiffness."""
 
-    ball_cage_friction: Ratio | None = field(default=None, metadata=must(between, 0.0, FRICTION_LIMIT))
-    pocket_shape: PocketShape = field(default=PocketShape.SQUARE, metadata=_SAME["pocket_shape"])
-    pocket_axial_clearance: Metre | None = field(default=None, metadata=_SAME["pocket_axial_clearance"])
-    pocket_axial_offset: Metre = field(default=0.0, metadata=_SAME["pocket_axial_offset"])
-    pocket_contact: PocketContact = field(default=PocketContact.LINEAR, metadata=must(one_of, PocketContact))
-    pocket_angles: tuple[Radian, ...] = field(default=(), metadata=_SAME["pocket_angles"])
-    pocket_spacing_scatter: Ratio = field(default=0.0, metadata=_SAME["pocket_spacing_scatter"])
-    pocket_position_scatter: Metre = field(default=0.0, metadata=_SAME["pocket_position_scatter"])
-    ball_diameter_scatter: Metre = field(default=0.0, metadata=_SAME["ball_diameter_scatter"])
-    guidance: Guidance = field(default=Guidance.BALL, metadata=_SAME["guidance"])
-    land_clearance: Metre | None = field(default=None, metadata=must(positive, 1e-9, 1.0))
-    land_friction: Ratio = field(default=0.1, metadata=must(between, 0.0, FRICTION_LIMIT))
-    land_stiffness: NewtonPerMetre = field(default=1e7, metadata=must(positive, 1.0, 1e12))
-    land_restitution: Ratio = field(default=0.5, metadata=_SAME["land_restitution"])
-    land_count: int = field(default=1, metadata=_SAME["land_count"])
-    land_out_of_round: Metre = field(default=0.0, metadata=_SAME["land_out_of_round"])
-    land_lobes: int = field(default=2, metadata=_SAME["land_lobes"])
-    moment_of_inertia: KilogramMetre2 | None = field(default=None, metadata=must(positive, 1e-18, 1e4))
-    transverse_inertia: KilogramMetre2 | None = field(default=None, metadata=must(positive, 1e-18, 1e4))
-    """About a diameter; None: of its shape, or of a thin ring."""
+    ball_cage_friction: Ratio | None = key(
+        between(0.0, FRICTION_LIMIT), default=None, without="that of its material in [ranking] environment"
+    )
+    """For simulate and map."""
 
-    land_spacing: Metre | None = field(default=None, metadata=must(positive, 1e-9, 10.0))
-    """From the middle of one land to that of the other."""
+    pocket_clearance: Metre = key(hint=_PLAY, example='"0.6 mm"')
+    """Of a ball in its pocket along the circumference, stop to stop."""
 
-    land_width: Metre = field(default=0.0, metadata=must(not_negative, 10.0))
-    land_diameter: Metre | None = field(default=None, metadata=must(positive, 1e-9, 100.0))
-    """Where the land's friction acts; None: of its shape, or the pitch diameter."""
+    clearances: ClearanceState = key(default=ClearanceState.RUNNING)
+    """What the stated clearances of pockets and land are."""
 
-    unbalance: KilogramMetre = field(default=0.0, metadata=must(not_negative, 1e2))
-    dynamic_unbalance: Radian = field(default=0.0, metadata=must(between, 0.0, 0.1))
-    gravity: MetrePerSecond2 = field(default=0.0, metadata=must(not_negative, 1e4))
-    axial_gravity: MetrePerSecond2 = field(default=0.0, metadata=must(between, -1e4, 1e4))
-    added_mass: Kilogram = field(default=0.0, metadata=must(not_negative, 1e4))
+    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
+    pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"](
+        only=(_ELONGATED,), without="not given: that of the shape"
+    )
+    """Along the axis, stop to stop."""
+
+    pocket_axial_offset: Metre = _SAME["pocket_axial_offset"](only=(_ROUND,))
+    """Of the cage from the plane of the balls."""
+
+    pocket_contact: PocketContact = key(default=PocketContact.LINEAR)
+    pocket_angles: tuple[Radian, ...] = key(default=(), certain=True, without="evenly spaced")
+    """One for each ball, rising."""
+
+    pocket_spacing_scatter: Ratio = _SAME["pocket_spacing_scatter"]()
+    """Pockets with their balls displaced by up to this share of a pitch."""
+
+    pocket_position_scatter: Metre = _SAME["pocket_position_scatter"]()
+    """Standard deviation of the pockets along the circumference."""
+
+    ball_diameter_scatter: Metre = _SAME["ball_diameter_scatter"]()
+    """Standard deviation, ball to ball."""
+
+    guidance: Guidance = key(default=Guidance.BALL, example='"outer"')
+    """The land that guides it; "ball" for none."""
+
+    land_clearance: Metre | None = key(
+        positive(1e-9, 1.0), default=None, only=(_LAND,), example='"1 mm"', without="not given: no land"
+    )
+    """Diametral, of the cage on its land."""
+
+    land_friction: Ratio = key(between(0.0, FRICTION_LIMIT), default=0.1, only=(_LAND,), without=_GUESS)
+    land_stiffness: NewtonPerMetre = key(positive(1.0, 1e12), default=1e7, only=(_LAND,), without=_GUESS)
+    land_restitution: Ratio = _SAME["land_restitution"](only=(_LAND,), without=_GUESS)
+    land_count: int = _SAME["land_count"](only=(_LAND,))
+    land_out_of_round: Metre = _SAME["land_out_of_round"](only=(_LAND,))
+    """Amplitude: half of highest less lowest radius."""
+
+    land_lobes: int = _SAME["land_lobes"](only=(_LAND,), needs=("land_out_of_round", "the land is round"))
+    moment_of_inertia: KilogramMetre2 | None = key(
+        positive(1e-18, 1e4), default=None, without=f"{_SHAPE}, or a thin ring at the pitch diameter"
+    )
+    """About the axis."""
+
+    ball: BallModel = key(default=BallModel.DAMPER)
+    motion: MotionModel = key(default=MotionModel.PLANE)
+    unbalance: KilogramMetre = key(not_negative(1e2), default=0.0)
+    """Mass times eccentricity."""
+
+    gravity: MetrePerSecond2 = key(not_negative(1e4), default=0.0)
+    """Across the bearing axis."""
+
+    transverse_inertia: KilogramMetre2 | None = key(
+        positive(1e-18, 1e4), default=None, without=f"{_SHAPE}, or half that about the axis"
+    )
+    """About a diameter."""
+
+    land_spacing: Metre | None = key(positive(1e-9, 10.0), default=None, only=(_LAND,))
+    """Of two lands, middle to middle."""
+
+    land_width: Metre = key(not_negative(10.0), default=0.0, only=(_LAND,))
+    land_diameter: Metre | None = key(
+        positive(1e-9, 100.0), default=None, only=(_LAND,), without=f"{_SHAPE}, or the pitch diameter"
+    )
+    """Where its friction acts."""
+
+    dynamic_unbalance: Radian = key(between(0.0, 0.1), default=0.0)
+    """Between the axis of the cage and its principal axis."""
+
+    axial_gravity: MetrePerSecond2 = key(between(-1e4, 1e4), default=0.0)
+    added_mass: Kilogram = key(not_negative(1e4), default=0.0)
     """Of the fluid that moves with the cage across its axis."""
-
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        hertz = self.pocket_contact is PocketContact.HERTZ
-        _check.settle(_shape(self), _land(self), _lands(self), *together(self, hertz=hertz))
 
     @property
     def has_shape(self) -> bool:
         """Whether the ring's diameters and width are given."""
         return None not in (self.inner_diameter, self.outer_diameter, self.width)
-
-
-def pocket_and_land_fields(cage: Cage) -> Iterator[_check.Problems]:
-    """Check each number of the pockets and the land by itself."""
-    return (must_pass["check"](cage, name) for name, must_pass in POCKET_AND_LAND.items())
-
-
-def together(cage: Cage, *, hertz: bool) -> Iterator[_check.Problems]:
-    """Check what must be true between fields that are each right."""
-    yield _axial_clearance(cage)
-    yield _axial_offset(cage)
-    if hertz and cage.pocket_clearance == 0.0:
-        rule = "must be > 0 with Hertz contact, whose stiffness begins at zero at the first touch"
-        cure = "Give the clearance, or linear contact."
-        yield iter([_check.problem(cage, "pocket_clearance", rule, cure)])
-    yield _scatter_beyond_clearance(cage)
-    if cage.pocket_angles and cage.pocket_spacing_scatter != 0.0:
-        rule = "and pocket_angles exclude each other"
-        yield iter([_check.problem(cage, "pocket_spacing_scatter", rule, "Give one of the two.")])
-    yield _lobes_too_high(cage)
-
-
-def angles_for(cage: Cage, ball_count: int) -> _check.Problems:
-    """One angle for each ball, or none at all."""
-    if cage.pocket_angles and len(cage.pocket_angles) != ball_count:
-        where, got = f"{type(cage).__name__}.pocket_angles", str(len(cage.pocket_angles))
-        cure = "Leave it out for evenly spaced pockets."
-        yield InputError(where, f"must hold one angle for each of the {ball_count} balls", got, cure)
 
 
 def least_step(angles: Sequence[Radian]) -> tuple[Radian, int]:
@@ -262,106 +279,163 @@ def least_step(angles: Sequence[Radian]) -> tuple[Radian, int]:
     return min((b - a, i) for i, (a, b) in enumerate(pairwise(around)))
 
 
-def _shape(cage: CageDesign) -> _check.Problems:
-    """The shape of the ring is whole or not given; without it the mass is given."""
-    sizes = {name: getattr(cage, name) for name in ("inner_diameter", "outer_diameter", "width")}
-    missing = [name for name, size in sizes.items() if size is None]
-    if 0 < len(missing) < 3:
-        yield _check.problem(cage, missing[0], "is missing", f"Give all of {', '.join(sizes)}, or none.")
-    if cage.mass is None and missing:
-        cure = "Give it, or inner_diameter, outer_diameter and width and a material with its density."
-        yield _check.problem(cage, "mass", "is missing", cure)
-    if not missing and not (cage.inner_diameter or 0.0) < (cage.outer_diameter or 0.0):
-        rule = f"must be larger than inner_diameter, {format_quantity(cage.inner_diameter or 0.0, 'm')}"
-        yield _check.problem(cage, "outer_diameter", rule)
+# ---- rules of pockets and lands; those of `SHARED` are also those of a moving cage
 
 
-def _lands(cage: CageDesign) -> _check.Problems:
-    """Two lands in space have a distance, and lands are on the cage."""
-    is_guided, spacing = cage.guidance is not Guidance.BALL, cage.land_spacing
-    if is_guided and cage.land_count == 1 and spacing is not None:
-        rule = "has no meaning for one land"
-        yield _check.problem(cage, "land_spacing", rule, "Give it with land_count = 2.")
-    if is_guided and cage.land_count == 2 and spacing is None and cage.motion is MotionModel.SPACE:
-        yield _check.problem(cage, "land_spacing", "is missing: two lands of a cage in space have a distance")
-    if cage.land_count == 2 and spacing is not None and spacing < cage.land_width:
-        rule = f"must be at least a land's width, {format_quantity(cage.land_width, 'm')}"
-        yield _check.problem(cage, "land_spacing", rule, "It is the distance of the lands' middles.")
-    reach = (spacing or 0.0) + cage.land_width
-    if cage.width is not None and reach > cage.width:
-        rule = f"and the lands' distance, {format_quantity(reach, 'm')} together, must stay on the cage"
-        got = f"width {format_quantity(cage.width, 'm')}"
-        yield InputError("CageDesign.land_width", rule, got)
+def clearance_can_be(pocket_clearance: Metre) -> Faults:
+    """Zero clearance grips the ball from both sides; one that nobody could measure is a mistake of units."""
+    rule = not_negative(10.0).rule(pocket_clearance, "m")
+    if pocket_clearance != 0.0:
+        rule = rule or positive(1e-9, 10.0).rule(pocket_clearance, "m")
+    if rule:
+        yield Fault("pocket_clearance", rule, _PLAY)
 
 
-def _land(cage: CageDesign) -> _check.Problems:
-    """A land needs its clearance, and a cage guided by its balls has no land."""
-    if cage.guidance is not Guidance.BALL:
-        if cage.land_clearance is None:
-            rule = f"is missing: a cage with {cage.guidance.value} guidance needs its diametral clearance"
-            yield InputError("CageDesign.land_clearance", rule)
+def angles_rise(pocket_angles: tuple[Radian, ...]) -> Faults:
+    """Angles rise within one turn, so that pocket and ball j are the j-th along the circumference."""
+    name, angles = "pocket_angles", pocket_angles
+    wrong = [a for a in angles if not is_number(a) or not -_FULL_TURN <= a <= _FULL_TURN]
+    if wrong:
+        yield Fault(name, "must each be a finite angle within one turn of 0", got=f"{wrong[0]!s:.40}")
         return
-    cures = {"land_clearance": 'Give guidance = "outer" or "inner", or leave the land out.'}
-    for name, without in (("land_clearance", None), ("land_out_of_round", 0.0), ("land_count", 1)):
-        if getattr(cage, name) != without:
-            yield _check.problem(cage, name, LANDLESS, cures.get(name, ""))
+    ends = [format_quantity(angle, "rad") for angle in angles]
+    if falls := [i for i, (a, b) in enumerate(pairwise(angles)) if not a < b]:
+        i = falls[0]
+        rule = f"must be strictly increasing (items {i + 1} and {i + 2})"
+        yield Fault(name, rule, got=f"{ends[i + 1]} after {ends[i]}")
+    elif angles and angles[-1] - angles[0] >= _FULL_TURN:
+        rule = "must lie within one turn: the last less than 360 deg after the first"
+        yield Fault(name, rule, got=f"{ends[0]} to {ends[-1]}")
 
 
-def _axial_clearance(cage: Cage) -> _check.Problems:
+def slot_lies_along_the_circumference(
+    pocket_shape: PocketShape, pocket_clearance: Metre, pocket_axial_clearance: Metre | None
+) -> Faults:
     """An elongated pocket has a clearance of its own along the axis, smaller than the circumferential one."""
-    elongated, name = cage.pocket_shape is PocketShape.ELONGATED, "pocket_axial_clearance"
-    if not elongated and cage.pocket_axial_clearance is not None:
-        rule = f"has no meaning for a {cage.pocket_shape.value} pocket"
-        yield _check.problem(cage, name, rule, 'Give pocket_shape = "elongated", or leave it out.')
-    if elongated and cage.pocket_axial_clearance is None:
-        rule, cure = (
-            "is missing: an elongated pocket needs it",
-            "Give the clearance along the bearing axis, stop to stop.",
-        )
-        yield InputError(f"{type(cage).__name__}.{name}", rule, cure=cure)
-    if elongated and (cage.pocket_axial_clearance or 0.0) > cage.pocket_clearance:
-        most = format_quantity(cage.pocket_clearance, "m")
+    name = "pocket_axial_clearance"
+    if pocket_shape is not PocketShape.ELONGATED:
+        if pocket_axial_clearance is not None:
+            yield Fault(name, f"has no meaning for a {pocket_shape.value} pocket", _ELONGATED.cure)
+    elif pocket_axial_clearance is None:
+        cure = "Give the clearance along the bearing axis, stop to stop."
+        yield Fault(name, "is missing: an elongated pocket needs it", cure, "")
+    elif pocket_axial_clearance > pocket_clearance:
+        most = format_quantity(pocket_clearance, "m")
         rule = f"must be at most pocket_clearance, {most}: the slot lies along the circumference"
         cure = 'A slot along the axis meets its balls on flat walls: pocket_shape = "square".'
-        yield _check.problem(cage, name, rule, cure)
+        yield Fault(name, rule, cure)
 
 
-def _axial_offset(cage: Cage) -> _check.Problems:
+def offset_stays_in_the_pocket(pocket_axial_offset: Metre, pocket_shape: PocketShape, cage: Pocket) -> Faults:
     """The offset is less than the pockets allow; a square pocket does not notice it."""
-    if cage.pocket_axial_offset == 0.0:
+    if pocket_axial_offset == 0.0:
         return
-    if cage.pocket_shape is PocketShape.SQUARE:
-        cure = 'Give pocket_shape = "cylindrical" or "elongated", or leave it out.'
-        yield _check.problem(cage, "pocket_axial_offset", "changes nothing in a square pocket", cure)
-    elif abs(cage.pocket_axial_offset) >= (play := end_half_play(cage)):
+    if pocket_shape is PocketShape.SQUARE:
+        yield Fault("pocket_axial_offset", _ROUND.reason, _ROUND.cure)
+    elif abs(pocket_axial_offset) >= (play := end_half_play(cage)):
         rule = f"must be smaller than half the clearance along the axis, {format_quantity(play, 'm')}"
-        cure = "Farther out the pockets would carry the cage by their ends."
-        yield _check.problem(cage, "pocket_axial_offset", rule, cure)
+        yield Fault(
+            "pocket_axial_offset", rule, "Farther out the pockets would carry the cage by their ends."
+        )
 
 
-def _scatter_beyond_clearance(cage: Cage) -> _check.Problems:
+def scatter_stays_in_the_clearance(
+    pocket_position_scatter: Metre, ball_diameter_scatter: Metre, cage: Pocket
+) -> Faults:
     """The thickest ball in the most displaced pocket still has clearance."""
-    position, radius = cage.pocket_position_scatter, cage.ball_diameter_scatter / 2.0
-    taken = SIGMAS * (radius + position)
-    if taken == 0.0 or [*_axial_clearance(cage), *_axial_offset(cage)] or taken < half_play(cage):
-        return
-    rule = (
-        f"leaves no clearance: {SIGMAS:g} standard deviations of position and of half the diameter together, "
-        f"{format_quantity(taken, 'm')}, must be smaller than half the clearance, "
-        f"{format_quantity(half_play(cage), 'm')}"
-    )
-    name = "pocket_position_scatter" if position >= radius else "ball_diameter_scatter"
-    yield _check.problem(cage, name, rule)
+    position, radius = pocket_position_scatter, ball_diameter_scatter / 2.0
+    taken, play = SIGMAS * (radius + position), half_play(cage)
+    if taken > 0.0 and not taken < play:
+        rule = (
+            f"leaves no clearance: {SIGMAS:g} standard deviations of position and of half the diameter "
+            f"together, {format_quantity(taken, 'm')}, must be smaller than half the clearance, "
+            f"{format_quantity(play, 'm')}"
+        )
+        yield Fault("pocket_position_scatter" if position >= radius else "ball_diameter_scatter", rule)
 
 
-def _lobes_too_high(cage: Cage) -> _check.Problems:
+def lobes_touch_where_they_are(
+    guidance: Guidance, land_clearance: Metre, land_lobes: int, land_out_of_round: Metre
+) -> Faults:
     """Beyond n^2 a = c_g the touching point is no longer where the first order in a/c_g puts it."""
-    if cage.land_clearance is None or cage.guidance is Guidance.BALL:
-        return
-    most = cage.land_clearance / 2.0 / cage.land_lobes**2
-    if cage.land_out_of_round >= most:
+    most = land_clearance / 2.0 / land_lobes**2
+    if guidance is not Guidance.BALL and land_out_of_round >= most:
         rule = (
             f"must be smaller than half the land's clearance over the square of land_lobes, "
             f"{format_quantity(most, 'm')}: beyond it a lobe touches elsewhere than this model puts it"
         )
-        yield _check.problem(cage, "land_out_of_round", rule, "It is an amplitude: half of high less low.")
+        yield Fault("land_out_of_round", rule, "It is an amplitude: half of high less low.")
+
+
+def scatter_or_angles(pocket_angles: tuple[Radian, ...], pocket_spacing_scatter: Ratio) -> Faults:
+    """Pockets are at their angles, or displaced at random."""
+    if pocket_angles and pocket_spacing_scatter != 0.0:
+        rule = "and pocket_angles exclude each other"
+        yield Fault("pocket_spacing_scatter", rule, "Give one of the two.")
+
+
+def share_rules(owner: type) -> None:
+    """Give a record the rules that cages have alike."""
+    check(owner)(clearance_can_be)
+    check(owner)(angles_rise)
+    check(owner)(slot_lies_along_the_circumference)
+    check(owner, after=(slot_lies_along_the_circumference,))(offset_stays_in_the_pocket)
+    before = (slot_lies_along_the_circumference, offset_stays_in_the_pocket)
+    check(owner, after=before)(scatter_stays_in_the_clearance)
+    check(owner)(scatter_or_angles)
+    check(owner)(lobes_touch_where_they_are)
+
+
+share_rules(CageDesign)
+
+
+@check(CageDesign)
+def _hertz_needs_a_clearance(pocket_contact: PocketContact, pocket_clearance: Metre) -> Faults:
+    if pocket_contact is PocketContact.HERTZ and pocket_clearance == 0.0:
+        rule = "must be > 0 with Hertz contact, whose stiffness begins at zero at the first touch"
+        yield Fault("pocket_clearance", rule, "Give the clearance, or linear contact.")
+
+
+@check(CageDesign)
+def _mass_or_shape(
+    mass: Kilogram | None, inner_diameter: Metre | None, outer_diameter: Metre | None, width: Metre | None
+) -> Faults:
+    if mass is None and None in (inner_diameter, outer_diameter, width):
+        cure = "Give it, or inner_diameter, outer_diameter and width and a material with its density."
+        yield Fault("mass", "is missing", cure, "")
+
+
+@check(CageDesign)
+def _ring_has_a_wall(inner_diameter: Metre, outer_diameter: Metre) -> Faults:
+    if not inner_diameter < outer_diameter:
+        rule = f"must be larger than inner_diameter, {format_quantity(inner_diameter, 'm')}"
+        yield Fault("outer_diameter", rule)
+
+
+@check(CageDesign)
+def _land_has_a_clearance(guidance: Guidance, land_clearance: Metre | None) -> Faults:
+    if guidance is not Guidance.BALL and land_clearance is None:
+        rule = f"is missing: a cage with {guidance.value} guidance needs its diametral clearance"
+        yield Fault("land_clearance", rule, got="")
+
+
+@check(CageDesign)
+def _lands_have_a_distance(
+    motion: MotionModel, guidance: Guidance, land_count: int, land_spacing: Metre | None, land_width: Metre
+) -> Faults:
+    name, is_guided = "land_spacing", guidance is not Guidance.BALL
+    if is_guided and land_count == 1 and land_spacing is not None:
+        yield Fault(name, "has no meaning for one land", "Give it with land_count = 2.")
+    if is_guided and land_count == 2 and land_spacing is None and motion is MotionModel.SPACE:
+        yield Fault(name, "is missing: two lands of a cage in space have a distance", got="")
+    if land_count == 2 and land_spacing is not None and land_spacing < land_width:
+        rule = f"must be at least a land's width, {format_quantity(land_width, 'm')}"
+        yield Fault(name, rule, "It is the distance of the lands' middles.")
+
+
+@check(CageDesign)
+def _lands_on_the_cage(land_spacing: Metre | None, land_width: Metre, width: Metre) -> Faults:
+    reach = (land_spacing or 0.0) + land_width
+    if reach > width:
+        rule = f"and the lands' distance, {format_quantity(reach, 'm')} together, must stay on the cage"
+        yield Fault("land_width", rule, got=f"width {format_quantity(width, 'm')}")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from separatrix.ground import bounds as _check
-from separatrix.ground.errors import InputError
+from separatrix.ground.schema import Fault, Faults
 from separatrix.ground.units import format_quantity
 from separatrix.study import cage_design
 from separatrix.study.ball_bearing import BallBearing
-from separatrix.study.cage_body import CageInertia, cage_inertia
+from separatrix.study.cage_body import cage_inertia
 from separatrix.study.cage_design import CageDesign, Guidance
 
 WIDEST = 4.0
@@ -20,27 +19,19 @@ MOST_ADDED = 100.0
 adds pi rho R L^3/(12 g): 70 cages half a ball thick, two balls wide and as dense, if g is a ball's 200th."""
 
 
-def cage_in_bearing(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
-    """Clearances smaller than what they are clearances of; a ring, lands and an inertia that fit."""
+def clearances_fit(cage: CageDesign, bearing: BallBearing) -> Faults:
+    """Clearances are smaller than what they are clearances of."""
     gap, ball = bearing.ball_gap, bearing.ball_diameter
     if cage.pocket_clearance >= gap:  # no bar would be left between pockets
         rule = f"must be smaller than the gap between balls, {format_quantity(gap, 'm')}"
-        cure = "It is the clearance of one ball, stop to stop."
-        yield _check.problem(cage, "pocket_clearance", rule, cure)
+        yield Fault(("cage", "pocket_clearance"), rule, "It is the clearance of one ball, stop to stop.")
     if cage.land_clearance is not None and cage.land_clearance >= ball:  # it would lose its balls first
         rule = f"must be smaller than a ball, {format_quantity(ball, 'm')}"
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
-        yield _check.problem(cage, "land_clearance", rule, cure)
-    yield from _lands_between_rings(cage, bearing)
-    wrong = list(_ring_between_rings(cage, bearing))
-    yield from wrong
-    density = cage.material.density if cage.material else None
-    has_bars = not wrong and cage.pocket_clearance < gap
-    if has_bars and (cage.mass is not None or (cage.has_shape and density is not None)):
-        yield from _body_that_can_be(cage, bearing, cage_inertia(cage, bearing))
+        yield Fault(("cage", "land_clearance"), rule, cure)
 
 
-def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+def ring_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
     """The ring lies between the grooves, and the walls of its pockets reach the equator of the balls."""
     if not cage.has_shape:
         return
@@ -60,20 +51,20 @@ def _ring_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Proble
             ends = (f"the {what}, {format_quantity(bound, 'm')}" for what, bound in (low, high))
             is_short = size >= high[1] if key == "inner_diameter" else size <= low[1]
             cure = short if is_short else "Beyond it is the ring."
-            yield _check.problem(cage, key, f"must lie between {' and '.join(ends)}", cure)
+            yield Fault(("cage", key), f"must lie between {' and '.join(ends)}", cure)
     least_bore = (ball + cage.pocket_clearance) / math.sin(math.pi / bearing.ball_count)
     if inner <= least_bore < pitch:
         rule = f"must be > {format_quantity(least_bore, 'm', 4)}, where bars are left between pockets"
-        yield _check.problem(cage, "inner_diameter", rule, "A smaller pocket_clearance leaves more.")
+        yield Fault(("cage", "inner_diameter"), rule, "A smaller pocket_clearance leaves more.")
     if width <= ball + cage.pocket_clearance:
         least = format_quantity(ball + cage.pocket_clearance, "m")
-        yield _check.problem(cage, "width", f"must be larger than a pocket, {least}", "Pockets are holes.")
+        yield Fault(("cage", "width"), f"must be larger than a pocket, {least}", "Pockets are holes.")
     if cage.mass is None and (cage.material is None or cage.material.density is None):
         cure = "Give it, or a cage material with its density."
-        yield _check.problem(cage, "mass", "is missing, and the density of the cage is not known", cure)
+        yield Fault(("cage", "mass"), "is missing, and the density of the cage is not known", cure, "")
 
 
-def _lands_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+def lands_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
     """Lands are on the cage, and those of the rings between the grooves."""
     low, high = bearing.pitch_diameter - bearing.ball_diameter, bearing.pitch_diameter + bearing.ball_diameter
     is_outer, stated = cage.guidance is Guidance.OUTER, cage.land_diameter
@@ -84,7 +75,7 @@ def _lands_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Probl
             where = "the surfaces of the cage"
         if not ends[0] <= stated <= ends[1]:
             between = " and ".join(format_quantity(end, "m") for end in ends)
-            yield _check.problem(cage, "land_diameter", f"must lie between {where}, {between}")
+            yield Fault(("cage", "land_diameter"), f"must lie between {where}, {between}")
             return
     land = stated or (cage.outer_diameter if is_outer else cage.inner_diameter)
     if land is not None and cage.land_clearance is not None and cage.guidance is not Guidance.BALL:
@@ -92,29 +83,33 @@ def _lands_between_rings(cage: CageDesign, bearing: BallBearing) -> _check.Probl
         if 0.0 < most <= cage.land_clearance:
             left = format_quantity(most, "m")
             rule = f"must be smaller than what is left to the bottom of the groove, {left}"
-            yield _check.problem(cage, "land_clearance", rule, "The land of the ring is beside its groove.")
+            yield Fault(("cage", "land_clearance"), rule, "The land of the ring is beside its groove.")
     most, width = WIDEST * bearing.ball_diameter, (cage.land_spacing or 0.0) + cage.land_width
     if cage.width is None and width > most:
         key = "land_spacing" if (cage.land_spacing or 0.0) > cage.land_width else "land_width"
         rule = f"must leave all lands within {WIDEST:g} balls, {format_quantity(most, 'm')}"
-        yield _check.problem(cage, key, rule, "No bearing of one row is so wide.")
+        yield Fault(("cage", key), rule, "No bearing of one row is so wide.")
 
 
-def _body_that_can_be(cage: CageDesign, bearing: BallBearing, body: CageInertia) -> _check.Problems:
+def body_that_can_be(cage: CageDesign, bearing: BallBearing) -> Faults:
     """Unbalance, fluid, and inertias that a body of this mass and size can have."""
+    density = cage.material.density if cage.material else None
+    if cage.mass is None and not (cage.has_shape and density is not None):
+        return
+    body = cage_inertia(cage, bearing)
     mass, pitch, ball = body.mass, bearing.pitch_diameter, bearing.ball_diameter
     if cage.unbalance >= mass * pitch / 2.0:
         rule = f"must be smaller than mass times pitch radius, {format_quantity(mass * pitch / 2.0, 'kg m')}"
-        yield _check.problem(cage, "unbalance", rule, "It is mass times eccentricity.")
+        yield Fault(("cage", "unbalance"), rule, "It is mass times eccentricity.")
     if cage.added_mass > MOST_ADDED * mass:
         rule = f"must be at most {MOST_ADDED:g} times that of the cage, {format_quantity(mass, 'kg')}"
-        yield _check.problem(cage, "added_mass", rule)
+        yield Fault(("cage", "added_mass"), rule)
     if cage.moment_of_inertia is not None:
         least, most = (mass * (edge / 2.0) ** 2 for edge in (pitch - ball, pitch + ball))
         if not least <= cage.moment_of_inertia <= most:
             ends = " and ".join(format_quantity(value, "kg m2", 4) for value in (least, most))
             cure = "All of the mass would be beside a groove; left out, the inertia follows the mass."
-            yield _check.problem(cage, "moment_of_inertia", f"must lie between {ends}", cure)
+            yield Fault(("cage", "moment_of_inertia"), f"must lie between {ends}", cure)
             return
     flat, wide = body.moment_of_inertia / 2.0, cage.width or WIDEST * ball
     bounds = flat * (1.0 - 1e-9), flat + mass * (wide / 2.0) ** 2
@@ -122,10 +117,10 @@ def _body_that_can_be(cage: CageDesign, bearing: BallBearing, body: CageInertia)
         low, high = (format_quantity(value, "kg m2", 4) for value in (flat, bounds[1]))
         rule = f"must lie between {low}, half that about the axis, and {high}"
         cure = f"A flat ring has half of it, one with its mass {format_quantity(wide, 'm')} apart the most."
-        yield _check.problem(cage, "transverse_inertia", rule, cure)
+        yield Fault(("cage", "transverse_inertia"), rule, cure)
 
 
-def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems:
+def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> Faults:
     """Uneven pockets: one for each ball, and a bar between any two."""
     across = min(cage.inner_diameter or math.inf, bearing.pitch_diameter)
     room = (bearing.ball_diameter + cage.pocket_clearance) / across
@@ -137,13 +132,16 @@ def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> _check.Problems
         rule = (
             f"must be < {most:.4g}, where two neighbours that come close leave no bar between their pockets"
         )
-        yield _check.problem(cage, "pocket_spacing_scatter", rule, "Fewer balls leave more room.")
-    yield from cage_design.angles_for(cage, bearing.ball_count)
-    if len(cage.pocket_angles) == bearing.ball_count:
+        yield Fault(("cage", "pocket_spacing_scatter"), rule, "Fewer balls leave more room.")
+    if cage.pocket_angles and len(cage.pocket_angles) != bearing.ball_count:
+        rule = f"must hold one angle for each of the {bearing.ball_count} balls"
+        cure = "Leave it out for evenly spaced pockets."
+        yield Fault(("cage", "pocket_angles"), rule, cure, str(len(cage.pocket_angles)))
+    elif cage.pocket_angles:
         step, i = cage_design.least_step(cage.pocket_angles)
         if step <= needed:
             rule = (
                 f"leave no bar between pockets {i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}: "
                 f"must be more than {format_quantity(needed, 'rad')} apart"
             )
-            yield InputError("CageDesign.pocket_angles", rule, format_quantity(step, "rad"))
+            yield Fault(("cage", "pocket_angles"), rule, got=format_quantity(step, "rad"))

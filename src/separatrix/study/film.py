@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 from itertools import pairwise
+from typing import ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT
-from separatrix.ground import bounds as _check
-from separatrix.ground.bounds import between, must, not_negative, one_of, positive
-from separatrix.ground.errors import InputError
-from separatrix.ground.units import Metre, Ratio, format_quantity, shown
-from separatrix.study.ball_bearing import Material
-
-MOST_PLACES = 10_000
-"""Places of a measured profile."""
-
-_BARE = "For bare races leave material and thickness out."
+from separatrix.ground.bounds import is_number
+from separatrix.ground.schema import (
+    Fault,
+    Faults,
+    Only,
+    all_or_none,
+    between,
+    check,
+    key,
+    not_negative,
+    one_of,
+    positive,
+    record,
+)
+from separatrix.ground.units import Metre, Pascal, Ratio, format_quantity, shown
+from separatrix.study.ball_bearing import MODULI, MODULUS, POISSON, Material
+from separatrix.study.profile import MOST_PLACES, Profile, read_profile
 
 
 class Worn(Enum):
@@ -27,92 +34,153 @@ class Worn(Enum):
     OUTER = "outer"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class Wear:
     """A film that is thinner, or gone, in the middle of its track.
 
     Either a band, centred on the contact, of a `width` or of a `share` of the contact's width, in which
     `thickness` is left; or the measured `thicknesses` at the places `across` the groove, linear between
-    them, from the centre of the contact. `friction` is that of the ball on a race without film.
+    them, from the centre of the contact.
     """
 
-    friction: Ratio = field(metadata=must(between, 0.0, FRICTION_LIMIT, open_low=True))
-    width: Metre | None = field(default=None, metadata=must(not_negative, 1.0))
-    share: Ratio | None = field(default=None, metadata=must(between, 0.0, 1.0))
-    thickness: Metre = field(default=0.0, metadata=must(not_negative, 1e-2))
-    across: tuple[Metre, ...] = ()
-    thicknesses: tuple[Metre, ...] = ()
-    races: Worn = field(default=Worn.BOTH, metadata=must(one_of, Worn))
+    RULES: ClassVar = (
+        one_of("width", "share", ("across", "thicknesses"), "profile", required=True),
+        all_or_none("across", "thicknesses"),
+    )
 
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        _check.settle(_one_form(self), _profile(self))
+    friction: Ratio = key(between(0.0, FRICTION_LIMIT, open_low=True), example="0.3")
+    """Of the ball on a race without film."""
+
+    width: Metre | None = key(not_negative(1.0), default=None)
+    """Of the band."""
+
+    share: Ratio | None = key(between(0.0, 1.0), default=None)
+    """Width of the band over that of the contact."""
+
+    thickness: Metre = key(not_negative(1e-2), default=0.0)
+    """Left in the band."""
+
+    across: tuple[Metre, ...] = key(default=(), certain=True)
+    """Places across the groove."""
+
+    thicknesses: tuple[Metre, ...] = key(default=(), certain=True)
+    """At these places."""
+
+    profile: Profile | None = key(default=None, read=read_profile)
+    """The same as a CSV file beside the study, two columns with their units in the head."""
+
+    races: Worn = key(default=Worn.BOTH)
+
+    @property
+    def places(self) -> Profile:
+        """Places and thicknesses of a measured profile; empty of a band."""
+        return self.profile or Profile(self.across, self.thicknesses)
 
     @property
     def is_band(self) -> bool:
         """Whether it is a band; else a measured profile."""
-        return not self.across
+        return not self.places.across
 
     def touches(self, race: Enum) -> bool:
         """Whether the film of this race is worn."""
         return self.races is Worn.BOTH or self.races.value == race.value
 
 
-def _one_form(wear: Wear) -> _check.Problems:
-    forms = (wear.width is not None) + (wear.share is not None) + bool(wear.across or wear.thicknesses)
-    if forms != 1:
-        cure = "Give width, or share, or across with thicknesses (or profile, a CSV file)."
-        yield InputError("Wear.width", "must be the only one of the forms of wear", f"{forms} given", cure)
-    elif wear.across and wear.thickness != 0.0:
-        yield _check.problem(wear, "thickness", "is that of a band; thicknesses gives a profile its own")
-
-
-def _profile(wear: Wear) -> _check.Problems:
+@check(Wear)
+def _profile_is_one(
+    across: tuple[Metre, ...], thicknesses: tuple[Metre, ...], profile: Profile | None
+) -> Faults:
     """A profile has a thickness at each place; two equal places make a step."""
-    y, h = wear.across, wear.thicknesses
+    y, h = profile or (across, thicknesses)
+    names = ("across", "thicknesses") if profile is None else ("profile", "profile")
     if len(y) != len(h) or len(y) > MOST_PLACES or len(y) == 1:
         rule = f"must have as many values as thicknesses, 2 to {MOST_PLACES}"
-        yield InputError("Wear.across", rule, f"{len(y)} and {len(h)}")
+        yield Fault(names[0], rule, got=f"{len(y)} and {len(h)}")
         return
-    for name, values, low in (("across", y, -1.0), ("thicknesses", h, 0.0)):
-        wrong = [one for one in values if not _check.is_number(one) or not low <= one <= 1.0]
+    for name, values, low in ((names[0], y, -1.0), (names[1], h, 0.0)):
+        wrong = [one for one in values if not is_number(one) or not low <= one <= 1.0]
         if wrong:
-            rule = f"must each be a finite number from {low:g} to 1 [m]"
-            yield InputError(f"Wear.{name}", rule, shown(wrong[0]))
+            yield Fault(name, f"must each be a finite number from {low:g} to 1 [m]", got=shown(wrong[0]))
             return
     for before, after in pairwise(y):
         if after < before:
             got = f"{format_quantity(after, 'm')} after {format_quantity(before, 'm')}"
-            yield InputError("Wear.across", "must not fall", got)
+            yield Fault(names[0], "must not fall", got=got)
             return
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@check(Wear)
+def _thickness_of_a_band(thickness: Metre, across: tuple[Metre, ...], profile: Profile | None) -> Faults:
+    if (across or profile) and thickness != 0.0:
+        yield Fault("thickness", "is that of a band; thicknesses gives a profile its own")
+
+
+@record
 class Film:
     """Solid lubricant on the races; without material and thickness the races are bare."""
 
-    race_friction: Ratio = field(metadata=must(between, 0.0, FRICTION_LIMIT))
-    material: Material | None = None
-    thickness: Metre | None = field(default=None, metadata=must(positive, 1e-10, 1e-2, hint=_BARE))
-    wear: Wear | None = None
+    RULES: ClassVar = (
+        one_of("material", ("elastic_modulus", "poisson_ratio")),
+        all_or_none("elastic_modulus", "poisson_ratio"),
+    )
 
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        if (self.material is None) != (self.thickness is None):
-            missing = "material" if self.material is None else "thickness"
-            rule = "is missing: a film needs its material and its thickness"
-            raise InputError(f"Film.{missing}", rule, cure="Give both, or neither for bare races.")
-        if self.wear is None:
-            return
-        if self.thickness is None:
-            cure = "Give material and thickness of the film, or leave the wear out."
-            raise InputError("Film.wear", "needs a film that wears", cure=cure)
-        left = max((self.wear.thickness, *self.wear.thicknesses))
-        if self.wear.is_band and left > self.thickness:
-            rule = f"must be at most the thickness of the film, {format_quantity(self.thickness, 'm')}"
-            raise InputError("Wear.thickness", rule, format_quantity(left, "m"))
-        if self.race_friction == 0.0:
-            raise InputError("Film.race_friction", "must be > 0 where a film is worn", "0")
+    race_friction: Ratio = key(between(0.0, FRICTION_LIMIT), example="0.1")
+    """Of ball on race."""
+
+    material: Material | None = key(
+        default=None, named="film", example='"PTFE transfer film"', without="bare races"
+    )
+    elastic_modulus: Pascal | None = key(
+        MODULUS, default=None, hint=MODULI, without="not given: that of the material"
+    )
+    """Of a film without a name."""
+
+    poisson_ratio: Ratio | None = key(POISSON, default=None, without="not given: that of the material")
+    """Of a film without a name."""
+
+    thickness: Metre | None = key(
+        positive(1e-10, 1e-2),
+        default=None,
+        hint="For bare races leave material and thickness out.",
+        example='"0.5 um"',
+        without="bare races",
+    )
+    """Total over ball and race."""
+
+    wear: Wear | None = key(default=None, without="not worn")
+
+    @property
+    def body(self) -> Material | None:
+        """Material of the film; None on bare races."""
+        if self.elastic_modulus is None or self.poisson_ratio is None:
+            return self.material
+        return Material(
+            name="film given in the study",
+            elastic_modulus=self.elastic_modulus,
+            poisson_ratio=self.poisson_ratio,
+        )
+
+
+@check(Film)
+def _material_and_thickness(
+    material: Material | None, elastic_modulus: Pascal | None, thickness: Metre | None
+) -> Faults:
+    is_known = material is not None or elastic_modulus is not None
+    if is_known != (thickness is not None):
+        missing, rule = "thickness" if is_known else "material", "is missing: a film needs both"
+        yield Fault(missing, f"{rule} material and thickness", "Give both, or neither for bare races.", "")
+
+
+@check(Film)
+def _wear_of_the_film(wear: Wear, thickness: Metre | None, race_friction: Ratio) -> Faults:
+    if thickness is None:
+        cure = "Give material and thickness of the film, or leave the wear out."
+        yield Fault("wear", "needs a film that wears", cure, "")
+    elif wear.is_band and wear.thickness > thickness:
+        rule = f"must be at most the thickness of the film, {format_quantity(thickness, 'm')}"
+        yield Fault(("wear", "thickness"), rule, got=format_quantity(wear.thickness, "m"))
+    elif race_friction == 0.0:
+        yield Fault("race_friction", "must be > 0 where a film is worn")
 
 
 class TractionModel(Enum):
@@ -136,20 +204,21 @@ class PressureSlip(Enum):
     INCLUDED = "included"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+_EXACT = Only(
+    "model",
+    (TractionModel.EXACT,),
+    'must be "neglected" in strips',
+    'Write model = "exact", or leave it out.',
+)
+
+
+@record
 class TractionSettings:
     """How the traction of ball on race is computed."""
 
-    model: TractionModel = field(default=TractionModel.STRIPS, metadata=must(one_of, TractionModel))
-    pressure: ContactPressure = field(default=ContactPressure.HERTZ, metadata=must(one_of, ContactPressure))
-    pressure_slip: PressureSlip = field(default=PressureSlip.NEGLECTED, metadata=must(one_of, PressureSlip))
-
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        if self.pressure_slip is PressureSlip.INCLUDED and self.model is TractionModel.STRIPS:
-            cure = 'Write model = "exact", or leave it out.'
-            rule = 'must be "neglected" in strips'
-            raise InputError("TractionSettings.pressure_slip", rule, '"included"', cure)
+    model: TractionModel = key(default=TractionModel.STRIPS)
+    pressure: ContactPressure = key(default=ContactPressure.HERTZ)
+    pressure_slip: PressureSlip = key(default=PressureSlip.NEGLECTED, only=(_EXACT,))
 
     def by(self, model: TractionModel, pressure: ContactPressure | None = None) -> TractionSettings:
         """The same by another model, perhaps under another pressure; strips know no slip by the pressure."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import types
 import typing
 from collections import Counter
@@ -12,22 +11,22 @@ from functools import cache
 from typing import Any
 
 from separatrix.ground.errors import InputError
+from separatrix.ground.schema import OneOf, keys_of
 from separatrix.ground.toml import nearest
-from separatrix.ground.units import Metre, Radian, format_quantity, shown
+from separatrix.ground.units import format_quantity, shown
 from separatrix.study.distribution import Distribution, LogNormal, Normal, described, positive_alternative
 from separatrix.study.study import SECTIONS as SECTIONS
-from separatrix.study.study import BallBearing, Material, Study, Wear, key_of
+from separatrix.study.study import Material, Study, Wear, key_of
 
 WHOLE = ""
 """Unit of a whole number."""
 
-RADIAL_CLEARANCE = "bearing.radial_clearance"
 MOST_DISTRIBUTIONS = 50
 SETTINGS = ("stability.runs", "stability.seed", "stability.reference_kick")
 """Numbers of the method, not of the bearing."""
 
-ANGLE_FROM = ("ball_diameter", "inner_conformity", "outer_conformity")
-"""Numbers from which the contact angle follows, at a given clearance."""
+DERIVED = {"bearing.contact_angle": "free_angle", "bearing.radial_clearance": "free_clearance"}
+"""Numbers that follow from others where the study does not give them, and the property that has them."""
 
 Path = tuple[str | int, ...]
 Setter = Callable[[Sequence[float]], Study]
@@ -74,10 +73,11 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
     ``ranking.Armalon.liquid nitrogen, 440C``. Two numbers whose names come out alike (a dot in the name of a
     candidate) are left out.
     """
-    found = [StudyNumber(RADIAL_CLEARANCE, "m", ("bearing", "radial_clearance"))]
+    found: list[StudyNumber] = []
 
     def add(name: str, record: type, path: Path) -> None:
-        found.extend(StudyNumber(f"{name}.{key}", u, (*path, key)) for key, u in numbers_of(record).items())
+        numbers = numbers_of(record).items()
+        found.extend(StudyNumber(f"{name}.{key}", unit, (*path, key)) for key, unit in numbers)
 
     for section, record in SECTIONS.items():
         add(section, record, (section,))
@@ -95,14 +95,20 @@ def study_numbers(study: Study) -> dict[str, StudyNumber]:
             found.append(StudyNumber(key, "-", (*path, "friction", env, "mean")))
         if candidate.material is not None:
             add(f"ranking.{candidate.name}.material", Material, (*path, "material"))
+    if study.film.material is not None:  # whose modulus is not that of a film without a name
+        found = [one for one in found if one.path not in _OF_NAMELESS_FILM]
     often = Counter(number.key for number in found)
     return {number.key: number for number in found if often[number.key] == 1}
 
 
+_OF_NAMELESS_FILM = (("film", "elastic_modulus"), ("film", "poisson_ratio"))
+
+
 def value_of(study: Study, number: StudyNumber) -> float | None:
     """Value of a number in the study; None where it has none."""
-    if number.key == RADIAL_CLEARANCE:
-        return radial_clearance(study.bearing)
+    if number.key in DERIVED:
+        found: float = getattr(study.bearing, DERIVED[number.key])
+        return found
     held: Any = study
     for step in number.path:
         if held is not None:
@@ -125,19 +131,14 @@ def with_values(study: Study, values: Mapping[str, float]) -> Study:
 def setter(study: Study, keys: Sequence[str]) -> Setter:
     """Return a function from values of these numbers, in SI, to the study that has them.
 
-    Where the study was given its radial clearance, the clearance stays and the contact angle follows.
+    What excludes one of them, as a radial clearance excludes a contact angle, is no longer given.
     """
     known = study_numbers(study)
     chosen = [_known(known, key) for key in keys]
     left = {key: one for key, one in study.distributions.items() if key not in keys}
-    is_held = RADIAL_CLEARANCE in study.origins and not {RADIAL_CLEARANCE, "bearing.contact_angle"} & {*keys}
-    moves = any(f"bearing.{key}" in keys for key in ANGLE_FROM)
-    clearance = radial_clearance(study.bearing) if is_held and moves else None
 
     def with_these(values: Sequence[float]) -> Study:
         changes: dict[Path, float] = {}
-        if clearance is not None:
-            changes["bearing", "radial_clearance"] = clearance
         for number, value in zip(chosen, values, strict=True):
             if number.is_whole and value != int(value):
                 raise InputError("A whole number", "must be set to one", f"{value:g}")
@@ -173,26 +174,11 @@ def _changed(held: Any, name: str, changes: Mapping[Path, object]) -> Any:
     if isinstance(held, Mapping):
         return {k: _changed(x, str(k), below[k]) if k in below else x for k, x in held.items()}
     inside = {str(key): _changed(getattr(held, str(key), None), str(key), one) for key, one in below.items()}
-    if isinstance(held, BallBearing) and "radial_clearance" in inside:
-        clearance = inside.pop("radial_clearance")
-        sizes = [inside.get(key, getattr(held, key)) for key in ANGLE_FROM]
-        inside["contact_angle"] = contact_angle_of(clearance, *sizes)
+    for rule in getattr(held, "RULES", ()):
+        if isinstance(rule, OneOf) and any(key in inside for group in rule.groups for key in group):
+            others = [key for group in rule.groups if not set(group) & set(inside) for key in group]
+            inside |= {key: keys_of(type(held))[key].default for key in others}
     return replace(held, **inside)
-
-
-def contact_angle_of(radial_clearance: Metre, diameter: Metre, inner: float, outer: float) -> Radian:
-    """Contact angle without load: cos(angle) = 1 - P_d / (2 (f_i + f_o - 1) D)."""
-    room = 2.0 * (inner + outer - 1.0) * diameter
-    if not 0.0 <= radial_clearance < room:
-        rule = f"must be >= 0 and < {format_quantity(room, 'm')}, where the free contact angle reaches 90 deg"
-        raise InputError("[bearing] radial_clearance", rule, format_quantity(radial_clearance, "m"))
-    return 2.0 * math.asin(math.sqrt(0.5 * radial_clearance / room))
-
-
-def radial_clearance(bearing: BallBearing) -> Metre:
-    """Diametral play of the bearing without load, P_d = 2 (f_i + f_o - 1) D (1 - cos(angle))."""
-    room = 2.0 * (bearing.inner_conformity + bearing.outer_conformity - 1.0) * bearing.ball_diameter
-    return 2.0 * room * math.sin(0.5 * bearing.contact_angle) ** 2
 
 
 def settled_in(study: Study, key: str, distribution: Distribution) -> Distribution:

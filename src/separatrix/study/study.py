@@ -7,15 +7,31 @@ as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
-from typing import Any
+from functools import cache
+from pathlib import Path
+from typing import Any, ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.friction.prediction import Friction as Friction
-from separatrix.ground import bounds as _check
-from separatrix.ground.bounds import between, increasing, must, not_negative, positive, whole
 from separatrix.ground.errors import InputError
+from separatrix.ground.reader import Reading
+from separatrix.ground.schema import (
+    Fault,
+    Faults,
+    between,
+    check,
+    is_record,
+    key,
+    keys_of,
+    not_negative,
+    one_of,
+    positive,
+    record,
+)
+from separatrix.ground.sheet import is_workbook
+from separatrix.ground.toml import KeyPath, Kind, ratio, table, whole
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
@@ -27,16 +43,20 @@ from separatrix.ground.units import (
     Second,
     shown,
 )
+from separatrix.study import cage_in_bearing
 from separatrix.study.ball_bearing import MOST_BALLS as MOST_BALLS
 from separatrix.study.ball_bearing import BallBearing as BallBearing
 from separatrix.study.ball_bearing import Material as Material
+from separatrix.study.cage_design import SCALED
 from separatrix.study.cage_design import BallModel as BallModel
 from separatrix.study.cage_design import CageDesign as CageDesign
 from separatrix.study.cage_design import ClearanceState as ClearanceState
 from separatrix.study.cage_design import Guidance as Guidance
 from separatrix.study.cage_design import MotionModel as MotionModel
 from separatrix.study.cage_design import PocketContact as PocketContact
-from separatrix.study.cage_in_bearing import cage_in_bearing, pockets_for_balls
+from separatrix.study.candidates import Candidate as Candidate
+from separatrix.study.candidates import RankingQuestion as RankingQuestion
+from separatrix.study.candidates import RankingSection, read_ranking
 from separatrix.study.distribution import Distribution
 from separatrix.study.film import ContactPressure as ContactPressure
 from separatrix.study.film import Film as Film
@@ -71,7 +91,14 @@ class KinematicModel(Enum):
     INNER_RACE_CONTROL = "inner race control"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
+class Kinematics:
+    """How the balls turn."""
+
+    model: KinematicModel = key(default=KinematicModel.FREE, example='"free"')
+
+
+@record
 class Operation:
     """Speeds and loads on the inner ring.
 
@@ -79,24 +106,36 @@ class Operation:
     until the balls balance it.
     """
 
-    inner_speed: RadianPerSecond = field(metadata=must(between, -1e6, 1e6))
-    axial_load: Newton = field(metadata=must(not_negative, 1e9, hint=_LIFTS))
-    outer_speed: RadianPerSecond = field(default=0.0, metadata=must(between, -1e6, 1e6))
-    radial_load: Newton = field(
-        default=0.0, metadata=must(not_negative, 1e9, hint="Its direction is the x axis: give its size.")
-    )
-    moment: NewtonMetre | None = field(default=None, metadata=must(between, -1e9, 1e9))
-    tilt: Radian | None = field(default=None, metadata=must(between, -0.1, 0.1))
-    temperature: Kelvin | None = field(default=None, metadata=must(positive, 1e-3, 5000.0))
-    fluid: str | None = field(default=None, metadata=must(_check.printable_text))
-    ramp_time: Second = field(
-        default=0.0, metadata=must(not_negative, 1e4, hint="Leave it out for a bearing at speed.")
-    )
-    ramp_start: Ratio = field(default=0.1, metadata=must(between, 0.0, 1.0, open_low=True, hint=_START))
+    RULES: ClassVar = (one_of("moment", "tilt"),)
 
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        _check.settle(_loads(self))
+    inner_speed: RadianPerSecond = key(between(-1e6, 1e6), example='"15000 rpm"')
+    axial_load: Newton = key(not_negative(1e9), hint=_LIFTS, example='"300 daN"')
+    outer_speed: RadianPerSecond = key(between(-1e6, 1e6), default=0.0)
+    radial_load: Newton = key(
+        not_negative(1e9), default=0.0, hint="Its direction is the x axis: give its size."
+    )
+    tilt: Radian | None = key(between(-0.1, 0.1), default=None, without="the rings are held parallel")
+    """The rings are held at this angle."""
+
+    moment: NewtonMetre | None = key(
+        between(-1e9, 1e9), default=None, without="not given: the rings are held and carry any moment"
+    )
+    """The inner ring tilts until the balls balance it; "0 N m" lets it tilt freely."""
+
+    temperature: Kelvin | None = key(positive(1e-3, 5000.0), default=None, example='"77 K"')
+    """The library has data for different temperatures."""
+
+    fluid: str | None = key(default=None, example='"liquid nitrogen"')
+    ramp_time: Second = key(not_negative(1e4), default=0.0, hint="Leave it out for a bearing at speed.")
+    """Start-up: all speeds rise in this time."""
+
+    ramp_start: Ratio = key(
+        between(0.0, 1.0, open_low=True),
+        default=0.1,
+        hint=_START,
+        needs=("ramp_time", "the speeds are steady"),
+    )
+    """Share of the speeds at which the ramp begins."""
 
     @property
     def is_tilt_held(self) -> bool:
@@ -104,13 +143,14 @@ class Operation:
         return self.moment is None
 
 
-def _loads(operation: Operation) -> _check.Problems:
+@check(Operation)
+def _something_presses_the_balls(
+    axial_load: Newton, radial_load: Newton, moment: NewtonMetre | None
+) -> Faults:
     """A held tilt takes any moment; without a load, even with a tilt, nothing is pressed together."""
-    if operation.tilt is not None and operation.moment is not None:
-        yield _check.problem(operation, "tilt", "and moment exclude each other", "Give one of the two.")
-    if not any((operation.axial_load, operation.radial_load, operation.moment)):
+    if not (axial_load or radial_load or moment):
         rule = "must be > 0 when there is no radial load or moment: nothing presses the balls"
-        yield _check.problem(operation, "axial_load", rule, "Give the preload.")
+        yield Fault("axial_load", rule, "Give the preload.")
 
 
 def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
@@ -119,37 +159,68 @@ def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
     return tuple(round((low * (steps - i) + high * i) / steps, 12) for i in range(count))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+def read_factors(raw: Any, path: KeyPath, reading: Reading) -> tuple[float, ...]:
+    """Numbers of a list, or those of ``{ from = 0.05, to = 0.95, count = 19 }``."""
+    if isinstance(raw, dict):
+        given = table(raw, "", {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
+        if not 2 <= given["count"] <= 1000:
+            raise InputError("", "needs a count from 2 to 1000", shown(given["count"]))
+        return evenly_spaced(given["from"], given["to"], given["count"])
+    one = keys_of(StabilitySettings)["restitution_factors"]
+    return reading.list_of(float, one, raw, path)
+
+
+@record
 class StabilitySettings:
     """The ensemble behind every verdict, and the curve's restitution factors; without any they are chosen.
 
     Without kicks they scale with the bearing; `cage.settings_for` puts numbers in their place.
     """
 
-    kicks: tuple[MetrePerSecond, ...] = field(
-        default=(), metadata=must(increasing, LEAST_KICK, MOST_KICK, most=20, hint=NO_KICK)
-    )
-    reference_kick: MetrePerSecond | None = field(
-        default=None, metadata=must(positive, 1e-6, 1e3, hint=NO_KICK)
+    reference_kick: MetrePerSecond | None = key(
+        positive(1e-6, 1e3), default=None, certain=True, hint=NO_KICK, without=SCALED
     )
     """The kick of critical friction and threshold, and what default kicks scale with."""
 
-    runs: int = field(default=64, metadata=must(whole, 1, 1_000_000))
-    duration: Second = field(
-        default=0.3, metadata=must(positive, 1e-9, 1e4, hint="Some tenths of a second show the motion.")
+    kicks: tuple[MetrePerSecond, ...] = key(
+        between(LEAST_KICK, MOST_KICK, open_low=True, open_high=True),
+        default=(),
+        certain=True,
+        hint=NO_KICK,
+        length=(0, 20),
+        rising=True,
+        ordered=True,
+        without="0.2, 1 and 4 times the reference kick",
     )
-    ball_scatter: Ratio = field(default=0.3, metadata=must(between, 0.0, 1.0))
-    axial_kick: Ratio = field(default=0.0, metadata=must(between, 0.0, 10.0))
-    """Speed along the axis at the start of a run in space, over its kick."""
+    """Speeds of the cage's centre at the start."""
 
-    tilt_kick: Ratio = field(default=0.0, metadata=must(between, 0.0, 10.0))
-    """Speed of the rim by tilting at the start of a run in space, over its kick."""
+    runs: int = key(between(1, 1e6), default=64, certain=True, example="64")
+    """Per point."""
 
-    restitution_factors: tuple[Ratio, ...] = field(default=(), metadata=must(increasing, 0.0, 1.0, most=1000))
-    seed: int = field(default=1, metadata=must(whole, 0, 2**63 - 1))
+    duration: Second = key(
+        positive(1e-9, 1e4), default=0.3, hint="Some tenths of a second show the motion.", example='"0.3 s"'
+    )
+    axial_kick: Ratio = key(between(0.0, 10.0), default=0.0)
+    """Only in space: speed along the axis at the start, over the kick."""
 
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
+    tilt_kick: Ratio = key(between(0.0, 10.0), default=0.0)
+    """Only in space: speed of the rim by tilting at the start, over the kick."""
+
+    ball_scatter: Ratio = key(between(0.0, 1.0), default=0.3)
+    """Lead or lag of each ball at the start, over half the pocket clearance."""
+
+    restitution_factors: tuple[Ratio, ...] = key(
+        between(0.0, 1.0, open_low=True, open_high=True),
+        default=(),
+        certain=True,
+        read=read_factors,
+        length=(0, 1000),
+        rising=True,
+        without="chosen where the curve bends",
+    )
+    """Where the curve is computed."""
+
+    seed: int = key(between(0, 2**63 - 1), default=1, certain=True, example="1")
 
     @property
     def middle_kick(self) -> MetrePerSecond:
@@ -159,116 +230,98 @@ class StabilitySettings:
         return self.reference_kick
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Candidate:
-    """A candidate cage material with its friction in each environment; None where it was not measured."""
-
-    name: str = field(metadata=must(_check.printable_text))
-    friction: Mapping[str, Friction | None]
-    material: Material | None = None
-
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        if all(value is None for value in self.friction.values()):
-            raise InputError("Candidate.friction", f'of "{self.name}" has no measured value')
+@cache
+def shipped_studies() -> dict[str, Path]:
+    """Path of each shipped example by its name."""
+    folder = Path(__file__).parents[1] / "examples"
+    return {path.stem: path for path in sorted(folder.iterdir()) if path.suffix == ".toml"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RankingQuestion:
-    """Which candidates to rank, in which environments."""
-
-    environments: tuple[str, ...]
-    candidates: tuple[Candidate, ...]
-    environment: str | None = None
-    """The bearing's own: the headline of a ranking, and the column of the cage's friction."""
-
-    friction_scatter: Ratio = field(default=0.09, metadata=must(between, 1e-3, 1.0, hint="0.09 is 9 %."))
-    """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess."""
-
-    def __post_init__(self) -> None:
-        _check.settle(_check.each_field(self))
-        _check.settle(_names_of_question(self))
-
-
-def _names_of_question(question: RankingQuestion) -> _check.Problems:
-    """Results are keyed by names, so these differ; every environment is one of the question."""
-    for key, names in (
-        ("candidates", [candidate.name for candidate in question.candidates]),
-        ("environments", list(question.environments)),
-    ):
-        if not names:
-            yield InputError(f"RankingQuestion.{key}", "must not be empty")
-        for name in sorted({name for name in names if names.count(name) > 1}):
-            yield InputError(f"RankingQuestion.{key}", "must have different names", f'"{name}" twice')
-    for candidate in question.candidates:
-        for name in sorted(set(candidate.friction) - set(question.environments)):
-            rule = f'of "{candidate.name}" must be in the environments of the question'
-            yield InputError("RankingQuestion.candidates", rule, f'"{name}"')
-    if question.environment is not None and question.environment not in question.environments:
-        cure = f"Known: {'; '.join(question.environments)}."
-        rule = "must be one in which candidates were measured"
-        yield InputError("RankingQuestion.environment", rule, shown(question.environment), cure)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class Study:
     """Everything that was asked, resolved: library names are replaced by their records."""
 
-    name: str = field(metadata=must(_check.printable_text))
-    title: str = field(metadata=must(_check.printable_text))
-    bearing: BallBearing
-    operation: Operation
-    film: Film
-    kinematics: KinematicModel = KinematicModel.FREE
-    traction: TractionSettings = field(default_factory=TractionSettings)
-    cage: CageDesign | None = None
-    stability: StabilitySettings = field(default_factory=StabilitySettings)
-    ranking: RankingQuestion | None = None
+    FILE: ClassVar = Kind(shipped=shipped_studies, sheets=is_workbook)
+
+    name: str = ""
+    title: str = key(default="", example='"My bearing"', without="the name of the file")
+    extends: str | None = key(default=None)
+    """Start from another file, or from a shipped example; this one overrides."""
+
+    library: tuple[str, ...] = key(
+        default=(),
+        length=(1, 20),
+        single=True,
+        without="materials.toml, and the folder materials, beside the study",
+    )
+    """Files or folders with your own materials."""
+
+    operation: Operation = key()
+    bearing: BallBearing = key()
+    kinematics: Kinematics = key(default=Kinematics())
+    film: Film = key()
+    traction: TractionSettings = key(default=TractionSettings())
+    cage: CageDesign | None = key(default=None)
+    stability: StabilitySettings = key(default=StabilitySettings())
+    ranking: RankingQuestion | None = key(default=None, read=read_ranking, form=RankingSection)
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
 
     distributions: Mapping[str, Distribution] = field(default_factory=dict)
-    """Distributions of uncertain inputs by name (`study_numbers`); the records hold the means."""
+    """Distributions of uncertain inputs by name (`study.keys`); the records hold the means."""
+
+    fluid: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """The library's whole record of the fluid."""
+
+    friction_table: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """The library's whole record of the table that [ranking] names."""
+
+    left_out: InputError | None = field(default=None, compare=False, repr=False)
+    """Why the cage of the file is not in the study, for the verbs that need it."""
 
     records: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
-    """Whole records of the library that are not materials: "operation.fluid", "ranking.friction"."""
-
-    def __post_init__(self) -> None:
-        checks = [_check.each_field(self), _turning_balls(self), _stiffness_of_unknown_origin(self)]
-        checks.append(_coated_pressure(self))
-        if self.cage is not None:
-            checks += [cage_in_bearing(self.cage, self.bearing), pockets_for_balls(self.cage, self.bearing)]
-        _check.settle(*checks)
 
 
-def _turning_balls(study: Study) -> _check.Problems:
-    """A turning ball needs its density, and without race control it is friction that turns it."""
-    turns = study.operation.inner_speed != 0.0 or study.operation.outer_speed != 0.0
-    if turns and study.bearing.ball_material.density is None:
+@check(Study)
+def _balls_that_turn(operation: Operation, bearing: BallBearing) -> Faults:
+    if (operation.inner_speed or operation.outer_speed) and bearing.ball_material.density is None:
         rule = "needs a density, for the centrifugal force of the balls"
-        yield InputError("BallBearing.ball_material", rule, cure='Add density = "7650 kg/m3" or the like.')
-    if study.kinematics is KinematicModel.FREE and study.film.race_friction == 0.0:
+        yield Fault(("bearing", "ball_material"), rule, 'Add density = "7650 kg/m3" or the like.', "")
+
+
+@check(Study)
+def _friction_turns_free_balls(kinematics: Kinematics, film: Film) -> Faults:
+    if kinematics.model is KinematicModel.FREE and film.race_friction == 0.0:
         cure = "Without friction nothing turns the balls; choose a race control model."
-        yield InputError("Film.race_friction", 'must be > 0 for the "free" kinematics', "0", cure)
+        yield Fault(("film", "race_friction"), 'must be > 0 for the "free" kinematics', cure)
 
 
-def _coated_pressure(study: Study) -> _check.Problems:
+@check(Study)
+def _pressure_of_a_whole_film(traction: TractionSettings, film: Film) -> Faults:
     """The pressure of coated contacts is that of a whole film."""
-    if study.traction.pressure is ContactPressure.COATED and study.film.wear is not None:
+    if traction.pressure is ContactPressure.COATED and film.wear is not None:
         rule = 'must be "hertz" where the film is worn: a film whose thickness varies is in series'
-        yield InputError("TractionSettings.pressure", rule, '"coated"')
+        yield Fault(("traction", "pressure"), rule)
 
 
-def _stiffness_of_unknown_origin(study: Study) -> _check.Problems:
+def stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Faults:
     """Without a stiffness, the cage or every candidate needs a material, for the modulus of the pocket."""
-    cage, candidates = study.cage, study.ranking.candidates if study.ranking else ()
-    if cage is None or cage.ball_cage_stiffness is not None or cage.material is not None:
+    if cage.ball_cage_stiffness is not None or cage.material is not None:
         return
+    candidates = ranking.candidates if ranking else ()
     bare = [candidate.name for candidate in candidates if candidate.material is None]
     if bare or not candidates:
         who = f'the candidate "{bare[0]}"' if bare else "the cage"
         rule = f"is missing, and {who} has no material to compute it from"
-        yield InputError("CageDesign.ball_cage_stiffness", rule, cure="Give the stiffness or the material.")
+        yield Fault(("cage", "ball_cage_stiffness"), rule, "Give the stiffness or the material.", "")
+
+
+check(Study)(cage_in_bearing.clearances_fit)
+check(Study)(cage_in_bearing.lands_between_rings)
+check(Study)(cage_in_bearing.ring_between_rings)
+_SIZES = (cage_in_bearing.clearances_fit, cage_in_bearing.ring_between_rings)
+check(Study, after=_SIZES)(cage_in_bearing.body_that_can_be)
+check(Study)(cage_in_bearing.pockets_for_balls)
 
 
 def chosen_models(models: Mapping[str, str]) -> dict[str, Enum]:
@@ -306,23 +359,22 @@ def with_models(study: Study, models: Mapping[str, str]) -> Study:
 
 
 SECTIONS: dict[str, type] = {
-    "bearing": BallBearing,
-    "operation": Operation,
-    "film": Film,
-    "traction": TractionSettings,
-    "cage": CageDesign,
-    "stability": StabilitySettings,
+    name: one.hint for name, one in keys_of(Study).items() if is_record(one.hint) and name != "ranking"
 }
 """Sections of a study file whose keys are the fields of a record."""
+
+
+def key_of(path: str) -> str:
+    """Name in a study file of a field of a record: ``CageDesign.mass``, ``Study.cage.mass`` is ``[cage] mass``."""
+    record, _, key = path.partition(".")
+    if record == "Study" and "." in key:
+        section, _, key = key.partition(".")
+        return f"[{section}] {key}"
+    return f"{_HEAD_OF[record]}{key}" if record in _HEAD_OF else path
+
 
 _HEAD_OF = {record.__name__: f"[{section}] " for section, record in SECTIONS.items()} | {
     "RankingQuestion": "[ranking] ",
     "Friction": "[ranking] ",
     "Wear": "[film] wear.",
 }
-
-
-def key_of(path: str) -> str:
-    """Name in a study file of a field of a record: ``CageDesign.mass`` is ``[cage] mass``."""
-    record, _, key = path.partition(".")
-    return f"{_HEAD_OF[record]}{key}" if record in _HEAD_OF else path

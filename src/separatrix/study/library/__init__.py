@@ -15,7 +15,7 @@ from typing import TypeVar, cast
 from separatrix.ground.errors import DataError, InputError
 from separatrix.ground.toml import folded, path_text
 from separatrix.ground.units import Kelvin, printable, shown
-from separatrix.study.ball_bearing import ROOM, Expansion
+from separatrix.study.ball_bearing import ROOM, Expansion, Material
 from separatrix.study.library.reading import read_library
 from separatrix.study.library.records import (
     AnyRecord,
@@ -26,7 +26,6 @@ from separatrix.study.library.records import (
     Solid,
     choose,
 )
-from separatrix.study.study import Material
 
 SHIPPED_FILES = {
     "bearing material": "bearing_materials.toml",

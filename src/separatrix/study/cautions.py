@@ -1,98 +1,14 @@
-"""Study files: TOML whose every dimensional value is text with its unit (docs/reference/study-file.md)."""
+"""Cautions about a valid study: outside the range of the model, or of real bearings."""
 
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterator
 
-from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.input_files import noting
-from separatrix.ground.units import Kilogram, format_quantity, printable
+from separatrix.ground.units import Kilogram, format_quantity
 from separatrix.study.library.records import contradictions
 from separatrix.study.pocket_shape import half_play, tilt
-from separatrix.study.reading.document import TEMPLATE, Document, find, load, shipped_studies
-from separatrix.study.reading.provenance import asked_by, inputs_of, keep, provenance_of, resolved
-from separatrix.study.reading.sections import LEFT_OUT, build_study
-from separatrix.study.study import CageDesign, Guidance, MotionModel, Study, chosen_models, with_models
-
-__all__ = [
-    "asked_by",
-    "inputs_of",
-    "provenance_of",
-    "read_study",
-    "require",
-    "resolved",
-    "shipped_studies",
-    "template",
-]
-
-
-def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> Study:
-    """Study of a file, or of the shipped example of that name.
-
-    Parameters
-    ----------
-    study : str or Path
-        Path of the file, or name of the example.
-    models : mapping, optional
-        `motion` and `ball` of the cage in place of those of the file. The study is checked with them.
-
-    Raises
-    ------
-    InputError
-        Everything that is wrong with the file, a line each: place, rule, value, cure. Or a model is not
-        known, or there is no cage to have it.
-
-    Warns
-    -----
-    ValidityWarning
-        It leaves the range of the model, or its cage is left out; what, and what to do.
-    """
-    path = find(study)
-    # a folder of answers has this name: never dots alone
-    name = printable(path.stem if path.stem.strip(".") else path.name, 100)
-    with noting() as reading:
-        built = build_study(_with_models(load(path), models or {}), name)
-    if models:
-        require(built, f"--{next(iter(models))}", "cage")
-        built = with_models(built, models)
-    for sentence in cautions(built):
-        warnings.warn(sentence, ValidityWarning, stacklevel=2)
-    return keep(built, path, reading)
-
-
-def _with_models(document: Document, models: Mapping[str, str]) -> Document:
-    """Return the document with other models of its cage."""
-    if "cage" in document.sections:
-        document.sections["cage"] |= {name: model.value for name, model in chosen_models(models).items()}
-    return document
-
-
-def template() -> str:
-    """A commented study to fill in, valid as it is: what `separatrix new` writes."""
-    return TEMPLATE.read_text(encoding="utf-8")
-
-
-def require(study: Study, verb: str, *sections: str) -> None:
-    """Refuse a study that lacks a section which a verb needs; `check` refuses one that was left out, too.
-
-    Raises
-    ------
-    InputError
-        Names the missing sections, the verb, and where to see what they look like.
-    """
-    left_out: InputError | None = study.records.get(LEFT_OUT)
-    if left_out is not None and (verb == "check" or "cage" in sections):
-        raise left_out
-    missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
-    if missing:
-        rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"
-        raise InputError(f"{study.name}: {' and '.join(missing)}", rule, cure="See `separatrix new`.")
-
-
-# Warnings on a valid study: outside the range of the model, or of real bearings.
+from separatrix.study.study import CageDesign, Guidance, MotionModel, Study
 
 STEEP = 0.5
 """Sine of the lean of a pocket's contact from which the cage is pushed along the axis as well: 30 deg."""
@@ -117,7 +33,7 @@ def cautions(study: Study) -> Iterator[str]:
     """Sentences to warn with."""
     cage, operation = study.cage, study.operation
     yield from _materials(study)
-    fluid = study.records.get("operation.fluid")
+    fluid = study.fluid
     if fluid is not None and operation.temperature is not None:
         yield from (
             f"[operation] fluid {sentence}" for sentence in contradictions(fluid, operation.temperature)
@@ -129,7 +45,7 @@ def cautions(study: Study) -> Iterator[str]:
 
 def _materials(study: Study) -> Iterator[str]:
     """One sentence on materials whose sources state another temperature, or none."""
-    acting = [study.bearing.ball_material, study.bearing.ring_material, study.film.material]
+    acting = [study.bearing.ball_material, study.bearing.ring_material, study.film.body]
     if study.cage is not None and study.cage.ball_cage_stiffness is None:
         candidates = study.ranking.candidates if study.ranking is not None else ()
         acting += [study.cage.material, *(candidate.material for candidate in candidates)]

@@ -1,10 +1,12 @@
-"""Readers of numbers of a study, each perhaps uncertain: with its distribution."""
+"""Numbers that may be uncertain: ``"0.8 um +- 30 %"``, ``{ between = [..] }``, ``{ mean = .. }``, ``[..]``.
+
+A refusal has as its path what follows the key: ``.between, item 1,``.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from typing import TypeVar
 
 from separatrix.ground.errors import InputError
@@ -14,7 +16,6 @@ from separatrix.study import distribution
 from separatrix.study.distribution import Distribution, Normal, Samples
 
 Made = TypeVar("Made", bound=Distribution)
-Value = TypeVar("Value")
 
 _SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
 _PLAIN = re.compile(NUMBER)
@@ -33,72 +34,37 @@ _FORMS = "between, or mean with standard_deviation, or samples"
 _ALONE = "Write the value alone if it is certain."
 
 
-@dataclass(frozen=True, slots=True)
-class Uncertain:
-    """A value whose numbers are uncertain: the value with the means, and the distributions by their names."""
-
-    value: object
-    distributions: Mapping[str, Distribution] = field(default_factory=dict)
-    """Under ``""`` that of the value itself, under the name of a property that of the property."""
-
-
-def unwrapped(value: object) -> tuple[object, Mapping[str, Distribution]]:
-    """The value with its means, and the distributions in it."""
-    return (value.value, value.distributions) if isinstance(value, Uncertain) else (value, {})
-
-
-def gathered(given: Mapping[str, object]) -> tuple[dict[str, object], dict[str, Distribution]]:
-    """Values of a table with their means, and the distributions in them by dotted names."""
-    values: dict[str, object] = {}
-    found: dict[str, Distribution] = {}
-    for key, item in given.items():
-        values[key], inside = unwrapped(item)
-        found |= {f"{key}.{name}".removesuffix("."): one for name, one in inside.items()}
-    return values, found
+def number(value: object, unit: str) -> tuple[float, Distribution | None]:
+    """A number in SI and None, or the mean of an uncertain one and its distribution."""
+    found: Distribution
+    if isinstance(value, list):
+        found = _samples(value, "", quantity(unit), written(value))
+    elif isinstance(value, dict):
+        found = _table(value, unit)
+    elif isinstance(value, str) and _SIGN.search(value):
+        found = _plus_minus(value, unit)
+    else:
+        return quantity(unit)(value, ""), None
+    return found.mean, found
 
 
-def number(unit: str) -> Reader[float | Uncertain]:
-    """Read a number, or the distribution of an uncertain one."""
-    reader = quantity(unit)
-
-    def read(value: object, where: str) -> float | Uncertain:
-        found: Distribution
-        if isinstance(value, list):
-            found = _samples(value, where, reader, written(value))
-        elif isinstance(value, dict):
-            found = _table(value, where, unit)
-        elif isinstance(value, str) and _SIGN.search(value):
-            found = _plus_minus(value, where, unit)
-        else:
-            return reader(value, where)
-        return Uncertain(found.mean, {"": found})
-
-    return read
-
-
-def count(value: object, where: str) -> int | Uncertain:
-    """Read a whole number, or a list of equally likely ones."""
+def count(value: object) -> tuple[int, Distribution | None]:
+    """A whole number and None, or the middle of a list of equally likely ones and their distribution."""
     if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
         rule = "must be a whole number, or a list of whole numbers that are equally likely"
-        raise InputError(where, rule, shown(value), "Write it like [12, 13].")
+        raise InputError("", rule, shown(value), "Write it like [12, 13].")
     items = value["samples"] if isinstance(value, dict) else value
     if not isinstance(items, list):
-        return whole(value, where)
-    found = _samples(items, where, whole, written(value))
-    return Uncertain(int(found.mean), {"": found})
+        return whole(value, ""), None
+    found = _samples(items, "", whole, written(value))
+    return int(found.mean), found
 
 
-def certain(reader: Reader[Value]) -> Reader[Value]:
-    """Read with `reader`; a distribution is refused as one."""
-
-    def read(value: object, where: str) -> Value:
-        is_table = isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value)
-        if is_table or _is_spread(value):
-            cure = "This key takes one certain value."
-            raise InputError(where, "takes no distribution", written(value), cure)
-        return reader(value, where)
-
-    return read
+def refuse_distribution(value: object) -> None:
+    """Refuse a distribution where a key takes one certain value."""
+    is_table = isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value)
+    if is_table or _is_spread(value):
+        raise InputError("", "takes no distribution", written(value), "This key takes one certain value.")
 
 
 def written(value: object) -> str:
@@ -112,19 +78,19 @@ def written(value: object) -> str:
     return shown(value)
 
 
-def friction_deviation(value: Mapping[str, object], where: str) -> object:
-    """Standard deviation of a friction: a number, or percent of the mean."""
-    width, mean = value.get("standard_deviation"), value.get("mean")
-    if not isinstance(width, str) or "%" not in width:
-        return width
-    return _width(width, ratio(mean, f"{where}.mean"), str(mean), f"{where}.standard_deviation", "-")
+def deviation_of(width: object, mean: object, unit: str) -> float:
+    """Standard deviation of a table: a width in the unit, or percent of the mean."""
+    at = ".standard_deviation"
+    if isinstance(width, str) and (unit != "-" or "%" in width):
+        return _width(width, quantity(unit)(mean, ".mean"), str(mean), at, unit)
+    return _not_zero(quantity(unit)(width, at), width, at)
 
 
 def _is_spread(value: object) -> bool:
     return isinstance(value, str) and _SIGN.search(value) is not None
 
 
-def _plus_minus(text: str, where: str, unit: str) -> Normal:
+def _plus_minus(text: str, unit: str) -> Normal:
     """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations.
 
     ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4).
@@ -136,40 +102,40 @@ def _plus_minus(text: str, where: str, unit: str) -> Normal:
     example = {"m": "0.5 um", "N": "300 daN", "Pa": "1.5 GPa", "-": "0.1"}.get(unit, f"1.5 {unit}")
     like = f'Write it like "{example} +- 20 %"'
     if len(text) > 120 or len(parts) != 2 or not all(parts):
-        raise InputError(where, "must be one value, +- and one expanded uncertainty", shown(text), f"{like}.")
+        raise InputError("", "must be one value, +- and one expanded uncertainty", shown(text), f"{like}.")
     if unit != "-" and _PLAIN.fullmatch(parts[0]):
         cure = f"{like}, with a unit on either side of +-."
-        raise InputError(where, "needs a unit before +- too", shown(text), cure)
-    mean = _written_number(parts[0], where, unit)
-    half = _width(parts[1], mean, parts[0], f"{where}, after +-,", unit)
-    return _made(Normal, where, mean=mean, standard_deviation=half / distribution.COVERAGE, text=shown(text))
+        raise InputError("", "needs a unit before +- too", shown(text), cure)
+    mean = _written_number(parts[0], "", unit)
+    half = _width(parts[1], mean, parts[0], ", after +-,", unit)
+    return _made(Normal, "", mean=mean, standard_deviation=half / distribution.COVERAGE, text=shown(text))
 
 
-def _table(value: dict[str, object], where: str, unit: str) -> Distribution:
+def _table(value: dict[str, object], unit: str) -> Distribution:
     """Read a table with bounds, with mean and standard deviation, or with samples."""
     for key in value:
         if key not in _FORM_OF:
-            at, cure = f"{where}.{printable(key) or chr(34) * 2}", nearest(key, _FORM_OF)
+            at, cure = f".{printable(key) or chr(34) * 2}", nearest(key, _FORM_OF)
             raise InputError(at, f"is not a key of a distribution: {_FORMS}", cure=cure)
     found = {_FORM_OF[key] for key in value if key != "log"}
     if len(found) != 1:
         rule = f"must have {_FORMS}" if not found else f"must have only one of {_FORMS}"
-        raise InputError(where, rule, written(value))
+        raise InputError("", rule, written(value))
     if "log" in value and "between" not in value:
-        raise InputError(f"{where}.log", "has a meaning only with between")
+        raise InputError(".log", "has a meaning only with between")
     if "between" in found:
-        return _between(value, where, quantity(unit))
+        return _between(value, quantity(unit))
     if "mean" in found:
-        return _moments(value, where, unit)
+        return _moments(value, unit)
     samples = value["samples"]
     if not isinstance(samples, list):
-        raise InputError(f"{where}.samples", "must be a list in [brackets]", shown(samples))
-    return _samples(samples, f"{where}.samples", quantity(unit), written(value))
+        raise InputError(".samples", "must be a list in [brackets]", shown(samples))
+    return _samples(samples, ".samples", quantity(unit), written(value))
 
 
-def _between(value: dict[str, object], where: str, reader: Reader[float]) -> Distribution:
-    bounds, at = value["between"], f"{where}.between"
-    log = truth(value.get("log", False), f"{where}.log")
+def _between(value: dict[str, object], reader: Reader[float]) -> Distribution:
+    bounds, at = value["between"], ".between"
+    log = truth(value.get("log", False), ".log")
     if not isinstance(bounds, list) or len(bounds) != 2:
         got = f"a list of {len(bounds)}" if isinstance(bounds, list) else shown(bounds)
         raise InputError(at, "must be a list of two bounds", got)
@@ -185,16 +151,12 @@ def _between(value: dict[str, object], where: str, reader: Reader[float]) -> Dis
     )
 
 
-def _moments(value: dict[str, object], where: str, unit: str) -> Normal:
+def _moments(value: dict[str, object], unit: str) -> Normal:
     if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
-        raise InputError(where, f"lacks: {missing[0]}", written(value))
-    reader, at, width = quantity(unit), f"{where}.standard_deviation", value["standard_deviation"]
-    mean = reader(value["mean"], f"{where}.mean")
-    if isinstance(width, str) and (unit != "-" or "%" in width):
-        deviation = _width(width, mean, str(value["mean"]), at, unit)
-    else:
-        deviation = _not_zero(reader(width, at), width, at)
-    return _made(Normal, where, mean=mean, standard_deviation=deviation, text=written(value))
+        raise InputError("", f"lacks: {missing[0]}", written(value))
+    mean = quantity(unit)(value["mean"], ".mean")
+    deviation = deviation_of(value["standard_deviation"], value["mean"], unit)
+    return _made(Normal, "", mean=mean, standard_deviation=deviation, text=written(value))
 
 
 def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Samples:

@@ -1,0 +1,243 @@
+"""Study files: TOML, or a workbook, whose every dimensional value is text with its unit.
+
+Keys and rules are those of the records (`study.Study` is the schema); docs/reference/study-file.md lists them.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import fields
+from difflib import get_close_matches
+from os.path import exists, isfile
+from pathlib import Path
+from typing import Any
+
+from separatrix.ground.errors import InputError, ValidityWarning, together
+from separatrix.ground.input_files import place
+from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
+from separatrix.ground.schema import built
+from separatrix.ground.toml import KeyPath, path_text
+from separatrix.ground.units import printable, shown
+from separatrix.study.candidates import fitting_environment, name_cage
+from separatrix.study.cautions import cautions
+from separatrix.study.distribution import Distribution
+from separatrix.study.helper import StudyHelper
+from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
+from separatrix.study.library import Library, beside, library_files, with_files
+from separatrix.study.study import (
+    Study,
+    chosen_models,
+    shipped_studies,
+    stiffness_is_known,
+    with_models,
+)
+from separatrix.study.uncertain import written
+
+FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
+FROM_CLEARANCE = "derived, from radial_clearance"
+
+
+def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> Study:
+    """Study of a file, or of the shipped example of that name.
+
+    Parameters
+    ----------
+    study : str or Path
+        Path of the file, or name of the example.
+    models : mapping, optional
+        `motion` and `ball` of the cage in place of those of the file. The study is checked with them.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the file, a line each: place, rule, value, cure. Or a model is not
+        known, or there is no cage to have it.
+
+    Warns
+    -----
+    ValidityWarning
+        It leaves the range of the model, or its cage is left out; what, and what to do.
+    """
+    path = find(study)
+    document = document_of(Study, path)
+    cage = document.data.get("cage")
+    if models and isinstance(cage, dict):
+        document.data["cage"] |= {name: model.value for name, model in chosen_models(models).items()}
+    # a folder of answers has this name: never dots alone
+    name = printable(path.stem if path.stem.strip(".") else path.name, 100)
+    built_study, notes = study_of(document, name)
+    if models:
+        require(built_study, f"--{next(iter(models))}", "cage")
+        built_study = with_models(built_study, models)
+    for sentence in (*notes, *cautions(built_study)):
+        warnings.warn(sentence, ValidityWarning, stacklevel=2)
+    return built_study
+
+
+def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:
+    """Study of a document, and notes on what has no effect in it or is left out."""
+    library = library_of(document)
+    loaded = read_document(Study, document, StudyHelper(library))
+    study, notes = loaded.value, list(loaded.notes)
+    values = {one.name: getattr(study, one.name) for one in fields(Study)}
+    values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
+    found, table = (
+        library.fluid(study.operation.fluid or ""),
+        document.data.get("ranking", {}).get("friction"),
+    )
+    values["fluid"] = None if found is None else found.plain()
+    if known := library.named("friction table", table or ""):
+        values["friction_table"] = library.friction_table(known).plain()
+    problems: list[InputError] = []
+    try:
+        values["cage"] = name_cage(
+            study, document.written(("cage", "material")) if study.cage else None, library
+        )
+    except InputError as error:
+        problems.append(error.at(_where(document, ("cage", "material"))))
+    if environment := fitting_environment(study, library):
+        values["ranking"] = built_with(study.ranking, environment=environment)
+        values["origins"]["ranking.environment"] = FROM_BEARING
+    study = built(Study, values)
+    if not problems:
+        study, left_out = _without_unknown_stiffness(study, document)
+        notes += left_out
+        study = _with_distributions(study, loaded, document, problems)
+    if problems:
+        raise together(problems)
+    return study, tuple(notes)
+
+
+def built_with(record: Any, **changes: object) -> Any:
+    """A record with other values that no check concerns."""
+    return built(type(record), {one.name: getattr(record, one.name) for one in fields(record)} | changes)
+
+
+def _where(document: Document, path: KeyPath) -> str:
+    return f"{document.place(path)}: {document.name(path)}"
+
+
+def _without_unknown_stiffness(study: Study, document: Document) -> tuple[Study, list[str]]:
+    """The study without its cage where nothing gives the stiffness of its pockets; and a note on that."""
+    faults = list(stiffness_is_known(study.cage, study.ranking)) if study.cage else []
+    if not faults:
+        return study, []
+    where = _where(document, ("cage", "ball_cage_stiffness"))
+    refusal = InputError(where, faults[0].rule, cure=faults[0].cure)
+    note = f"{where} {refusal.rule}: the section is left out, and verbs that need it are refused."
+    return built_with(study, cage=None, left_out=refusal), [note]
+
+
+def _with_distributions(
+    study: Study, loaded: Loaded[Study], document: Document, problems: list[InputError]
+) -> Study:
+    """The study with the distributions of its uncertain numbers, each fitting its place."""
+    found = {path: one for path, one in loaded.distributions.items() if path[0] != "cage" or study.cage}
+    if len(found) > MOST_DISTRIBUTIONS:
+        rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
+        cure = "Make those certain that matter least."
+        problems.append(InputError(document.label, rule, str(len(found)), cure))
+        return study
+    settled: dict[str, Distribution] = {}
+    for path, one in found.items():
+        name = number_name(study, path)
+        try:
+            if name in settled:
+                raise InputError("", "has the name of another uncertain number", name, "Rename a candidate.")
+            settled[name] = settled_in(study, name, one)
+        except InputError as error:
+            problems.append(error.at(_where(document, path)))
+    return built_with(study, distributions=settled)
+
+
+def number_name(study: Study, path: KeyPath) -> str:
+    """Name of a number of a study (`study.keys`) by its path in a file."""
+    parts = [str(part) for part in path]
+    if parts[:2] == ["film", "material"]:
+        del parts[1]
+    if parts[:2] == ["ranking", "candidates"] and study.ranking is not None:
+        rest = parts[4:] if parts[3] == "friction" else parts[3:]
+        parts = ["ranking", study.ranking.candidates[int(path[2])].name, *rest]
+    return ".".join(parts)
+
+
+def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
+    """Place and text of every given key of a section, and what follows from others."""
+    origins: dict[str, str] = {}
+    for path, source in loaded.sources.items():
+        if (
+            source.origin is not Origin.GIVEN
+            or len(path) < 2
+            or (len(path) > 2 and path[:2] != ("film", "wear"))
+        ):
+            continue
+        value = document.written(path)
+        is_plain = not isinstance(value, dict | list) or path in loaded.distributions
+        origins[".".join(map(str, path))] = source.place + (f": {written(value)}" if is_plain else "")
+    if "bearing.radial_clearance" in origins:
+        origins["bearing.contact_angle"] = f"{FROM_CLEARANCE}, {origins['bearing.radial_clearance']}"
+    return origins
+
+
+def find(study: str | Path) -> Path:
+    """Path of a study file, or of the shipped example of that name.
+
+    A regular file of that very name comes first; a folder does not hide a shipped example.
+    """
+    text = str(study)
+    if not text or "\0" in text:
+        raise InputError("STUDY", "must be a path or a name", shown(text), _shipped_names(text))
+    if isfile(text):
+        return Path(text)
+    if text in shipped_studies():
+        return shipped_studies()[text]
+    if not exists(text):
+        raise InputError(path_text(Path(text)), "does not exist", cure=_shipped_names(text))
+    return Path(text)
+
+
+def _shipped_names(text: str) -> str:
+    names = list(shipped_studies())
+    near = get_close_matches(text[:80], names, 1, 0.6)
+    return f"Did you mean {near[0]}?" if near else f"Shipped examples: {', '.join(names)}."
+
+
+def library_of(document: Document) -> Library:
+    """Library of a study: the shipped records, and those of files beside it or named in it."""
+    paths: list[Path] = []
+    for study, data in document.chain:
+        if study not in shipped_studies().values():
+            paths += beside(study.parent, besides=study)
+        given = data.get("library", [])
+        for name in given if isinstance(given, list) else [given]:
+            if isinstance(name, str) and name.isprintable() and name:  # else the schema refuses it
+                paths += _named(study.parent, name, f"{document.place(('library',))}: library")
+    return with_files(paths)
+
+
+def _named(folder: Path, name: str, where: str) -> list[Path]:
+    path = place(folder, name)
+    if not exists(path):
+        cure = "It is taken from the folder of the study."
+        raise InputError(where, "does not name a file or folder", shown(name), cure)
+    found = library_files(path)
+    if not found:
+        raise InputError(where, "names a folder without a .toml file", shown(name))
+    return found
+
+
+def require(study: Study, verb: str, *sections: str) -> None:
+    """Refuse a study that lacks a section which a verb needs; `check` refuses one that was left out, too.
+
+    Raises
+    ------
+    InputError
+        Names the missing sections, the verb, and where to see what they look like.
+    """
+    if study.left_out is not None and (verb == "check" or "cage" in sections):
+        raise study.left_out
+    missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
+    if missing:
+        rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"
+        raise InputError(f"{study.name}: {' and '.join(missing)}", rule, cure="See `separatrix new`.")
