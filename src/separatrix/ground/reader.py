@@ -286,9 +286,9 @@ class Reading:
                 required = ", ".join(name for name, one in keys.items() if one.is_required)
                 example = above.key.example if above else ""
                 cure = f"Write it like {example}." if example else ""
-                raise InputError(
-                    "", f"must be a table{f' with {required}' if required else ''}", shown(raw), cure
-                )
+                rule = f"must be a table{f' with {required}' if required else ''}"
+                rule = f"must be one section, headed [{path[0]}]" if len(path) == 1 else rule
+                raise InputError("", rule, shown(raw), cure)
             raw = {short: raw}
         values, refused, written = defaults_of(owner), set(), {name for name in raw if name in keys}
         for name, one in keys.items():  # in the order of the schema: a later key may need an earlier one
@@ -363,15 +363,14 @@ class Reading:
         self.refuse(at, InputError("", fault.rule, got, fault.cure))
 
     def _unknown(self, name: str, raw: Any, path: KeyPath, keys: Mapping[str, Described]) -> None:
-        top, cure = keys_of(self.schema), toml.nearest(name, keys)
-        rule = "is not a valid key"
+        top, cure, rule = keys_of(self.schema), toml.nearest(name, keys), "is not a valid key"
+        forms = {home: one.key.form or one.hint for home, one in top.items()}
+        homes = [f"[{home}]" for home, form in forms.items() if is_record(form) and name in keys_of(form)]
+        is_section = not path and isinstance(raw, dict | list)
         if not path:
-            is_section = isinstance(raw, dict | list)
             rule = f"is not a {'section' if is_section else 'key'} of {_kind(self.schema).noun}"
-        elif homes := [
-            home for home, one in top.items() if is_record(one.hint) and name in keys_of(one.hint)
-        ]:
-            cure = f"It belongs in {' or '.join(f'[{home}]' for home in homes)}."
+        if homes and not is_section:
+            cure = f"It belongs in {' or '.join(homes)}."
         self.refuse((*path, name), InputError("", rule, cure=cure))
 
     def convert(self, hint: Any, one: Described, raw: Any, path: KeyPath) -> Any:

@@ -351,7 +351,12 @@ def _structure(
     owner: type, keys: Mapping[str, Described], values: Mapping[str, Any], written: Set[str], bad: Set[str]
 ) -> Faults:
     """Keys that are missing, exclude each other, need another, or have no meaning beside another's value."""
-    lacking = {name: name for name, one in keys.items() if one.is_required and name not in written}
+    is_file = hasattr(owner, "FILE")
+    lacking = {
+        name: f"[{name}]" if is_record(one.hint) and is_file else name
+        for name, one in keys.items()
+        if one.is_required and name not in written
+    }
     for rule in getattr(owner, "RULES", ()):
         if isinstance(rule, AllOrNone):
             absent = [name for name in rule.names if name not in written]

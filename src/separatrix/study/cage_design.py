@@ -26,7 +26,7 @@ from separatrix.ground.schema import (
     positive,
     record,
 )
-from separatrix.ground.toml import KeyPath, text
+from separatrix.ground.toml import KeyPath, folded, text
 from separatrix.ground.units import (
     Kilogram,
     KilogramMetre,
@@ -40,7 +40,7 @@ from separatrix.ground.units import (
     format_quantity,
 )
 from separatrix.study.ball_bearing import Material
-from separatrix.study.helper import helper_of
+from separatrix.study.helper import helper_of, temperature_of
 from separatrix.study.pocket_shape import Pocket, PocketShape, end_half_play, half_play
 
 SIGMAS = 3.0
@@ -117,12 +117,20 @@ _ROUND = Only(
 
 
 def _read_material(raw: Any, path: KeyPath, reading: Reading) -> Material | None:
-    """A material; None of a name that the library lacks: `candidates.name_cage` looks for a candidate."""
-    library, one = helper_of(reading).library, keys_of(CageDesign)["material"]
-    if isinstance(raw, str) and library.named("cage material", text(raw, "")) is None:
+    """A material; of a name that of the candidate, else of the library; None if only a candidate has it."""
+    helper, one = helper_of(reading), keys_of(CageDesign)["material"]
+    if not isinstance(raw, str):
+        found: Material | None = helper.named(raw, one, path, reading)
+        return found or reading.record(Material, raw, path, one)
+    ranking = reading.done.get("ranking")
+    known = {folded(c.name): c.material for c in ranking.candidates} if ranking else {}
+    if folded(text(raw, "")) in known and (own := known[folded(raw)]) is not None:
+        return own
+    if folded(raw) in known and helper.library.named(one.key.named, raw) is None:
         return None
-    found: Material | None = helper_of(reading).named(raw, one, path, reading)
-    return found or reading.record(Material, raw, path, one)
+    more = f" Candidates are {', '.join(c.name for c in ranking.candidates)}." if ranking else ""
+    name = helper.known(raw, one.key.named, more)
+    return helper.library.material(one.key.named, name, temperature_of(reading))
 
 
 POCKET_AND_LAND: dict[str, Callable[..., Any]] = {
@@ -189,7 +197,7 @@ class CageDesign:
     )
     """For simulate and map."""
 
-    pocket_clearance: Metre = key(hint=_PLAY, example='"0.6 mm"')
+    pocket_clearance: Metre = key(not_negative(10.0), hint=_PLAY, example='"0.6 mm"')
     """Of a ball in its pocket along the circumference, stop to stop."""
 
     clearances: ClearanceState = key(default=ClearanceState.RUNNING)
@@ -284,10 +292,8 @@ def least_step(angles: Sequence[Radian]) -> tuple[Radian, int]:
 
 def clearance_can_be(pocket_clearance: Metre) -> Faults:
     """Zero clearance grips the ball from both sides; one that nobody could measure is a mistake of units."""
-    rule = not_negative(10.0).rule(pocket_clearance, "m")
-    if pocket_clearance != 0.0:
-        rule = rule or positive(1e-9, 10.0).rule(pocket_clearance, "m")
-    if rule:
+    rule = positive(1e-9, 10.0).rule(pocket_clearance, "m")
+    if pocket_clearance != 0.0 and rule:
         yield Fault("pocket_clearance", rule, _PLAY)
 
 

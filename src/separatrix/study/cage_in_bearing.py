@@ -19,16 +19,12 @@ MOST_ADDED = 100.0
 adds pi rho R L^3/(12 g): 70 cages half a ball thick, two balls wide and as dense, if g is a ball's 200th."""
 
 
-def clearances_fit(cage: CageDesign, bearing: BallBearing) -> Faults:
-    """Clearances are smaller than what they are clearances of."""
-    gap, ball = bearing.ball_gap, bearing.ball_diameter
-    if cage.pocket_clearance >= gap:  # no bar would be left between pockets
+def bars_are_left(cage: CageDesign, bearing: BallBearing) -> Faults:
+    """A clearance of the pockets that leaves bars between them."""
+    gap = bearing.ball_gap
+    if cage.pocket_clearance >= gap:
         rule = f"must be smaller than the gap between balls, {format_quantity(gap, 'm')}"
         yield Fault(("cage", "pocket_clearance"), rule, "It is the clearance of one ball, stop to stop.")
-    if cage.land_clearance is not None and cage.land_clearance >= ball:  # it would lose its balls first
-        rule = f"must be smaller than a ball, {format_quantity(ball, 'm')}"
-        cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
-        yield Fault(("cage", "land_clearance"), rule, cure)
 
 
 def ring_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
@@ -65,7 +61,13 @@ def ring_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
 
 
 def lands_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
-    """Lands are on the cage, and those of the rings between the grooves."""
+    """Lands are on the cage, and those of the rings between the grooves; both are closer than a ball."""
+    if (
+        cage.land_clearance is not None and cage.land_clearance >= bearing.ball_diameter
+    ):  # it would lose its balls first
+        rule = f"must be smaller than a ball, {format_quantity(bearing.ball_diameter, 'm')}"
+        cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
+        yield Fault(("cage", "land_clearance"), rule, cure)
     low, high = bearing.pitch_diameter - bearing.ball_diameter, bearing.pitch_diameter + bearing.ball_diameter
     is_outer, stated = cage.guidance is Guidance.OUTER, cage.land_diameter
     if stated is not None:

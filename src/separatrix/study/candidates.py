@@ -21,14 +21,13 @@ from separatrix.ground.toml import KeyPath, folded, nearest
 from separatrix.ground.units import Kelvin, Ratio, shown
 from separatrix.study.ball_bearing import NAMELESS, Material
 from separatrix.study.distribution import Normal
-from separatrix.study.helper import StudyHelper, helper_of, temperature_of
+from separatrix.study.helper import helper_of, temperature_of
 from separatrix.study.library import Library
 from separatrix.study.library.records import FrictionTable
 from separatrix.study.uncertain import deviation_of, number
 
 if TYPE_CHECKING:
     from separatrix.friction.fit import TestedFriction
-    from separatrix.study.cage_design import CageDesign
     from separatrix.study.study import Study
 
 FROM_LOGS = " The friction file of your own logs (.toml) is written by `separatrix tribometer`."
@@ -279,26 +278,12 @@ def _stated(friction: Friction, environment: str, table: FrictionTable, scatter:
     return replace(friction, law=law)
 
 
-def name_cage(study: Study, given: object, library: Library) -> CageDesign | None:
-    """The cage with the candidate that [cage] material names.
-
-    Raises
-    ------
-    InputError
-        The name is neither that of a candidate nor of a material of the library.
-    """
-    cage, candidates = study.cage, study.ranking.candidates if study.ranking else ()
-    if cage is None or given is None:
-        return cage
-    name = given if isinstance(given, str) else cage.material.name if cage.material else ""
-    candidate = {folded(one.name): one for one in candidates}.get(folded(name))
-    if candidate is not None:
-        material = candidate.material if isinstance(given, str) else None
-        return replace(cage, material=material or cage.material, material_name=candidate.name)
-    if cage.material is None:
-        names = ", ".join(one.name for one in candidates)
-        StudyHelper(library).known(name, "cage material", f" Candidates are {names}." if names else "")
-    return cage
+def candidate_named(study: Study, given: object) -> str | None:
+    """Name of the candidate that [cage] material, as the file has it, names in any spelling; or None."""
+    own = study.cage.material if study.cage else None
+    name = given if isinstance(given, str) else own.name if own is not None else ""
+    candidates = study.ranking.candidates if study.ranking else ()
+    return {folded(one.name): one.name for one in candidates}.get(folded(name))
 
 
 def fitting_environment(study: Study, library: Library) -> str | None:

@@ -19,7 +19,7 @@ from separatrix.ground.reader import Document, Loaded, Origin, document_of, read
 from separatrix.ground.schema import built
 from separatrix.ground.toml import KeyPath, path_text
 from separatrix.ground.units import printable, shown
-from separatrix.study.candidates import fitting_environment, name_cage
+from separatrix.study.candidates import candidate_named, fitting_environment
 from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.helper import StudyHelper
@@ -79,7 +79,7 @@ def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:
     """Study of a document, and notes on what has no effect in it or is left out."""
     library = library_of(document)
     loaded = read_document(Study, document, StudyHelper(library))
-    study, notes = loaded.value, list(loaded.notes)
+    study = loaded.value
     values = {one.name: getattr(study, one.name) for one in fields(Study)}
     values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
     found, table = (
@@ -87,26 +87,16 @@ def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:
         document.data.get("ranking", {}).get("friction"),
     )
     values["fluid"] = None if found is None else found.plain()
-    if known := library.named("friction table", table or ""):
+    if known := library.named("friction table", table if isinstance(table, str) else ""):
         values["friction_table"] = library.friction_table(known).plain()
-    problems: list[InputError] = []
-    try:
-        values["cage"] = name_cage(
-            study, document.written(("cage", "material")) if study.cage else None, library
-        )
-    except InputError as error:
-        problems.append(error.at(_where(document, ("cage", "material"))))
+    if study.cage is not None:
+        named = candidate_named(study, document.written(("cage", "material")))
+        values["cage"] = built_with(study.cage, material_name=named)
     if environment := fitting_environment(study, library):
         values["ranking"] = built_with(study.ranking, environment=environment)
         values["origins"]["ranking.environment"] = FROM_BEARING
-    study = built(Study, values)
-    if not problems:
-        study, left_out = _without_unknown_stiffness(study, document)
-        notes += left_out
-        study = _with_distributions(study, loaded, document, problems)
-    if problems:
-        raise together(problems)
-    return study, tuple(notes)
+    study, left_out = _without_unknown_stiffness(built(Study, values), document)
+    return _with_distributions(study, loaded, document), (*loaded.notes, *left_out)
 
 
 def built_with(record: Any, **changes: object) -> Any:
@@ -129,17 +119,15 @@ def _without_unknown_stiffness(study: Study, document: Document) -> tuple[Study,
     return built_with(study, cage=None, left_out=refusal), [note]
 
 
-def _with_distributions(
-    study: Study, loaded: Loaded[Study], document: Document, problems: list[InputError]
-) -> Study:
+def _with_distributions(study: Study, loaded: Loaded[Study], document: Document) -> Study:
     """The study with the distributions of its uncertain numbers, each fitting its place."""
     found = {path: one for path, one in loaded.distributions.items() if path[0] != "cage" or study.cage}
     if len(found) > MOST_DISTRIBUTIONS:
         rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
         cure = "Make those certain that matter least."
-        problems.append(InputError(document.label, rule, str(len(found)), cure))
-        return study
+        raise InputError(document.label, rule, str(len(found)), cure)
     settled: dict[str, Distribution] = {}
+    problems: list[InputError] = []
     for path, one in found.items():
         name = number_name(study, path)
         try:
@@ -148,6 +136,8 @@ def _with_distributions(
             settled[name] = settled_in(study, name, one)
         except InputError as error:
             problems.append(error.at(_where(document, path)))
+    if problems:
+        raise together(problems)
     return built_with(study, distributions=settled)
 
 

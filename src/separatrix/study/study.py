@@ -261,9 +261,9 @@ class Study:
     kinematics: Kinematics = key(default=Kinematics())
     film: Film = key()
     traction: TractionSettings = key(default=TractionSettings())
+    ranking: RankingQuestion | None = key(default=None, read=read_ranking, form=RankingSection)
     cage: CageDesign | None = key(default=None)
     stability: StabilitySettings = key(default=StabilitySettings())
-    ranking: RankingQuestion | None = key(default=None, read=read_ranking, form=RankingSection)
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
 
@@ -316,10 +316,10 @@ def stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Fau
         yield Fault(("cage", "ball_cage_stiffness"), rule, "Give the stiffness or the material.", "")
 
 
-check(Study)(cage_in_bearing.clearances_fit)
+check(Study)(cage_in_bearing.bars_are_left)
 check(Study)(cage_in_bearing.lands_between_rings)
 check(Study)(cage_in_bearing.ring_between_rings)
-_SIZES = (cage_in_bearing.clearances_fit, cage_in_bearing.ring_between_rings)
+_SIZES = (cage_in_bearing.bars_are_left, cage_in_bearing.ring_between_rings)
 check(Study, after=_SIZES)(cage_in_bearing.body_that_can_be)
 check(Study)(cage_in_bearing.pockets_for_balls)
 
