@@ -44,10 +44,12 @@ _PUBLIC = {
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
-    "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn",
+    "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn shipped_studies",
     "verdict.judgement": "Judgement Verdict judge wilson_interval",
     "verdict.reasons": "CageMotion",
-    "study.reading": "read_study resolved shipped_studies template",
+    "study.reading": "read_study",
+    "study.sources": "resolved",
+    "study.template": "template",
 }
 """Module -> the public names it holds."""
 

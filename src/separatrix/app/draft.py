@@ -16,15 +16,15 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
-from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import is_inside, reading_only_in
+from separatrix.ground.errors import DataError, InputError
+from separatrix.ground.input_files import is_inside, place, reading_only_in
 from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.reader import Document, document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
-from separatrix.study.reading import read_study
-from separatrix.study.reading.document import load
-from separatrix.study.reading.templates import is_name, tested_materials
+from separatrix.study.reading import library_of, read_study
 from separatrix.study.study import Study
+from separatrix.study.template import study_keys
 
 DRAFT = ".{}.draft"
 """Name of the draft of a study, beside it: a server that is killed loses no edit."""
@@ -139,15 +139,29 @@ def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], tuple
     """Return what a study that extends another has, by section and key, and the materials of its tests."""
     try:
         with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
-            found = load(path)
-            sections = {"": found.top, **found.sections} if "extends" in found.top else {}
-            given = {
-                name: {key: value for key, value in values.items() if not isinstance(value, InputError)}
-                for name, values in sections.items()
-            }
-            return given, tested_materials(found)
+            found = document_of(Study, path)
+            top = {key: value for key, value in found.data.items() if not isinstance(value, dict)}
+            sections = {"": top} | {k: v for k, v in found.data.items() if isinstance(v, dict)}
+            return sections if "extends" in found.data else {}, _tested(found)
     except InputError:  # shown among the faults
         return {}, ()
+
+
+def _tested(document: Document) -> tuple[str, ...]:
+    """Materials of the table or file in [ranking] friction; none if it cannot be read."""
+    name = document.written(("ranking", "friction"))
+    if not isinstance(name, str):
+        return ()
+    try:
+        if not name.endswith(".toml"):
+            library = library_of(document)
+            return tuple(library.friction_table(library.named("friction table", name) or name).content.rows)
+        from separatrix.friction.file import read_friction
+
+        tests = read_friction(place(document.folder(("ranking", "friction")), name))
+        return tuple(dict.fromkeys(test.material for test in tests))
+    except (DataError, InputError):  # refused where the study is read
+        return ()
 
 
 def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
@@ -181,7 +195,8 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         if key in table:
             del table[key]
     else:
-        _put(table, key, _typed(value, is_name=is_name(section, key)))
+        is_name = any(one.is_name for one in study_keys(section) if one.name == key)
+        _put(table, key, _typed(value, is_name=is_name))
     return tomlkit.dumps(document)
 
 

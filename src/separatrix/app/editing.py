@@ -15,8 +15,8 @@ from separatrix.app.page import Form, Page
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 from separatrix.questions import VERBS, Verb, verb_named
-from separatrix.study.reading import shipped_studies, template
-from separatrix.study.study import BallModel, MotionModel, Study
+from separatrix.study.study import BallModel, MotionModel, Study, shipped_studies
+from separatrix.study.template import template
 
 TYPED = {"points": int, "runs": int, "run": int, "samples": int}
 """Options that are whole numbers."""

@@ -10,15 +10,8 @@ import tomlkit
 
 from separatrix.app.draft import Checked
 from separatrix.ground.toml import folded
-from separatrix.study.reading.document import SECTIONS
-from separatrix.study.reading.templates import (
-    TemplateKey,
-    choices_of,
-    quantity_of,
-    section_remarks,
-    template_keys,
-    units_like,
-)
+from separatrix.ground.units import UNITS
+from separatrix.study.template import ORDER, StudyKey, quantity_of, remark_of, study_keys
 
 TESTED = ("ranking", "materials")
 """The key whose names are those of the tests that the study names."""
@@ -79,20 +72,20 @@ def form(checked: Checked) -> tuple[FormSection, ...]:
         data = tomllib.loads(checked.text)
     except (ValueError, RecursionError):
         data = {}
-    return tuple(_section(name, data, checked) for name in ("", *SECTIONS))
+    return tuple(_section(name, data, checked) for name in ("", *ORDER))
 
 
 def _section(name: str, data: Mapping[str, object], checked: Checked) -> FormSection:
     given = data.get(name, {}) if name else {k: v for k, v in data.items() if not isinstance(v, dict)}
     given = given if isinstance(given, dict) else {}
     base = checked.inherited.get(name, {})
-    keys = [one for one in template_keys() if one.section == name]
-    known = {one.key for one in keys}
+    keys = study_keys(name)
+    known = {one.name for one in keys}
     return FormSection(
         name=name,
-        remark=section_remarks().get(name, ""),
+        remark=remark_of(name),
         fields=tuple(
-            _field(one, given.get(one.key), None if one.key in given else base.get(one.key), checked)
+            _field(one, given.get(one.name), None if one.name in given else base.get(one.name), checked)
             for one in keys
         ),
         faults=tuple(one.message for one in checked.faults if one.section == name and one.key not in known),
@@ -100,29 +93,28 @@ def _section(name: str, data: Mapping[str, object], checked: Checked) -> FormSec
     )
 
 
-def _field(key: TemplateKey, value: object, inherited: object, checked: Checked) -> Field:
+def _field(key: StudyKey, value: object, inherited: object, checked: Checked) -> Field:
     """Return the field of a key with a value of a study; None is a value that is not given."""
-    choices, is_open = choices_of(key.section, key.key)
-    number, unit = quantity_of(value)
-    usual = quantity_of(inherited)[1] or quantity_of(key.example)[1]
-    units = units_like(usual)
-    is_split = number is not None and unit in ("", *units)  # a unit of another kind stays beside its number
-    text = "" if value is None else number if is_split and number is not None else as_typed(value)
+    kind, name = key.one.unit, key.name
+    number, unit = quantity_of(value, kind)
+    usual = quantity_of(inherited, kind)[1] or quantity_of(key.example, kind)[1]
+    units = tuple(UNITS[kind]) if usual else ()
+    text = "" if value is None else as_typed(value) if number is None else number
     return Field(
-        id=f"f-{key.section}-{key.key}",
-        label=key.key.replace("_", " "),
-        sent={"field": f"{key.section}.{key.key}"},
+        id=f"f-{key.section}-{name}",
+        label=name.replace("_", " "),
+        sent={"field": f"{key.section}.{name}"},
         value=text,
-        unit=usual if not text else unit if is_split else "",
+        unit=usual if not text else unit if number is not None else "",
         units=units,
         example=as_typed(key.example),
         inherited="" if inherited is None else as_typed(inherited),
-        choices=choices,
-        is_open=is_open,
+        choices=key.choices,
+        is_open=not key.is_word,
         is_required=key.is_required and inherited is None,
         meaning=key.meaning,
-        faults=tuple(checked.faults_of(key.section, key.key)),
-        boxes=_boxes(value, checked.tested) if (key.section, key.key) == TESTED else (),
+        faults=tuple(checked.faults_of(key.section, name)),
+        boxes=_boxes(value, checked.tested) if (key.section, name) == TESTED else (),
     )
 
 

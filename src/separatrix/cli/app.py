@@ -47,7 +47,7 @@ def _new(
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
 ) -> int:
-    from separatrix.study.reading.document import WORKBOOK_ENDINGS
+    from separatrix.ground.sheet import WORKBOOK_ENDINGS
 
     ending = path.suffix.casefold()
     if path.is_dir():
@@ -60,9 +60,9 @@ def _new(
         cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
         raise InputError(str(path), "is the name of a workbook", cure=cure)
     refuse_existing(path)
-    from separatrix.study.reading import template, templates
+    from separatrix.study.template import template, template_workbook
 
-    write_new(path, templates.template_workbook() if excel else template().encode())
+    write_new(path, template_workbook() if excel else template().encode())
     if json:
         answer(plain_json.dumps({"path": str(path)}) + "\n")
     elif not quiet:

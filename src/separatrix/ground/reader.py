@@ -175,7 +175,7 @@ def document_of(schema: type, path: Path, above: tuple[Path, ...] = ()) -> Docum
     """Document of a file, over that of the file that it extends."""
     kind = _kind(schema)
     if kind.sheets is not None and kind.sheets(path):
-        from separatrix.ground.sheet import read_sheets
+        from separatrix.ground.workbook import read_sheets
 
         document = read_sheets(schema, path)
     else:

@@ -284,12 +284,10 @@ def _integers(text: str) -> tuple[int, int]:
     return int(whole + part) * 10 ** max(power, 0), 10 ** max(-power, 0)
 
 
-def missing_unit(value: object, unit: str, where: str, *, in_cell: bool = False) -> InputError:
-    """Refusal of a number without a unit; `in_cell` where the unit has a cell of its own."""
-    example = str(value) if _is_number(value) else "1.5"
-    cure = f"Write {_HABITS[unit]} there." if in_cell else f'Write "{example} {_HABITS[unit]}".'
-    got = str(value) if in_cell else shown(value)
-    return InputError(where, f"needs a unit of {QUANTITIES[unit]}", got, cure)
+def missing_unit(value: object, unit: str, where: str) -> InputError:
+    """Refusal of a number without a unit."""
+    cure = f'Write "{value if _is_number(value) else "1.5"} {HABITS[unit]}".'
+    return InputError(where, f"needs a unit of {QUANTITIES[unit]}", shown(value), cure)
 
 
 def _is_number(value: object) -> bool:
@@ -311,7 +309,7 @@ def _refusal(text: str, unit: str, where: str) -> InputError:
     if re.match(r"\s*[+-]?(nan|inf)", text, re.IGNORECASE):
         return InputError(where, "must be a finite number with a unit", value)
     rule = f"must be one number and one unit of {QUANTITIES[unit]} ({spellings(unit)})"
-    return InputError(where, rule, value, f'Write it like "1.5 {_HABITS[unit]}".')
+    return InputError(where, rule, value, f'Write it like "1.5 {HABITS[unit]}".')
 
 
 def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
@@ -327,7 +325,7 @@ def _wrong_unit(text: str, spelling: str, unit: str, where: str) -> InputError:
     return InputError(where, rule, shown(text), f'Did you mean "{known[found[0]]}"?' if found else "")
 
 
-_HABITS = {unit: unit for unit in QUANTITIES} | {
+HABITS = {unit: unit for unit in QUANTITIES} | {
     "m": "mm",
     "rad": "deg",
     "rad/s": "rpm",
@@ -338,6 +336,7 @@ _HABITS = {unit: unit for unit in QUANTITIES} | {
     "kg m": "g mm",
     "kg m2": "kg mm2",
 }
+"""The unit that an engineer would write."""
 
 _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "m": ((1e-9, "nm"), (1e-6, "um"), (1e-3, "mm"), (1.0, "m")),
@@ -390,7 +389,7 @@ def format_number(value: float, digits: int = 4) -> str:
 def _readable(size: float, unit: str) -> tuple[float, str]:
     choices = _READABLE.get(unit, ((1.0, unit),))
     if size == 0.0:
-        return next((c for c in choices if c[1] == _HABITS.get(unit)), choices[0])
+        return next((c for c in choices if c[1] == HABITS.get(unit)), choices[0])
     best = choices[0]
     for threshold, symbol in choices:
         if size >= threshold * (1 - 1e-9):

@@ -204,6 +204,8 @@ class CageDesign:
     """What the stated clearances of pockets and land are."""
 
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
+    """"square" has flat walls, "cylindrical" is a bore, "elongated" a slot along the circumference."""
+
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"](
         only=(_ELONGATED,), without="not given: that of the shape"
     )
@@ -213,6 +215,8 @@ class CageDesign:
     """Of the cage from the plane of the balls."""
 
     pocket_contact: PocketContact = key(default=PocketContact.LINEAR)
+    """"hertz" is force as approach^1.5."""
+
     pocket_angles: tuple[Radian, ...] = key(default=(), certain=True, without="evenly spaced")
     """One for each ball, rising."""
 
@@ -233,10 +237,16 @@ class CageDesign:
     )
     """Diametral, of the cage on its land."""
 
-    land_friction: Ratio = key(between(0.0, FRICTION_LIMIT), default=0.1, only=(_LAND,), without=_GUESS)
-    land_stiffness: NewtonPerMetre = key(positive(1.0, 1e12), default=1e7, only=(_LAND,), without=_GUESS)
-    land_restitution: Ratio = _SAME["land_restitution"](only=(_LAND,), without=_GUESS)
+    land_friction: Ratio = key(
+        between(0.0, FRICTION_LIMIT), default=0.1, only=(_LAND,), without=_GUESS, example="0.1"
+    )
+    land_stiffness: NewtonPerMetre = key(
+        positive(1.0, 1e12), default=1e7, only=(_LAND,), without=_GUESS, example='"1e7 N/m"'
+    )
+    land_restitution: Ratio = _SAME["land_restitution"](only=(_LAND,), without=_GUESS, example="0.5")
     land_count: int = _SAME["land_count"](only=(_LAND,))
+    """1, or 2: one on each side of the balls."""
+
     land_out_of_round: Metre = _SAME["land_out_of_round"](only=(_LAND,))
     """Amplitude: half of highest less lowest radius."""
 
@@ -247,7 +257,11 @@ class CageDesign:
     """About the axis."""
 
     ball: BallModel = key(default=BallModel.DAMPER)
+    """"damper" is the paper's, "traction" has one state, "free" its three spins, too; "auto" chooses."""
+
     motion: MotionModel = key(default=MotionModel.PLANE)
+    """"plane" is the paper's, "space" has tilt and axial motion, too."""
+
     unbalance: KilogramMetre = key(not_negative(1e2), default=0.0)
     """Mass times eccentricity."""
 

@@ -148,6 +148,7 @@ class Film:
     """Total over ball and race."""
 
     wear: Wear | None = key(default=None, without="not worn")
+    """A band in the middle that is bare, of this friction; or a profile."""
 
     @property
     def body(self) -> Material | None:
@@ -217,7 +218,11 @@ class TractionSettings:
     """How the traction of ball on race is computed."""
 
     model: TractionModel = key(default=TractionModel.STRIPS)
+    """"strips" is the paper's, "exact" the whole contact."""
+
     pressure: ContactPressure = key(default=ContactPressure.HERTZ)
+    """"coated" is that of the bodies with their film."""
+
     pressure_slip: PressureSlip = key(default=PressureSlip.NEGLECTED, only=(_EXACT,))
 
     def by(self, model: TractionModel, pressure: ContactPressure | None = None) -> TractionSettings:
