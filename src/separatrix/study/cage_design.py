@@ -204,7 +204,7 @@ class CageDesign:
     """What the stated clearances of pockets and land are."""
 
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
-    """"square" has flat walls, "cylindrical" is a bore, "elongated" a slot along the circumference."""
+    """Flat walls, "square"; a bore, "cylindrical"; a slot along the circumference, "elongated"."""
 
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"](
         only=(_ELONGATED,), without="not given: that of the shape"
@@ -215,7 +215,7 @@ class CageDesign:
     """Of the cage from the plane of the balls."""
 
     pocket_contact: PocketContact = key(default=PocketContact.LINEAR)
-    """"hertz" is force as approach^1.5."""
+    """Force in proportion to the approach, "linear", or to its power 1.5, "hertz"."""
 
     pocket_angles: tuple[Radian, ...] = key(default=(), certain=True, without="evenly spaced")
     """One for each ball, rising."""
@@ -257,10 +257,10 @@ class CageDesign:
     """About the axis."""
 
     ball: BallModel = key(default=BallModel.DAMPER)
-    """"damper" is the paper's, "traction" has one state, "free" its three spins, too; "auto" chooses."""
+    """Of a ball: "damper" as in the paper, "traction" with one state, "free" with three spins, or "auto"."""
 
     motion: MotionModel = key(default=MotionModel.PLANE)
-    """"plane" is the paper's, "space" has tilt and axial motion, too."""
+    """In the "plane" as in the paper, or in "space" with tilt and axial motion."""
 
     unbalance: KilogramMetre = key(not_negative(1e2), default=0.0)
     """Mass times eccentricity."""

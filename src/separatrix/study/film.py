@@ -218,10 +218,10 @@ class TractionSettings:
     """How the traction of ball on race is computed."""
 
     model: TractionModel = key(default=TractionModel.STRIPS)
-    """"strips" is the paper's, "exact" the whole contact."""
+    """The contact as "strips" like the paper's, or as a whole, "exact"."""
 
     pressure: ContactPressure = key(default=ContactPressure.HERTZ)
-    """"coated" is that of the bodies with their film."""
+    """Of the bodies without film, "hertz", or with it, "coated"."""
 
     pressure_slip: PressureSlip = key(default=PressureSlip.NEGLECTED, only=(_EXACT,))
 

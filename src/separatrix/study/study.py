@@ -96,7 +96,7 @@ class Kinematics:
     """How the balls turn."""
 
     model: KinematicModel = key(default=KinematicModel.FREE, example='"free"')
-    """"free" is without race control."""
+    """Without race control it is "free"."""
 
 
 @record
