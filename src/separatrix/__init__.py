@@ -47,7 +47,9 @@ _PUBLIC = {
     "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn",
     "verdict.judgement": "Judgement Verdict judge wilson_interval",
     "verdict.reasons": "CageMotion",
-    "study.reading": "read_study resolved shipped_studies template",
+    "study.reading": "read_study",
+    "study.sources": "resolved",
+    "study.template": "template",
 }
 """Module -> the public names it holds."""
 

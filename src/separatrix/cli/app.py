@@ -47,7 +47,7 @@ def _new(
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
 ) -> int:
-    from separatrix.study.reading.document import WORKBOOK_ENDINGS
+    from separatrix.ground.sheet import WORKBOOK_ENDINGS
 
     ending = path.suffix.casefold()
     if path.is_dir():
