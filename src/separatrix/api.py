@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -57,6 +57,7 @@ class Answer(Generic[Record]):
     record: Record
     study: Study
     notes: tuple[str, ...]
+    question: Mapping[str, object] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Any:
         """Name of the record."""
@@ -72,7 +73,7 @@ class Answer(Generic[Record]):
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
         from separatrix.present import document
 
-        return document(self.verb, self.record, self.study, list(self.notes))
+        return document(self.verb, self.record, self.study, list(self.notes), self.question)
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
@@ -105,7 +106,9 @@ def _answer(verb: str, study: Asked, question: Mapping[str, object] | None = Non
         asked = study if isinstance(study, Study) else read_study(study)
         require(asked, verb, *verb_named(verb).needs)
         found = computed(verb_named(verb), asked, question or {}, **how)
-    answer = Answer(verb=verb, record=found.record, study=found.study, notes=tuple(grouped(notes)))
+    answer = Answer(
+        verb=verb, record=found.record, study=asked, notes=tuple(grouped(notes)), question=found.question
+    )
     if not found.is_complete:
         raise Interrupted(answer)
     for note in answer.notes:

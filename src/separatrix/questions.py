@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import shown
@@ -150,11 +150,12 @@ def asked_study(verb: Verb, study: str | Path, models: Mapping[str, str]) -> Stu
 class Computed:
     """The record of an answer, whether it is complete, and the number of runs kept by an earlier call.
 
-    `study` has the question, for the provenance of its answer.
+    `question` has the options as they were answered, for the provenance.
     """
 
     record: Any
     study: Study
+    question: Mapping[str, object]
     is_complete: bool
     runs_taken: int = 0
 
@@ -189,16 +190,20 @@ def computed(
         Before anything was finished.
     """
     from separatrix import verbs
-    from separatrix.ground.input_files import noting
-    from separatrix.study.reading import asked_by
+    from separatrix.explore.cases import asked_cases
     from separatrix.verdict.cluster import cluster as connected
     from separatrix.verdict.ledger import NAME, Ledger
     from separatrix.verdict.long_jobs import Interrupted, Runner
 
     function, threads, is_complete = getattr(verbs, verb.name), jobs or processors(), True
+    if isinstance(table := question.get("cases"), Path):
+        question = {
+            **question,
+            "cases": asked_cases(cast("Sequence[str]", question.get("vary") or ()), table),
+        }
     ledger: Ledger | None = None
     executor: Executor | None = None
-    with noting() as reading, contextlib.ExitStack() as stack:
+    with contextlib.ExitStack() as stack:
         if not verb.keeps_runs:
             record = function(study, **question)
         else:
@@ -215,8 +220,7 @@ def computed(
                     raise
                 record, is_complete = stop.finished, False
     taken = 0 if ledger is None else ledger.taken
-    asked = asked_by(study, verb.name, question, reading)
-    return Computed(record=record, study=asked, is_complete=is_complete, runs_taken=taken)
+    return Computed(record=record, study=study, question=question, is_complete=is_complete, runs_taken=taken)
 
 
 def processors() -> int:

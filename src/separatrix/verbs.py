@@ -158,7 +158,7 @@ def mobility(study: Study) -> answers.MobilityAnswer:
     solution = solve(study)
     found = solution.mobility
     rigid = linear_mobility(
-        study.bearing, study.operation, study.kinematics, study.film, study.traction, SlipLaw.RIGID
+        study.bearing, study.operation, study.kinematics.model, study.film, study.traction, SlipLaw.RIGID
     )
     impacts, reason = None, ""
     try:

@@ -10,7 +10,7 @@ import separatrix
 from separatrix.chain.mobility import SlipLaw, held_ball
 from separatrix.chain.mobility.field import HeldBall, friction_slopes
 from separatrix.chain.mobility.modes import Modes, modes
-from separatrix.study.study import BallBearing, Film, KinematicModel, Material, Operation, Study
+from separatrix.study.study import BallBearing, Film, KinematicModel, Kinematics, Material, Operation, Study
 
 RPM = math.pi / 30.0
 STEEL = Material(name="steel", elastic_modulus=207e9, poisson_ratio=0.30, density=7810.0)
@@ -32,7 +32,7 @@ def study_of(name: str) -> Study:
     """One of the bearings, without race control."""
     if name == "cryo":
         return separatrix.read_study("cryogenic-turbopump")
-    le7 = replace(separatrix.read_study("le7"), kinematics=KinematicModel.FREE)
+    le7 = replace(separatrix.read_study("le7"), kinematics=Kinematics(model=KinematicModel.FREE))
     if name == "le7":
         return le7
     operation = Operation(inner_speed=float(name.split()[1]) * RPM, axial_load=40.0)
@@ -42,7 +42,7 @@ def study_of(name: str) -> Study:
 def records(name: str) -> tuple:
     """What `held_ball` and `mobility` take, before the slip law."""
     asked = study_of(name)
-    return asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction
+    return asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction
 
 
 @lru_cache

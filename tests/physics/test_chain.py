@@ -10,10 +10,12 @@ from separatrix.chain.lubrication import lubrication_curve
 from separatrix.chain.orbit import orbital_waves
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
-from separatrix.study.study import KinematicModel
+from separatrix.study.study import KinematicModel, Kinematics
 
 SHIPPED = read_study("cryogenic-turbopump")
-STUDY = replace(SHIPPED, kinematics=KinematicModel.OUTER_RACE_CONTROL)  # quick, and free of the race friction
+STUDY = replace(
+    SHIPPED, kinematics=Kinematics(model=KinematicModel.OUTER_RACE_CONTROL)
+)  # quick, and free of the race friction
 
 
 def eta(study):
@@ -39,7 +41,7 @@ def test_the_lubrication_curve_goes_through_the_study():
     curve = lubrication_curve(
         state.bearing.inner,
         state.bearing.outer,
-        SHIPPED.film.material,
+        SHIPPED.film.body,
         ball_cage_stiffness=state.restitution.ball_cage_stiffness,
         cage_mass=state.restitution.cage_mass,
         film_thicknesses=(0.0, SHIPPED.film.thickness),

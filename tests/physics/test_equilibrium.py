@@ -191,7 +191,7 @@ def test_second_road_by_a_general_solver() -> None:
     bearing, Z = LE7, 10
     result = equilibrium(bearing, COMBINED, OUTER, 0.1)
     psi, D, dm = result.azimuth, bearing.ball_diameter, bearing.pitch_diameter
-    fi, fo, a0 = bearing.inner_conformity, bearing.outer_conformity, bearing.contact_angle
+    fi, fo, a0 = bearing.inner_conformity, bearing.outer_conformity, bearing.free_angle
     modulus = contact_modulus(bearing.ball_material, bearing.ring_material)
     mass = 7750.37 * math.pi * D**3 / 6.0
 

@@ -380,7 +380,7 @@ def test_a_ball_that_rolls_without_spin_slides_by_the_closed_form():
     """At a contact angle of 0 the surface passes the pocket at omega d_m (1 - gamma^2) / 4."""
     study = read_study("cryogenic-turbopump")
     omega, d_m, D = study.operation.inner_speed, study.bearing.pitch_diameter, study.bearing.ball_diameter
-    found = equilibrium(study.bearing, study.operation, study.kinematics, study.film.race_friction)
+    found = equilibrium(study.bearing, study.operation, study.kinematics.model, study.film.race_friction)
     speed = sliding_speed(found.ball_spin, D)
     gamma = D * np.cos(found.contact_angle_inner.mean()) / d_m
     # The ball also pivots and its angles differ by a few degrees; the formula is for pure rolling.

@@ -325,7 +325,7 @@ def test_impacts_are_a_record_of_the_same():
 def test_elastic_creep_meets_the_spin_moment_of_the_exact_contact():
     """At the same spin the outer pivoting moment is met within 1 % by elastic creep; rigid, it is 4 % off."""
     asked = study_of("cryo")
-    state = bearing_state(asked.bearing, asked.operation, asked.kinematics, asked.film.race_friction)
+    state = bearing_state(asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction)
     tracks = race_tracks(asked.bearing, asked.film, state)
     outer = race_slope(tracks[1], TractionSettings(model=TractionModel.EXACT))
     exact = abs(outer.solution.spin_moment)
@@ -369,7 +369,7 @@ def test_a_bearing_that_turns_the_other_way_is_the_same():
     asked = study_of("cryo")
     other = replace(asked.operation, inner_speed=-asked.operation.inner_speed)
     one, two = (
-        mobility(asked.bearing, operation, asked.kinematics, asked.film, asked.traction)
+        mobility(asked.bearing, operation, asked.kinematics.model, asked.film, asked.traction)
         for operation in (asked.operation, other)
     )
     assert two.linear.rates == pytest.approx(one.linear.rates, rel=1e-6)
@@ -381,7 +381,7 @@ def test_outer_ring_rotation():
     """The outer ring turns: the ball settles, with as many positive rates."""
     asked = study_of("cryo")
     operation = replace(asked.operation, inner_speed=0.0, outer_speed=asked.operation.inner_speed)
-    found = mobility(asked.bearing, operation, asked.kinematics, asked.film, asked.traction)
+    found = mobility(asked.bearing, operation, asked.kinematics.model, asked.film, asked.traction)
     assert np.all(found.linear.rates > 0.0)
     assert 0.0 < found.linear.damping_relaxed <= found.linear.damping
 
@@ -392,7 +392,7 @@ def test_race_control_gives_the_place_and_friction_the_spin():
     control = KinematicModel.OUTER_RACE_CONTROL
     one, two = (
         mobility(asked.bearing, asked.operation, model, asked.film, asked.traction)
-        for model in (asked.kinematics, control)
+        for model in (asked.kinematics.model, control)
     )
     assert two.linear.damping == pytest.approx(one.linear.damping, rel=0.02)
 
@@ -412,6 +412,6 @@ def test_a_radial_bearing_has_no_pitch():
     asked = study_of("cryo")
     operation = replace(asked.operation, axial_load=0.0, radial_load=1000.0)
     film = replace(asked.film, material=None, thickness=None)
-    found = mobility(asked.bearing, operation, asked.kinematics, film, asked.traction).linear
+    found = mobility(asked.bearing, operation, asked.kinematics.model, film, asked.traction).linear
     assert found.damping == pytest.approx(found.damping_relaxed, rel=1e-6)
     assert found.pitch_angle == pytest.approx(0.0, abs=1e-6)

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS, format_quantity, parse
-from separatrix.study.reading import read_study, resolved, shipped_studies
+from separatrix.study.reading import read_study
+from separatrix.study.sources import resolved
+from separatrix.study.study import shipped_studies
 
 seeded = settings(derandomize=True, deadline=None, max_examples=60)
 in_a_folder = settings(seeded, suppress_health_check=[HealthCheck.function_scoped_fixture])

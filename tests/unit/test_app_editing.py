@@ -12,9 +12,10 @@ from separatrix.app.editing import edited_by
 from separatrix.app.form import form
 from separatrix.app.server import application
 from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study, shipped_studies, template
-from separatrix.study.reading.templates import template_keys
-from separatrix.study.reading.values import READERS
+from separatrix.ground.schema import is_record, keys_of
+from separatrix.study.reading import read_study
+from separatrix.study.study import Study, shipped_studies
+from separatrix.study.template import template
 
 COMMENTED = """# a study
 title = "One"   # its name
@@ -91,9 +92,17 @@ def test_a_form_sent_back_unchanged_changes_no_value(study):
 
 def test_the_form_has_every_key_of_the_records():
     """What a study file may hold can be typed in; candidates of the user's own are written in the text."""
-    shown = {(one.section, one.key) for one in template_keys()}
-    lacking = {(section, key) for section, readers in READERS.items() for key in readers} - shown
-    assert lacking == {("ranking", "candidates")}
+    shown = {
+        name for one in form(draft.Checked(text="", study=None, faults=())) for name in map(label, one.fields)
+    }
+    forms = {name: one.key.form or one.hint for name, one in keys_of(Study).items()}
+    known = {f"{name}.{key}" for name, form in forms.items() if is_record(form) for key in keys_of(form)}
+    assert shown == (known | {".title", ".extends", ".library"}) - {"ranking.candidates"}
+
+
+def label(field):
+    """Section and key of a field."""
+    return field.sent["field"]
 
 
 def test_a_wrong_unit_is_refused_beside_its_field(page):

@@ -279,7 +279,7 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
     """The resolved study repeats the tests whole, in SI, so that the file may change afterwards."""
-    from separatrix.study.reading import resolved
+    from separatrix.study.sources import resolved
 
     found = resolved(read_study(study(tmp_path)))["ranking"]
     (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
@@ -291,7 +291,7 @@ def test_a_result_holds_every_test_behind_a_friction(tmp_path):
 
 def test_a_result_holds_the_tests_of_materials_that_are_not_ranked(tmp_path):
     """The scatter is pooled over them too."""
-    from separatrix.study.reading import resolved
+    from separatrix.study.sources import resolved
 
     found = resolved(read_study(study(tmp_path, ranking='materials = ["My compound"]')))["ranking"]
     assert [test["material"] for test in found["other_tests"]] == ["Armalon"]

@@ -11,7 +11,8 @@ from separatrix.ground.schema import keys_of
 from separatrix.study import library
 from separatrix.study.library import SHIPPED_FILES, Library
 from separatrix.study.library.records import Datum, choose, contradictions
-from separatrix.study.reading import read_study, resolved
+from separatrix.study.reading import read_study
+from separatrix.study.sources import resolved
 
 DATA = files("separatrix.study.library") / "data"
 LIBRARY = Library()
@@ -129,7 +130,7 @@ def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses(
 def test_numbers_that_the_shipped_study_depends_on_have_not_moved():
     """Steel 200 GPa, 0.285, 7650 kg/m3; film 4 GPa, 0.38: another number moves every shipped answer."""
     study = read_study("cryogenic-turbopump")
-    steel, film = study.bearing.ball_material, study.film.material
+    steel, film = study.bearing.ball_material, study.film.body
     assert (steel.elastic_modulus, steel.poisson_ratio, steel.density) == (200e9, 0.285, 7650.0)
     assert (film.elastic_modulus, film.poisson_ratio) == (4e9, 0.38)
 
@@ -243,7 +244,7 @@ def test_records_beside_a_study_are_known_to_it(case):
     study = read_study(case)
     assert study.bearing.ball_material.elastic_modulus == 213e9
     assert study.bearing.ring_material.name == "440C"
-    assert study.film.material.elastic_modulus == 2e9
+    assert study.film.body.elastic_modulus == 2e9
     ours, armalon = study.ranking.candidates
     assert ours.material.elastic_modulus == 9e9
     assert ours.friction["liquid nitrogen, 440C"].count == 3
@@ -265,7 +266,7 @@ def test_a_library_is_a_file_or_a_folder_beside_the_study_or_named_by_it(tmp_pat
     (tmp_path / place).parent.mkdir()
     (tmp_path / place).write_text(OURS)
     (tmp_path / "case.toml").write_text(key + STUDY)
-    assert read_study(tmp_path / "case.toml").film.material.name == "Our film"
+    assert read_study(tmp_path / "case.toml").film.body.name == "Our film"
 
 
 def test_a_variant_knows_the_library_of_its_base(tmp_path, case):
@@ -273,7 +274,7 @@ def test_a_variant_knows_the_library_of_its_base(tmp_path, case):
     (tmp_path / "variants").mkdir()
     path = tmp_path / "variants" / "less.toml"
     path.write_text('extends = "../case.toml"\n[operation]\naxial_load = "150 daN"\n')
-    assert read_study(path).film.material.name == "Our film"
+    assert read_study(path).film.body.name == "Our film"
     assert case.exists()
 
 
@@ -286,7 +287,7 @@ def test_a_record_hides_a_shipped_one_only_if_it_says_so(tmp_path, case):
         read_study(case)
     text = text.replace('[film."PTFE transfer film"]', '[film."PTFE transfer film"]\nreplaces = true')
     (tmp_path / "materials.toml").write_text(text)
-    assert read_study(case).film.material.elastic_modulus == 2e9
+    assert read_study(case).film.body.elastic_modulus == 2e9
 
 
 def test_a_record_of_the_library_is_in_the_result_whole(case):

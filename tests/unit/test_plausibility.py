@@ -15,7 +15,8 @@ from separatrix.ranking.reason import (
     pocket_pressure,
     transmitted_force,
 )
-from separatrix.study.reading import beyond_bearings, plausible_cage_masses, read_study
+from separatrix.study.cautions import beyond_bearings, plausible_cage_masses
+from separatrix.study.reading import read_study
 from separatrix.study.study import BallBearing, Operation, PocketShape, Study
 
 SHIPPED = read_study("cryogenic-turbopump")

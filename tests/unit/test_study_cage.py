@@ -8,7 +8,8 @@ import pytest
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.present.text.answer import clearances, shown
 from separatrix.study.pocket_shape import half_play, tilt
-from separatrix.study.reading import read_study, resolved
+from separatrix.study.reading import read_study
+from separatrix.study.sources import resolved
 from separatrix.study.study import CageDesign, Guidance, Operation, PocketContact, PocketShape
 
 BASE = """\

@@ -21,7 +21,8 @@ from separatrix.study.keys import (
     value_of,
     with_values,
 )
-from separatrix.study.reading import read_study, resolved
+from separatrix.study.reading import read_study
+from separatrix.study.sources import resolved
 from separatrix.verdict.draws import sample, uncertain_inputs
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
@@ -159,10 +160,10 @@ def test_an_uncertain_clearance_moves_the_angle(study_of):
     clearance = radial_clearance(base.bearing)
     text = f'[bearing]\nradial_clearance = "{clearance * 1e6:.6f} um +- 5 %"\n'
     study = study_of(text)
-    assert study.bearing.contact_angle == pytest.approx(base.bearing.contact_angle, rel=1e-6)
+    assert study.bearing.free_angle == pytest.approx(base.bearing.free_angle, rel=1e-6)
     wider = with_values(study, {"bearing.radial_clearance": 1.05 * clearance})
-    assert math.cos(base.bearing.contact_angle) - math.cos(wider.bearing.contact_angle) == pytest.approx(
-        0.05 * (1.0 - math.cos(base.bearing.contact_angle)), rel=1e-4
+    assert math.cos(base.bearing.free_angle) - math.cos(wider.bearing.free_angle) == pytest.approx(
+        0.05 * (1.0 - math.cos(base.bearing.free_angle)), rel=1e-4
     )
 
 
@@ -172,7 +173,7 @@ def test_a_clearance_that_was_given_stays_where_the_ball_varies(study_of):
     larger = with_values(given, {"bearing.ball_diameter": 11.12e-3})
     assert radial_clearance(larger.bearing) == pytest.approx(83e-6, rel=1e-12)
     by_angle = with_values(read_study("cryogenic-turbopump"), {"bearing.ball_diameter": 11.12e-3})
-    assert by_angle.bearing.contact_angle == read_study("cryogenic-turbopump").bearing.contact_angle
+    assert by_angle.bearing.free_angle == read_study("cryogenic-turbopump").bearing.free_angle
 
 
 def test_values_are_set_together_and_become_certain(study_of):

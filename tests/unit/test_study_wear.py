@@ -13,7 +13,7 @@ from separatrix.ground.errors import InputError
 from separatrix.limits.map_records import value_in, varied
 from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
-from separatrix.study.reading.provenance import resolved
+from separatrix.study.sources import resolved
 from separatrix.study.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
 
 BAND = '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3\n'

@@ -10,6 +10,10 @@ from fractions import Fraction
 import openpyxl
 import pytest
 from minimal_xlsx import Formula, Shown, workbook
+from separatrix.study.reading.cells import COLUMNS, sheets_of
+from separatrix.study.reading.document import SECTIONS, load
+from separatrix.study.reading.templates import template_keys, template_workbook
+from separatrix.study.reading.values import READERS
 
 from separatrix.cli import main
 from separatrix.ground.errors import ValidityWarning
@@ -18,10 +22,6 @@ from separatrix.ground.units import parse
 from separatrix.present import load as load_dataset
 from separatrix.saving import write_ranking
 from separatrix.study.reading import read_study, shipped_studies
-from separatrix.study.reading.cells import COLUMNS, sheets_of
-from separatrix.study.reading.document import SECTIONS, load
-from separatrix.study.reading.templates import template_keys, template_workbook
-from separatrix.study.reading.values import READERS
 
 STUDY = """
 title = "= A title that begins like a formula"
@@ -190,7 +190,7 @@ def test_the_template_says_what_the_text_file_says(tmp_path):
             keys = [cell.value.split(".")[0] for cell in book[one.section]["A"][1:] if cell.value]
             assert one.key in keys
     known = {f"{one.section}.{one.key}" for one in template_keys()}
-    assert {"bearing.contact_angle", "film.race_friction", "cage.pocket_clearance"} < {
+    assert {"bearing.free_angle", "film.race_friction", "cage.pocket_clearance"} < {
         f"{one.section}.{one.key}" for one in template_keys() if one.is_required
     }
     assert known - {f"{s}.{k}" for s in READERS for k in READERS[s]} == {

@@ -17,7 +17,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
 from separatrix.ground.errors import DataError, InputError
-from separatrix.ground.input_files import is_inside, place, reading_only_in
+from separatrix.ground.input_files import is_inside, reading_only_in
 from separatrix.ground.messages import grouped, noted_warnings
 from separatrix.ground.reader import Document, document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
@@ -158,7 +158,7 @@ def _tested(document: Document) -> tuple[str, ...]:
             return tuple(library.friction_table(library.named("friction table", name) or name).content.rows)
         from separatrix.friction.file import read_friction
 
-        tests = read_friction(place(document.folder(("ranking", "friction")), name))
+        tests = read_friction(document.folder(("ranking", "friction")) / name)
         return tuple(dict.fromkeys(test.material for test in tests))
     except (DataError, InputError):  # refused where the study is read
         return ()

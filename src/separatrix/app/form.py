@@ -11,7 +11,8 @@ import tomlkit
 from separatrix.app.draft import Checked
 from separatrix.ground.toml import folded
 from separatrix.ground.units import UNITS
-from separatrix.study.template import ORDER, StudyKey, quantity_of, remark_of, study_keys
+from separatrix.study.study import ORDER
+from separatrix.study.template import StudyKey, quantity_of, remark_of, study_keys
 
 TESTED = ("ranking", "materials")
 """The key whose names are those of the tests that the study names."""

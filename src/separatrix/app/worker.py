@@ -194,7 +194,7 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
             return _reported(task, study, notes, compute, send)
         found = compute(verb)
         send(message="Drawing the figures and writing the files.")
-        answer = document(verb.name, found.record, found.study, grouped(notes))
+        answer = document(verb.name, found.record, found.study, grouped(notes), found.question)
         save_answer(task.folder, found.record, found.study, answer)
         if not found.is_complete:
             return INTERRUPTED

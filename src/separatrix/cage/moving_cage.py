@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -13,8 +12,8 @@ import numpy as np
 from separatrix.cage.disturbance import free_leads
 from separatrix.chain.ball_traction import BallTraction, FreeBall
 from separatrix.chain.restitution import hertz_coefficient_for
-from separatrix.ground import bounds as _check
 from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.schema import Fault, Faults, between, check, key, not_negative, positive, record
 from separatrix.ground.units import (
     Kilogram,
     KilogramMetre,
@@ -45,7 +44,12 @@ LEVER: Metre = 1e-9
 """Distance of the friction from the centre of a ball whose diameter is not given: as good as none."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+_SAME = cage_design.POCKET_AND_LAND
+_SIZE, _AMOUNT, _RADIUS = positive(1e-30, 1e12), between(0.0, 1e12), positive(1e-9, 1e3)
+_TURNS, _SPEEDS = between(-1e7, 1e7), between(-1e12, 1e12)
+
+
+@record
 class MovingCage:
     """A cage among balls that the races guide, moving in the bearing plane or in space.
 
@@ -58,92 +62,104 @@ class MovingCage:
         A size is not finite or has the wrong sign, or sizes contradict each other.
     """
 
-    mass: Kilogram  # M
-    moment_of_inertia: KilogramMetre2  # J about the bearing axis; a thin ring has M R^2
-    transverse_inertia: KilogramMetre2 | None = None  # about a diameter; None: that of a thin ring, J/2
-    ball_count: int
-    pitch_radius: Metre  # R, where balls and pockets meet
-    cage_speed: RadianPerSecond  # Omega of the ball set
-    inner_speed: RadianPerSecond
-    outer_speed: RadianPerSecond
-    motion: MotionModel = MotionModel.PLANE
-    pocket_clearance: Metre  # along the circumference, stop to stop, 2 c_p; 0: gripped from both sides
-    ball_cage_stiffness: NewtonPerMetre  # k_BC, in series with race_damping
+    mass: Kilogram = key(_SIZE)  # M
+    moment_of_inertia: KilogramMetre2 = key(
+        positive(1e-30, 1e12)
+    )  # J about the bearing axis; a thin ring has M R^2
+    transverse_inertia: KilogramMetre2 | None = key(
+        positive(1e-30, 1e12), default=None
+    )  # about a diameter; None: that of a thin ring, J/2
+    ball_count: int = key(between(1, 1000))
+    pitch_radius: Metre = key(_SIZE)  # R, where balls and pockets meet
+    cage_speed: RadianPerSecond = key(_TURNS)  # Omega of the ball set
+    inner_speed: RadianPerSecond = key(_TURNS)
+    outer_speed: RadianPerSecond = key(_TURNS)
+    motion: MotionModel = key(default=MotionModel.PLANE)
+    pocket_clearance: Metre = key(
+        not_negative(10.0)
+    )  # along the circumference, stop to stop, 2 c_p; 0: gripped from both sides
+    ball_cage_stiffness: NewtonPerMetre = key(_SIZE)  # k_BC, in series with race_damping
     race_damping: NewtonSecondPerMetre  # C_mu; infinite: a ball gripped by its races
-    ball_cage_friction: Ratio  # f_BC
-    ball_spin: Annotated[tuple[RadianPerSecond, ...], ("axis",)] | None = None
+    ball_cage_friction: Ratio = key(_AMOUNT)  # f_BC
+    ball_spin: Annotated[tuple[RadianPerSecond, ...], ("axis",)] | None = key(
+        between(-1e12, 1e12), default=None
+    )
     """Spin of a ball relative to its orbit: along the axis, outward, and along the orbit. None: about the
     axis, so fast that it alone decides where friction acts."""
-    ball_diameter: Metre = 0.0  # friction acts at half of it from the ball's centre; 0: at the centre
+    ball_diameter: Metre = key(
+        between(0.0, 1e12), default=0.0
+    )  # friction acts at half of it from the ball's centre; 0: at the centre
     traction: BallTraction | None = None  # of a ball of one state; None: the paper's damper
     free_ball: FreeBall | None = None  # of a ball whose three spins are states too
-    guidance: Guidance = Guidance.BALL
-    land_clearance: Metre | None = None  # diametral
-    land_friction: Ratio = 0.1
-    land_stiffness: NewtonPerMetre = 1e7  # of each land
-    land_restitution: Ratio = 0.5
-    land_count: int = 1
+    guidance: Guidance = key(default=Guidance.BALL)
+    land_clearance: Metre | None = key(positive(1e-9, 10.0), default=None)  # diametral
+    land_friction: Ratio = key(_AMOUNT, default=0.1)
+    land_stiffness: NewtonPerMetre = key(_SIZE, default=1e7)  # of each land
+    land_restitution: Ratio = _SAME["land_restitution"]()
+    land_count: int = _SAME["land_count"]()
     land_spacing: Metre | None = None  # between the middles of two lands
-    land_width: Metre = 0.0
-    land_radius: Metre | None = None  # where friction acts; None: at the pitch radius
-    land_out_of_round: Metre = 0.0  # amplitude of the lobes of the cage's land
-    land_lobes: int = 2
-    unbalance: KilogramMetre = 0.0  # mass times eccentricity
-    dynamic_unbalance: Radian = 0.0  # between the axis of the cage and its principal axis
-    gravity: MetrePerSecond2 = 0.0  # across the bearing axis, along azimuth 0, fixed in space
-    axial_gravity: MetrePerSecond2 = 0.0
-    added_mass: Kilogram = 0.0  # of the fluid that moves with the cage across the axis
-    pocket_shape: PocketShape = PocketShape.SQUARE
-    pocket_axial_clearance: Metre | None = None  # along the axis, stop to stop, of an elongated pocket
-    pocket_axial_offset: Metre = 0.0  # of the cage from the balls' plane; in space at the start
-    hertz_coefficient: NewtonPerMetre1_5 | None = None  # K of N = K approach^1.5; None: linear contact
-    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = ()  # of ball and pocket; empty: even
-    pocket_spacing_scatter: Ratio = 0.0  # of the pitch, uniform, of a pocket with its ball
-    ball_diameter_scatter: Metre = 0.0  # standard deviation, normal, cut at 3
-    pocket_position_scatter: Metre = 0.0  # along the circumference, the same
+    land_width: Metre = key(_AMOUNT, default=0.0)
+    land_radius: Metre | None = key(
+        positive(1e-9, 1e3), default=None
+    )  # where friction acts; None: at the pitch radius
+    land_out_of_round: Metre = _SAME["land_out_of_round"]()  # amplitude of the lobes of the cage's land
+    land_lobes: int = _SAME["land_lobes"]()
+    unbalance: KilogramMetre = key(_AMOUNT, default=0.0)  # mass times eccentricity
+    dynamic_unbalance: Radian = key(
+        between(0.0, 0.1), default=0.0
+    )  # between the axis of the cage and its principal axis
+    gravity: MetrePerSecond2 = key(
+        between(0.0, 1e12), default=0.0
+    )  # across the bearing axis, along azimuth 0, fixed in space
+    axial_gravity: MetrePerSecond2 = key(between(-1e6, 1e6), default=0.0)
+    added_mass: Kilogram = key(
+        between(0.0, 1e12), default=0.0
+    )  # of the fluid that moves with the cage across the axis
+    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
+    pocket_axial_clearance: Metre | None = _SAME[
+        "pocket_axial_clearance"
+    ]()  # along the axis, stop to stop, of an elongated pocket
+    pocket_axial_offset: Metre = _SAME[
+        "pocket_axial_offset"
+    ]()  # of the cage from the balls' plane; in space at the start
+    hertz_coefficient: NewtonPerMetre1_5 | None = key(
+        positive(1e-3, 1e18), default=None
+    )  # K of N = K approach^1.5; None: linear contact
+    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = key(
+        default=()
+    )  # of ball and pocket; empty: even
+    pocket_spacing_scatter: Ratio = _SAME[
+        "pocket_spacing_scatter"
+    ]()  # of the pitch, uniform, of a pocket with its ball
+    ball_diameter_scatter: Metre = _SAME["ball_diameter_scatter"]()  # standard deviation, normal, cut at 3
+    pocket_position_scatter: Metre = _SAME["pocket_position_scatter"]()  # along the circumference, the same
     groove_damping: NewtonSecondPerMetre = math.inf  # of a ball pushed along its grooves; infinite: held
-    groove_stiffness: NewtonPerMetre = 0.0
-    pivot_speed: MetrePerSecond = 0.0  # sliding below which pivoting lowers the friction of pocket and land
-    inner_radius: Metre | None = None  # of the cage, between which its pockets have walls; None: no edge
-    outer_radius: Metre | None = None
-    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()
+    groove_stiffness: NewtonPerMetre = key(_AMOUNT, default=0.0)
+    pivot_speed: MetrePerSecond = key(
+        between(0.0, 1e12), default=0.0
+    )  # sliding below which pivoting lowers the friction of pocket and land
+    inner_radius: Metre | None = key(
+        positive(1e-9, 1e3), default=None
+    )  # of the cage, between which its pockets have walls; None: no edge
+    outer_radius: Metre | None = key(_RADIUS, default=None)
+    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(
+        between(-1e12, 1e12), default=()
+    )
     """A_h: a free ball at azimuth p, fixed in space and 0 along the radial load, is faster than the ball set
     by the sum of A_h cos h p + B_h sin h p over h = 1, 2, ..."""
-    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = ()  # B_h
-    ramp_time: Second = 0.0  # in which all speeds rise in proportion to time; 0: no ramp
-    ramp_start: Ratio = 0.1  # share of the speeds at its start
-    axial_kick: Ratio = 0.0  # share of a disturbance along the axis, in space
-    tilt_kick: Ratio = 0.0  # at the rim by tilting
+    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(
+        between(-1e12, 1e12), default=()
+    )  # B_h
+    ramp_time: Second = key(
+        not_negative(1e4), default=0.0
+    )  # in which all speeds rise in proportion to time; 0: no ramp
+    ramp_start: Ratio = key(between(0.0, 1.0, open_low=True), default=0.1)  # share of the speeds at its start
+    axial_kick: Ratio = key(
+        between(0.0, 1e12), default=0.0
+    )  # share of a disturbance along the axis, in space
+    tilt_kick: Ratio = key(_AMOUNT, default=0.0)  # at the rim by tilting
     is_tilt_held: bool = False  # the cage may not tilt
     is_axially_held: bool = False  # it may not move along the axis
-
-    def __post_init__(self) -> None:
-        _check.settle(
-            *(_check.positive(self, name, 1e-30, 1e12) for name in _POSITIVE),
-            *(_check.between(self, name, 0.0, 1e12) for name in _NOT_NEGATIVE),
-            *(_check.between(self, name, -1e7, 1e7) for name in ("cage_speed", "inner_speed", "outer_speed")),
-            _check.whole(self, "ball_count", 1, 1000),
-            _check.positive(self, "transverse_inertia", 1e-30, 1e12),
-            _check.positive(self, "hertz_coefficient", 1e-3, 1e18),
-            _check.not_negative(self, "ramp_time", 1e4),
-            _check.between(self, "ramp_start", 0.0, 1.0, open_low=True),
-            _check.between(self, "axial_gravity", -1e6, 1e6),
-            _check.between(self, "dynamic_unbalance", 0.0, 0.1),
-            *(
-                _check.positive(self, name, 1e-9, 1e3)
-                for name in ("land_radius", "inner_radius", "outer_radius")
-            ),
-            *cage_design.pocket_and_land_fields(self),
-            _refused_damping(self),
-            *(_refused_speeds(self, name) for name in ("orbital_cosines", "orbital_sines", "ball_spin")),
-        )
-        _check.settle(
-            _refused_land(self),
-            _refused_orbits(self),
-            _refused_body(self),
-            cage_design.angles_for(self, self.ball_count),
-            *cage_design.together(self, hertz=self.hertz_coefficient is not None),
-        )
 
     @property
     def is_in_space(self) -> bool:
@@ -227,13 +243,6 @@ class MovingCage:
         return speeds.get(self.guidance, self.cage_speed)
 
 
-_POSITIVE = ("mass", "moment_of_inertia", "pitch_radius", "ball_cage_stiffness", "land_stiffness")
-_NOT_NEGATIVE = (
-    "ball_cage_friction", "land_friction", "unbalance", "gravity", "ball_diameter", "land_width",
-    "added_mass", "groove_stiffness", "pivot_speed", "axial_kick", "tilt_kick",
-)  # fmt: skip
-
-
 def turned_forward(cage: MovingCage) -> MovingCage:
     """Return the cage, or its mirror image where its ball set turns backward.
 
@@ -255,62 +264,84 @@ def turned_forward(cage: MovingCage) -> MovingCage:
     )
 
 
-def _refused_damping(cage: MovingCage) -> Iterator[InputError]:
+cage_design.share_rules(MovingCage)
+
+
+@check(MovingCage)
+def _dampings_are_above_zero(
+    race_damping: NewtonSecondPerMetre, groove_damping: NewtonSecondPerMetre
+) -> Faults:
     """C_mu must be above zero; it may be infinite, where the races grip the balls (eta = 1)."""
-    if cage.race_damping != math.inf:
-        yield from _check.positive(cage, "race_damping", 1e-12, 1e12)
-    if not cage.groove_damping > 0.0:
-        yield _check.problem(cage, "groove_damping", "must be > 0")
+    if race_damping != math.inf and (rule := positive(1e-12, 1e12).rule(race_damping, "N s/m")):
+        yield Fault("race_damping", rule)
+    if not groove_damping > 0.0:
+        yield Fault("groove_damping", "must be > 0")
 
 
-def _refused_land(cage: MovingCage) -> Iterator[InputError]:
-    """A guided cage needs a clearance on its land, and two lands in space a distance."""
-    if cage.guidance is Guidance.BALL:
-        return
-    cure = 'Give the diametral clearance, or guidance = "ball" for a cage without a land.'
-    if cage.land_clearance is None:
-        yield _check.problem(cage, "land_clearance", "is missing", cure)
-    else:
-        yield from _check.positive(cage, "land_clearance", 1e-9, 10.0, hint=cure)
+@check(MovingCage)
+def _land_has_a_clearance(guidance: Guidance, land_clearance: Metre | None) -> Faults:
+    if guidance is not Guidance.BALL and land_clearance is None:
+        cure = 'Give the diametral clearance, or guidance = "ball" for a cage without a land.'
+        yield Fault("land_clearance", "is missing", cure)
 
 
-def _refused_speeds(cage: MovingCage, field: str) -> Iterator[InputError]:
-    """Each speed is a number."""
-    unit = "rad/s" if field == "ball_spin" else "m/s"
-    wrong = [v for v in getattr(cage, field) or () if not _check.is_number(v) or not -1e12 <= v <= 1e12]
-    if wrong:
-        yield InputError(f"MovingCage.{field}", f"must each be a finite number [{unit}]", f"{wrong[0]!s:.40}")
-
-
-def _refused_orbits(cage: MovingCage) -> Iterator[InputError]:
-    """Cosines and sines come in pairs, and only a set that turns brings its balls back to where they were."""
-    if len(cage.orbital_cosines) != len(cage.orbital_sines):
-        rule = f"must be as many as orbital_cosines, {len(cage.orbital_cosines)}"
-        yield InputError("MovingCage.orbital_sines", rule, str(len(cage.orbital_sines)))
-    elif cage.orbital_cosines and cage.cage_speed == 0.0:
+@check(MovingCage)
+def _harmonics_come_in_pairs(
+    orbital_cosines: tuple[float, ...], orbital_sines: tuple[float, ...], cage_speed: RadianPerSecond
+) -> Faults:
+    """Only a ball set that turns brings its balls back to where they were."""
+    count = len(orbital_cosines)
+    if count != len(orbital_sines):
+        got = str(len(orbital_sines))
+        yield Fault("orbital_sines", f"must be as many as orbital_cosines, {count}", got=got)
+    elif orbital_cosines and cage_speed == 0.0:
         rule = "must be empty for a ball set at rest: its balls would run apart"
-        got = str(len(cage.orbital_cosines))
-        yield InputError("MovingCage.orbital_cosines", rule, got, "Give the cage's speed.")
+        yield Fault("orbital_cosines", rule, "Give the cage's speed.", str(count))
 
 
-def _refused_body(cage: MovingCage) -> Iterator[InputError]:
-    """An inertia that no body can have, a spin without three parts, a ring that does not hold its balls."""
-    if cage.ball_spin is not None and len(cage.ball_spin) != 3:
-        yield InputError("MovingCage.ball_spin", "must be three numbers [rad/s]", str(len(cage.ball_spin)))
-    if cage.moment_of_inertia > 2.0 * cage.transverse * (1.0 + 1e-9):
-        rule = f"must be at least half that about the axis, {cage.moment_of_inertia / 2.0:.4g} [kg m2]"
-        cure = "A flat ring has half of it, a long one more; no body has less."
-        yield _check.problem(cage, "transverse_inertia", rule, cure)
-    inner, outer = cage.inner_radius or 0.0, cage.outer_radius or math.inf
-    if inner >= outer:
-        yield _check.problem(cage, "outer_radius", "must be larger than inner_radius")
+@check(MovingCage)
+def _one_angle_a_ball(pocket_angles: tuple[float, ...], ball_count: int) -> Faults:
+    if pocket_angles and len(pocket_angles) != ball_count:
+        rule = f"must hold one angle for each of the {ball_count} balls"
+        cure = "Leave it out for evenly spaced pockets."
+        yield Fault("pocket_angles", rule, cure, str(len(pocket_angles)))
+
+
+@check(MovingCage)
+def _spin_has_three_parts(ball_spin: tuple[float, ...]) -> Faults:
+    if len(ball_spin) != 3:
+        yield Fault("ball_spin", "must be three numbers [rad/s]", got=str(len(ball_spin)))
+
+
+@check(MovingCage)
+def _hertz_needs_a_clearance(hertz_coefficient: float, pocket_clearance: Metre) -> Faults:
+    if hertz_coefficient and pocket_clearance == 0.0:
+        rule = "must be > 0 with Hertz contact, whose stiffness begins at zero at the first touch"
+        yield Fault("pocket_clearance", rule, "Give the clearance, or linear contact.")
+
+
+@check(MovingCage)
+def _body_that_can_be(moment_of_inertia: KilogramMetre2, transverse_inertia: KilogramMetre2) -> Faults:
+    if moment_of_inertia > 2.0 * transverse_inertia * (1.0 + 1e-9):
+        rule = f"must be at least half that about the axis, {moment_of_inertia / 2.0:.4g} [kg m2]"
+        yield Fault(
+            "transverse_inertia", rule, "A flat ring has half of it, a long one more; no body has less."
+        )
+
+
+@check(MovingCage)
+def _walls_reach_the_balls(
+    inner_radius: Metre | None, outer_radius: Metre | None, cage: MovingCage
+) -> Faults:
+    if (inner_radius or 0.0) >= (outer_radius or math.inf):
+        yield Fault("outer_radius", "must be larger than inner_radius")
     outward, inward = cage.wall_margins
     lost = "The walls of its pockets do not reach the balls."
     if outward <= 0.0:
-        yield _check.problem(cage, "inner_radius", f"must be < {cage.pitch_radius:.4g} [m]", lost)
+        yield Fault("inner_radius", f"must be < {cage.pitch_radius:.4g} [m]", lost)
     if inward <= 0.0:
         least = math.hypot(cage.pitch_radius, (cage.ball_diameter + cage.pocket_clearance) / 2.0)
-        yield _check.problem(cage, "outer_radius", f"must be > {least:.4g} [m]", lost)
+        yield Fault("outer_radius", f"must be > {least:.4g} [m]", lost)
 
 
 def _sign(value: float) -> int:
@@ -400,7 +431,8 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
 _OF_THE_CHAIN = {
     "mass", "moment_of_inertia", "transverse_inertia", "ball_cage_stiffness", "ball_cage_friction",
 }  # fmt: skip
-_AS_DESIGNED = {one.name for one in fields(CageDesign)} & set(MovingCage.__slots__) - _OF_THE_CHAIN
+_OWN = {one.name for one in fields(MovingCage)} - _OF_THE_CHAIN
+_AS_DESIGNED = _OWN & {one.name for one in fields(CageDesign)}
 """Fields that the moving cage has as its design states them."""
 
 

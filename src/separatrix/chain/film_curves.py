@@ -89,7 +89,7 @@ def wear_curve(solution: Solution) -> WearCurve | None:
 def exact_films(solution: Solution) -> ExactFilms | None:
     """Vary the thickness of the study's film, not worn; None unless its model is the exact contact."""
     film = solution.study.film
-    if film.material is None or solution.study.traction.model is TractionModel.STRIPS:
+    if film.body is None or solution.study.traction.model is TractionModel.STRIPS:
         return None
     bare = Film(race_friction=film.race_friction)
     films = [replace(film, thickness=h, wear=None) if h > 0.0 else bare for h in EXACT_THICKNESSES]

@@ -103,7 +103,7 @@ def compare_models(solution: Solution) -> ModelComparison:
 
 def _strain(track: RaceTrack, pressure: Pascal) -> Ratio:
     """Compression of the film by a pressure over its thickness; 0 without a film."""
-    material = track.film.material
+    material = track.film.body
     if material is None:
         return 0.0
     return pressure / exact.solid(material.elastic_modulus, material.poisson_ratio).compression_modulus

@@ -141,7 +141,7 @@ def contact_radius(force: Newton, hertz_coefficient: NewtonPerMetre1_5, ball_dia
 
 def names_of_fluid(study: Study) -> tuple[str, ...]:
     """The fluid as the study writes it, and its other names in the library: tests may have any of them."""
-    record = study.records.get("operation.fluid")
+    record = study.fluid
     known = (record["name"], *(record["aliases"] or ())) if record is not None else ()
     return tuple(filter(None, (study.operation.fluid, *known)))
 

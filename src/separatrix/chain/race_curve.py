@@ -77,7 +77,7 @@ def strips(
 ) -> TractionCurve:
     """Traction curve by strips."""
     film, ellipse = track.film, track.ellipse
-    if pressure is ContactPressure.COATED and film.material is not None and not track.is_idle:
+    if pressure is ContactPressure.COATED and film.body is not None and not track.is_idle:
         ellipse = coated_ellipse(track)
     friction, compliance = track_of(film, track.race, ellipse.semi_major)
     return traction_curve(
@@ -95,8 +95,8 @@ def contact_problem(track: RaceTrack, settings: TractionSettings) -> exact.Conta
     film = track.film
     ball, ring = (exact.solid(m.elastic_modulus, m.poisson_ratio) for m in (track.ball, track.ring))
     layers: tuple[exact.Layer, ...] = ()
-    if film.material is not None and film.thickness is not None and not track.is_worn:
-        coat = exact.solid(film.material.elastic_modulus, film.material.poisson_ratio)
+    if film.body is not None and film.thickness is not None and not track.is_worn:
+        coat = exact.solid(film.body.elastic_modulus, film.body.poisson_ratio)
         layers = (exact.Layer(thickness=film.thickness, solid=coat),)
     friction, compliance = track_of(film, track.race, track.ellipse.semi_major)
     return exact.ContactProblem(

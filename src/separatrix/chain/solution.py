@@ -47,8 +47,9 @@ from separatrix.ground.units import (
     NewtonPerMetre,
     Ratio,
 )
+from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
-from separatrix.study.candidates import NAMELESS, cage_candidate, environment_of
+from separatrix.study.candidates import cage_candidate, environment_of
 from separatrix.study.study import (
     CageDesign,
     Candidate,
@@ -108,7 +109,9 @@ class Solution:
             A contact leaves what races bear or what the model holds: `contact_limits`.
         """
         asked = self.study
-        state = bearing_state(asked.bearing, asked.operation, asked.kinematics, asked.film.race_friction)
+        state = bearing_state(
+            asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction
+        )
         for sentence in state.notes:
             warnings.warn(sentence, ValidityWarning, stacklevel=2)
         return state
@@ -125,7 +128,9 @@ class Solution:
         asked = self.study
         require_rolling(asked)
         _ = self.bearing  # its warnings
-        return race_traction(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        return race_traction(
+            asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction
+        )
 
     @cached_property
     def slopes(self) -> RaceSlopes:
@@ -133,7 +138,7 @@ class Solution:
         asked = self.study
         require_rolling(asked)
         _ = self.bearing  # its warnings
-        return race_slopes(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        return race_slopes(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @property
     def stated_design(self) -> CageDesign:
@@ -236,20 +241,20 @@ class Solution:
         _ = self.bearing  # its warnings
         if asked.film.wear is not None:
             warnings.warn(WORN_MOBILITY, ValidityWarning, stacklevel=2)
-        return mobility(asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        return mobility(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @cached_property
     def free_ball(self) -> tuple[FreeBall, tuple[float, float, float]]:
         """The most loaded ball with its slip fields, and its spin, in a bearing that turns forward."""
         asked, rates = self.study, self.mobility.linear.rates
-        records = (asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
         return free_ball(*records, float(np.abs(rates).max()))
 
     @cached_property
     def impacts(self) -> Impacts:
         """Restitution of impacts of the cage on the most loaded ball against their speed."""
         asked, found, law = self.study, self.restitution, self.mobility.traction
-        records = (asked.bearing, asked.operation, asked.kinematics, asked.film, asked.traction)
+        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
         return impacts(
             held_ball(*records, SlipLaw.ELASTIC),
             law,
@@ -262,12 +267,12 @@ class Solution:
     @cached_property
     def lubrication(self) -> LubricationCurve | None:
         """Restitution factor against film thickness and race friction; None without a film material."""
-        if self.study.film.material is None:
+        if self.study.film.body is None:
             return None
         return lubrication_curve(
             self.bearing.inner,
             self.bearing.outer,
-            self.study.film.material,
+            self.study.film.body,
             ball_cage_stiffness=self.ball_cage_stiffness,
             cage_mass=self.inertia.mass,
         )

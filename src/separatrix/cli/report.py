@@ -62,7 +62,7 @@ def report(
     """Write the report of a study, of a folder, or of two answers, and return the exit status."""
     to, compute = folder(out), partial(computed_with_progress, question={}, quiet=quiet, jobs=threads(jobs))
     from separatrix.reporting.formats import typesetter, write
-    from separatrix.study.reading import shipped_studies
+    from separatrix.study.study import shipped_studies
 
     if pdf:
         if json and to is None:
@@ -145,18 +145,19 @@ def _of_folder(folder: Path, compute: Compute) -> Report:
 
 
 def _read_back(document: Document, where: str) -> Study | None:
-    """Return the study of an answer, from the files that it keeps; None where they have another one."""
-    from separatrix.cli.saved_answers import restored_study
+    """Return the study of an answer, from what it keeps; None where that has another one."""
+    from separatrix.cli.saved_answers import kept_by
     from separatrix.comparing.saved import Saved
     from separatrix.present import plain
-    from separatrix.study.reading import resolved
+    from separatrix.study.reading import study_again
+    from separatrix.study.sources import resolved
 
-    saved = Saved(path=where, verb=str(document["verb"]), document=document)
     try:
-        with noted_warnings(), restored_study(saved) as (study, _, _):
-            return study if plain(resolved(study), "study") == document["study"] else None
-    except InputError:  # it keeps no files, or those of another version
+        kept = kept_by(Saved(path=where, verb=str(document["verb"]), document=document))
+        study = study_again(kept["study"])
+    except InputError:  # it keeps no study, or that of another version
         return None
+    return study if plain(resolved(study), "study") == document["study"] else None
 
 
 def _of_two(asked: tuple[str, str], compute: Compute, *, writes: bool) -> Report | None:
@@ -171,7 +172,7 @@ def _of_two(asked: tuple[str, str], compute: Compute, *, writes: bool) -> Report
 def _read_side(asked: str) -> dict[str, Saved] | tuple[Study, list[str]]:
     """Return the answers of one of two by verb, or its study with what was noted."""
     from separatrix.comparing.saved import ENDINGS, read_answers
-    from separatrix.study.reading import shipped_studies
+    from separatrix.study.study import shipped_studies
 
     path = Path(asked)
     kept = path.suffix.casefold() in ENDINGS or (path.is_dir() and asked not in shipped_studies())

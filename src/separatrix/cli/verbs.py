@@ -212,7 +212,7 @@ def _deliver(
     """Write the answer, then the files, which take as long again, and print where they are."""
     from separatrix.present import document, in_words, whereabouts
 
-    made = document(verb.name, found.record, found.study, notes)
+    made = document(verb.name, found.record, found.study, notes, found.question)
     if json:
         answer_json(made)
     else:

@@ -18,7 +18,6 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from separatrix.ground import toml
 from separatrix.ground.errors import InputError, together
-from separatrix.ground.input_files import place
 from separatrix.ground.schema import (
     Described,
     Fault,
@@ -53,7 +52,7 @@ class Helper(Protocol):
     def number(self, raw: object, unit: str, one: Described) -> tuple[float, object]:
         """Number of a quantity or, with an empty unit, whole one; and its distribution, None if certain."""
 
-    def named(self, raw: object, one: Described, path: KeyPath, reading: Reading) -> Any:
+    def named(self, raw: object, one: Described, reading: Reading) -> Any:
         """Record of a library that a text names, or None if the value is not a name."""
 
 
@@ -95,6 +94,20 @@ class Document(NamedTuple):
     notes: tuple[str, ...] = ()
     chain: tuple[tuple[Path, Mapping[str, Any]], ...] = ()
     """The file and those that it extends, each with its own content."""
+
+    files: dict[str, str] = {}  # noqa: RUF012 - of a named tuple; `document_of` gives each its own
+    """Texts of the files that values name, by these names: as they are read, or as an answer kept them."""
+
+    is_kept: bool = False
+
+    def file(self, path: KeyPath, name: str, kind: toml.Kind) -> str | None:
+        """Text of the file that a key names; None if there is no such file."""
+        if not self.is_kept:
+            found = self.folder(path) / name
+            if not isfile(found):
+                return None
+            self.files[name] = toml.read_text(found, kind)
+        return self.files.get(name)
 
     def folder(self, path: KeyPath) -> Path:
         """Folder of the file that gives a key."""
@@ -183,14 +196,14 @@ def document_of(schema: type, path: Path, above: tuple[Path, ...] = ()) -> Docum
     folders = {(): path.parent}
     for name, one in document.data.items():
         folders |= {(name, key): path.parent for key in one} if isinstance(one, dict) else {}
-    document = document._replace(folders=folders, chain=((path, document.data),))
+    document = document._replace(folders=folders, chain=((path, document.data),), files={})
     if "extends" not in document.data or "extends" not in keys_of(schema):
         return document
     where, base = f"{document.place(('extends',))}: extends", document.data["extends"]
-    shipped = kind.shipped()
+    shipped: Mapping[str, Path] = kind.shipped()
     if not isinstance(base, str):
         raise InputError(where, "must be a path or the name of a shipped example", shown(base))
-    beside_it = place(path.parent, base)
+    beside_it = path.parent / base
     target = beside_it if base and isfile(beside_it) else shipped.get(base)
     if target is None:
         cure = toml.nearest(base, shipped).replace("Known:", "Shipped examples:")
@@ -221,8 +234,8 @@ def _over(schema: type, base: Document, variant: Document) -> Document:
     places = {path: where for path, where in base.places.items() if path not in hidden}
     return variant._replace(
         data=data,
-        places=places | variant.places,
-        folders=base.folders | variant.folders,
+        places={**places, **variant.places},
+        folders={**base.folders, **variant.folders},
         notes=base.notes + variant.notes,
         chain=variant.chain + base.chain,
     )
@@ -383,7 +396,7 @@ class Reading:
         if hint is bool:
             return toml.truth(raw, "")
         if one.key.named and self.helper is not None:
-            found = self.helper.named(raw, one, path, self)
+            found = self.helper.named(raw, one, self)
             if found is not None:
                 return found
         if is_record(hint):

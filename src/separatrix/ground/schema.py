@@ -171,12 +171,14 @@ class Key:
     """Record of the keys that a file has, where `read` makes another of it."""
 
 
-def key(bound: Bound | None = None, *, default: Any = MISSING, **properties: Any) -> Any:
+def key(
+    bound: Bound | None = None, *, default: Any = MISSING, compare: bool = True, **properties: Any
+) -> Any:
     """Field of a record that is a key of a file; its keywords are those of `Key`."""
     metadata = {"key": Key(bound=bound, **properties)}
     if default == {}:
-        return field(default_factory=dict, metadata=metadata)
-    return field(default=default, metadata=metadata)
+        return field(default_factory=dict, metadata=metadata, compare=compare)
+    return field(default=default, metadata=metadata, compare=compare)
 
 
 _CHECKS: dict[type, list[tuple[Check, tuple[Check, ...]]]] = {}

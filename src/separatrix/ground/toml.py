@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.input_files import note, size_of, unreadable
+from separatrix.ground.input_files import size_of, unreadable
 from separatrix.ground.units import NUMBER, missing_unit, parse, printable, shown
 
 Made = TypeVar("Made")
@@ -207,7 +207,6 @@ def read_text(path: Path, kind: Kind = STUDY) -> str:
         raise unreadable(path_text(path), error) from None
     if len(raw) > kind.most_bytes:
         raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
-    note(path, raw)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

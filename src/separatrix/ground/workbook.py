@@ -26,7 +26,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from separatrix.ground.bounds import is_number
 from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.input_files import note, size_of, unreadable
+from separatrix.ground.input_files import size_of, unreadable
 from separatrix.ground.reader import Document
 from separatrix.ground.schema import Described, is_record, keys_of, without_none, without_unit
 from separatrix.ground.sheet import SAVE_AGAIN, refuse_unsafe
@@ -130,9 +130,7 @@ def sheets_of(path: Path, label: str, is_whole: Callable[[str], bool]) -> list[S
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # on parts of the workbook that are not read
-            content = path.read_bytes()
-            note(path, content)
-            reader = ExcelReader(BytesIO(content), True, data_only=True)
+            reader = ExcelReader(BytesIO(path.read_bytes()), True, data_only=True)
             reader.read()
             parts = {sheet.name: relation.target for sheet, relation in reader.parser.find_sheets()}
             if absent := [name for name, part in parts.items() if part not in reader.valid_files]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from separatrix.ground.errors import InputError
+from separatrix.ground.schema import keys_of
 from separatrix.ground.units import Metre, MetrePerSecond, Newton, PerSecond, Ratio, Rows, Second
-from separatrix.study.keys import RADIAL_CLEARANCE, SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
+from separatrix.study.keys import SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
 from separatrix.study.study import Film, Study, Wear
 from separatrix.verdict.judgement import Verdict
 
@@ -17,8 +18,7 @@ RACE_FRICTION = "film.race_friction"
 THICKNESS = "film.thickness"  # of a film; a map may begin at 0, where the races are bare
 SHORT = {"cage.ball_cage_friction": FRICTION}  # so that one parameter has one name
 LONG = {name: key for key, name in SHORT.items()}
-_MADE = {RADIAL_CLEARANCE: "m", "film.elastic_modulus": "Pa", "film.poisson_ratio": "-"}
-"""Keys of a study file that have another name in its records, and their units."""
+_OF_FILM = ("film.elastic_modulus", "film.poisson_ratio")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Parameter:
 
 def parameters() -> dict[str, Parameter]:
     """Every parameter a map can vary, by name."""
-    names = {RESTITUTION: "-", FRICTION: "-", KICK: "m/s"} | _MADE
+    names = {RESTITUTION: "-", FRICTION: "-", KICK: "m/s"}
     for section, record in SECTIONS.items():
         names |= {f"{section}.{key}": unit for key, unit in numbers_of(record).items()}
     names |= {f"film.wear.{key}": unit for key, unit in numbers_of(Wear).items()}
@@ -47,8 +47,8 @@ def parameters() -> dict[str, Parameter]:
 def other_keys() -> list[str]:
     """Keys of a study that no map can vary: texts, lists, and how the ensemble is drawn."""
     known = parameters()
-    keys = [f"{section}.{f.name}" for section, record in SECTIONS.items() for f in fields(record)]
-    return [*(key for key in keys if key not in known and key not in SHORT), "kinematics.model"]
+    keys = [f"{section}.{name}" for section, record in SECTIONS.items() for name in keys_of(record)]
+    return [key for key in keys if key not in known and key not in SHORT]
 
 
 def varied(study: Study, values: Mapping[str, float]) -> Study:
@@ -60,7 +60,7 @@ def varied(study: Study, values: Mapping[str, float]) -> Study:
     keys = {LONG.get(name, name): value for name, value in values.items() if name not in (RESTITUTION, KICK)}
     for key in keys:
         section = key.partition(".")[0]
-        if section == "film" and key in _MADE and study.film.material is None:
+        if key in _OF_FILM and study.film.body is None:
             raise InputError("[film]", "has no material whose properties could vary")
         if key.startswith("film.wear.") and study.film.wear is None:
             raise InputError("[film]", "has no wear that could vary")

@@ -37,7 +37,7 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
     `reason` beside it.
     """
     from separatrix import __version__
-    from separatrix.study.reading import provenance_of, resolved
+    from separatrix.study.sources import resolved
 
     data = to_xarray(answer)
     data.attrs |= {
@@ -48,7 +48,6 @@ def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr
         "study": json.dumps(plain(resolved(study), "study")),
         "seed": study.stability.seed,
         "warnings": json.dumps(all_notes(answer, notes)),
-        "provenance": json.dumps(plain(provenance_of(study, verb), "provenance")),
     }
     return data
 

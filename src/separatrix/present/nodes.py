@@ -133,7 +133,13 @@ class NotFiniteError(SeparatrixError, ArithmeticError):
     """A record has a NaN or an infinity where a number is due."""
 
 
-def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]) -> Document:
+def document(
+    verb: str,
+    answer: object,
+    asked: study.Study,
+    notes: Sequence[str],
+    question: Mapping[str, object] | None = None,
+) -> Document:
     """Return an answer as plain data: SI units, no NaN, None where something is absent.
 
     The resolved inputs of the study go into it with their sources; the notes and those of the answer are its
@@ -141,7 +147,7 @@ def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]
     """
     from separatrix import __version__
     from separatrix.present.shapes import all_notes
-    from separatrix.study.reading import provenance_of, resolved
+    from separatrix.study.sources import provenance_of, resolved
 
     left_out: list[str] = []
     body = plain(Group(shape(answer)), verb, left_out)
@@ -161,7 +167,7 @@ def document(verb: str, answer: object, asked: study.Study, notes: Sequence[str]
         "seed": asked.stability.seed,
         **body,
         "warnings": warnings,
-        "provenance": plain(provenance_of(asked, verb), "provenance"),
+        "provenance": plain(provenance_of(asked, verb, question or {}), "provenance"),
     }
 
 

@@ -287,7 +287,7 @@ def answers(kept: Kept, study: Study) -> bool:
     """Whether an answer is complete, from this version, and to this study."""
     from separatrix import __version__
     from separatrix.present import plain
-    from separatrix.study.reading import resolved
+    from separatrix.study.sources import resolved
 
     found = kept.document
     asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
@@ -305,7 +305,7 @@ def keeping(
     def kept(verb: str) -> Kept:
         with noted_warnings() as own:
             made = compute(verb_named(verb))
-        found = document(verb, made.record, made.study, [*notes, *grouped(own)])
+        found = document(verb, made.record, made.study, [*notes, *grouped(own)], made.question)
         if folder is not None:
             save_answer(folder, made.record, made.study, found, pictures=False)
         return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))

@@ -28,7 +28,7 @@ from separatrix.reporting.record import (
     own_rows,
     quantity,
 )
-from separatrix.study.reading import inputs_of
+from separatrix.study.sources import inputs_of
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
 PROPERTIES = {

@@ -120,8 +120,8 @@ def _read_material(raw: Any, path: KeyPath, reading: Reading) -> Material | None
     """A material; of a name that of the candidate, else of the library; None if only a candidate has it."""
     helper, one = helper_of(reading), keys_of(CageDesign)["material"]
     if not isinstance(raw, str):
-        found: Material | None = helper.named(raw, one, path, reading)
-        return found or reading.record(Material, raw, path, one)
+        made: Material = helper.named(raw, one, reading) or reading.record(Material, raw, path, one)
+        return made
     ranking = reading.done.get("ranking")
     known = {folded(c.name): c.material for c in ranking.candidates} if ranking else {}
     if folded(text(raw, "")) in known and (own := known[folded(raw)]) is not None:

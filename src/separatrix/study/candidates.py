@@ -6,18 +6,16 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import exp, log
-from os.path import isfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from separatrix.friction.file import CONDITIONS, read_friction
+from separatrix.friction.file import CONDITIONS, FrictionFile
 from separatrix.friction.law import StatedFriction
 from separatrix.friction.prediction import LEAST_FRICTION, SCATTER_CURE, SCATTER_RULE, Friction
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import place
-from separatrix.ground.reader import Elsewhere, Reading, Refused
+from separatrix.ground.reader import Elsewhere, Reading, Refused, read_text
 from separatrix.ground.schema import Fault, Faults, between, check, key, one_of, record
-from separatrix.ground.toml import KeyPath, folded, nearest
+from separatrix.ground.toml import KeyPath, folded, label_of, nearest
 from separatrix.ground.units import Kelvin, Ratio, shown
 from separatrix.study.ball_bearing import NAMELESS, Material
 from separatrix.study.distribution import Normal
@@ -178,8 +176,8 @@ def _tested(
     frictions: Mapping[str, Mapping[str, Friction | None]]
     try:
         if name.endswith(".toml"):
-            file = place(reading.document.folder(path), name)
-            environments, frictions = _of_file(file, section, temperature)
+            content = reading.document.file(path, name, FrictionFile.FILE)
+            environments, frictions = _of_file(content, section, temperature)
         else:
             name = helper.known(name, "friction table", FROM_LOGS)
             found = helper.library.friction_table(name).content
@@ -197,7 +195,6 @@ def _tested(
         reading.refuse((*path[:-1], "materials"), error)
         raise Refused from None
     kind = "cage material"
-    library = {one: helper.library.named(kind, one) for one in chosen}
     candidates = (
         Candidate(
             name=one,
@@ -212,16 +209,17 @@ def _tested(
 
 
 def _of_file(
-    path: Path, section: RankingSection, temperature: Kelvin | None
+    content: str | None, section: RankingSection, temperature: Kelvin | None
 ) -> tuple[tuple[str, ...], dict[str, dict[str, Friction | None]]]:
     """Environments and frictions of a friction file, in the order in which they are first tested."""
     from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
 
-    if not isfile(path):
+    label = label_of(Path(section.friction or ""))
+    if content is None:
         cure = "`separatrix tribometer FILES --out friction.toml` makes one from logs."
         raise InputError("", "names no file beside the study", shown(section.friction), cure)
     try:
-        tests = read_friction(path)
+        tests = read_text(FrictionFile, content, label).value.test
     except InputError as error:
         raise Elsewhere(error) from None
     tested = tuple(dict.fromkeys((test.material, test.environment) for test in tests))
@@ -229,7 +227,7 @@ def _of_file(
     wanted = {folded(one) for one in section.materials or known}
     chosen = [one for one in known if folded(one) in wanted]
     environments = tuple(dict.fromkeys(env for material, env in tested if material in chosen))
-    source = f"{path.name}, sha256 {hashlib.sha256(path.read_bytes()).hexdigest()[:16]}"
+    source = f"{label}, sha256 {hashlib.sha256(content.encode()).hexdigest()[:16]}"
     frictions: dict[str, dict[str, Friction | None]] = {name: dict.fromkeys(environments) for name in known}
     for name, env in tested:
         if name in chosen:

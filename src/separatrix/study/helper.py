@@ -8,7 +8,7 @@ from typing import Any, cast
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Reading
 from separatrix.ground.schema import Described
-from separatrix.ground.toml import KeyPath, cut_list, nearest, whole
+from separatrix.ground.toml import cut_list, nearest, whole
 from separatrix.ground.units import Kelvin, shown
 from separatrix.study import uncertain
 from separatrix.study.distribution import Distribution
@@ -29,7 +29,7 @@ class StudyHelper:
             return (whole(raw, ""), None) if one.key.certain else uncertain.count(raw)
         return uncertain.number(raw, unit)
 
-    def named(self, raw: object, one: Described, path: KeyPath, reading: Reading) -> Any:
+    def named(self, raw: object, one: Described, reading: Reading) -> Any:
         """Material of a name; None if the value is not a name."""
         if isinstance(raw, dict):
             return None

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import re
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.input_files import place
 from separatrix.ground.reader import Elsewhere, Reading
-from separatrix.ground.toml import KeyPath, Kind, path_text, read_text, text
+from separatrix.ground.toml import KeyPath, Kind, path_text, text
 from separatrix.ground.units import Metre, parse, shown
 
 MOST_PLACES = 10_000
@@ -28,12 +28,13 @@ class Profile(NamedTuple):
 
 def read_profile(raw: Any, path: KeyPath, reading: Reading) -> Profile:
     """Profile of the file that a study names."""
-    file = place(reading.document.folder(path), text(raw, ""))
-    if not file.is_file():
+    name = text(raw, "")
+    content = reading.document.file(path, name, PROFILE)
+    if content is None:
         cure = "It is looked for in the folder of the study."
-        raise InputError("", "does not name a file", shown(file.name), cure)
+        raise InputError("", "does not name a file", shown(Path(name).name), cure)
     try:
-        return profile_of(read_text(file, PROFILE), path_text(file))
+        return profile_of(content, path_text(Path(name)))
     except InputError as error:
         raise Elsewhere(error) from None
 

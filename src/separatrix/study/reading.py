@@ -1,6 +1,6 @@
 """Study files: TOML, or a workbook, whose every dimensional value is text with its unit.
 
-Keys and rules are those of the records (`study.Study` is the schema); docs/reference/study-file.md lists them.
+Keys and rules are those of the records (`study.Study` is the schema); docs/reference/study-file.md has them.
 """
 
 from __future__ import annotations
@@ -14,17 +14,18 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.ground.errors import InputError, ValidityWarning, together
-from separatrix.ground.input_files import place
 from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
 from separatrix.ground.schema import built
-from separatrix.ground.toml import KeyPath, path_text
+from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
 from separatrix.ground.units import printable, shown
 from separatrix.study.candidates import candidate_named, fitting_environment
 from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.helper import StudyHelper
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
-from separatrix.study.library import Library, beside, library_files, with_files
+from separatrix.study.library import Library, beside, joined, library_files
+from separatrix.study.library.reading import library_of_text
+from separatrix.study.library.records import Content
 from separatrix.study.study import (
     Study,
     chosen_models,
@@ -35,6 +36,9 @@ from separatrix.study.study import (
 from separatrix.study.uncertain import written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
+LIBRARY = "library "
+"""Before the number and the name of a library file that a study keeps: no path of a value begins so."""
+
 FROM_CLEARANCE = "derived, from radial_clearance"
 
 
@@ -63,7 +67,7 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
     document = document_of(Study, path)
     cage = document.data.get("cage")
     if models and isinstance(cage, dict):
-        document.data["cage"] |= {name: model.value for name, model in chosen_models(models).items()}
+        cage |= {name: model.value for name, model in chosen_models(models).items()}
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
     built_study, notes = study_of(document, name)
@@ -78,10 +82,31 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
 def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:
     """Study of a document, and notes on what has no effect in it or is left out."""
     library = library_of(document)
+    return _study_of(document, name, library)
+
+
+def study_again(content: Mapping[str, Any]) -> Study:
+    """Study of the content that an answer kept.
+
+    Raises
+    ------
+    InputError
+        The content is not that of a study, or names a file that is not kept.
+    """
+    files: Mapping[str, str] = content["files"]
+    libraries = [(name.partition(": ")[2], text) for name, text in files.items() if name.startswith(LIBRARY)]
+    library = joined([library_of_text(text, label) for label, text in libraries])
+    document = Document(content["name"], content["data"], {}, files=dict(files), is_kept=True)
+    return _study_of(document, content["name"], library)[0]
+
+
+def _study_of(document: Document, name: str, library: Library) -> tuple[Study, tuple[str, ...]]:
     loaded = read_document(Study, document, StudyHelper(library))
     study = loaded.value
     values = {one.name: getattr(study, one.name) for one in fields(Study)}
     values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
+    data = {key: one for key, one in document.data.items() if key not in ("extends", "library")}
+    values["content"] = {"name": name, "data": data, "files": document.files}
     found, table = (
         library.fluid(study.operation.fluid or ""),
         document.data.get("ranking", {}).get("friction"),
@@ -138,7 +163,8 @@ def _with_distributions(study: Study, loaded: Loaded[Study], document: Document)
             problems.append(error.at(_where(document, path)))
     if problems:
         raise together(problems)
-    return built_with(study, distributions=settled)
+    made: Study = built_with(study, distributions=settled)
+    return made
 
 
 def number_name(study: Study, path: KeyPath) -> str:
@@ -203,11 +229,16 @@ def library_of(document: Document) -> Library:
         for name in given if isinstance(given, list) else [given]:
             if isinstance(name, str) and name.isprintable() and name:  # else the schema refuses it
                 paths += _named(study.parent, name, f"{document.place(('library',))}: library")
-    return with_files(paths)
+    contents = []
+    for number, path in enumerate(dict.fromkeys(path.resolve() for path in paths), 1):
+        text = read_text(path, Content.FILE)
+        document.files[f"{LIBRARY}{number}: {label_of(path)}"] = text
+        contents.append(library_of_text(text, label_of(path)))
+    return joined(contents)
 
 
 def _named(folder: Path, name: str, where: str) -> list[Path]:
-    path = place(folder, name)
+    path = folder / name
     if not exists(path):
         cure = "It is taken from the folder of the study."
         raise InputError(where, "does not name a file or folder", shown(name), cure)

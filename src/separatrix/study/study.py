@@ -22,7 +22,6 @@ from separatrix.ground.schema import (
     Faults,
     between,
     check,
-    is_record,
     key,
     keys_of,
     not_negative,
@@ -246,11 +245,12 @@ class Study:
 
     name: str = ""
     title: str = key(default="", example='"My bearing"', without="the name of the file")
-    extends: str | None = key(default=None)
+    extends: str | None = key(default=None, compare=False)
     """Start from another file, or from a shipped example; this one overrides."""
 
     library: tuple[str, ...] = key(
         default=(),
+        compare=False,
         length=(1, 20),
         single=True,
         without="materials.toml, and the folder materials, beside the study",
@@ -280,7 +280,8 @@ class Study:
     left_out: InputError | None = field(default=None, compare=False, repr=False)
     """Why the cage of the file is not in the study, for the verbs that need it."""
 
-    records: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    content: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+    """What the study was read from: its name, its merged keys, and the texts of the files that they name."""
 
 
 @check(Study)
@@ -359,14 +360,15 @@ def with_models(study: Study, models: Mapping[str, str]) -> Study:
     return replace(study, cage=cage, origins={**study.origins, **origins})
 
 
-SECTIONS: dict[str, type] = {
-    name: one.hint for name, one in keys_of(Study).items() if is_record(one.hint) and name != "ranking"
-}
+ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")
+"""Sections as a reader likes them."""
+
+SECTIONS: dict[str, type] = {name: keys_of(Study)[name].hint for name in ORDER if name != "ranking"}
 """Sections of a study file whose keys are the fields of a record."""
 
 
 def key_of(path: str) -> str:
-    """Name in a study file of a field of a record: ``CageDesign.mass``, ``Study.cage.mass`` is ``[cage] mass``."""
+    """Name in a study file of a field: ``CageDesign.mass`` and ``Study.cage.mass`` are ``[cage] mass``."""
     record, _, key = path.partition(".")
     if record == "Study" and "." in key:
         section, _, key = key.partition(".")

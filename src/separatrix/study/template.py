@@ -29,10 +29,7 @@ from separatrix.ground.sheet import (
 from separatrix.ground.units import HABITS, NUMBER, UNITS, format_quantity
 from separatrix.ground.workbook import COLUMNS, SEPARATOR, TOP
 from separatrix.study.library import Library
-from separatrix.study.study import Study
-
-ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")
-"""Sections in the order in which one fills them in."""
+from separatrix.study.study import ORDER, Study
 
 CANDIDATES = "ranking.candidates"
 USE = """\

@@ -21,9 +21,9 @@ class Track(NamedTuple):
 
 def film_compliance(film: Film) -> float:
     """Shear compliance L = h/G of the film, total over ball and race [m/Pa]; 0 if the races are bare."""
-    if film.material is None or film.thickness is None:
+    if film.body is None or film.thickness is None:
         return 0.0
-    return 2.0 * film.thickness * (1.0 + film.material.poisson_ratio) / film.material.elastic_modulus
+    return 2.0 * film.thickness * (1.0 + film.body.poisson_ratio) / film.body.elastic_modulus
 
 
 def track_of(film: Film, race: Race, semi_major: Metre) -> Track:
@@ -44,14 +44,13 @@ def track_of(film: Film, race: Race, semi_major: Metre) -> Track:
 
 
 def _profile(wear: Wear, per_metre: float) -> Profile:
-    return Profile(across=wear.across, values=tuple(per_metre * h for h in wear.thicknesses))
+    return Profile(across=wear.places.across, values=tuple(per_metre * h for h in wear.places.thicknesses))
 
 
 def _friction(wear: Wear, on_film: Ratio) -> Profile:
     """Friction of the bare race between two neighbours without film, else that on the film."""
-    between = [
-        wear.friction if before == after == 0.0 else on_film for before, after in pairwise(wear.thicknesses)
-    ]
-    ends = [wear.friction if wear.thicknesses[i] == 0.0 else on_film for i in (0, -1)]
+    h = wear.places.thicknesses
+    between = [wear.friction if before == after == 0.0 else on_film for before, after in pairwise(h)]
+    ends = [wear.friction if h[i] == 0.0 else on_film for i in (0, -1)]
     values = [ends[0], *np.repeat(between, 2).tolist(), ends[1]]
-    return Profile(across=tuple(np.repeat(wear.across, 2).tolist()), values=tuple(values))
+    return Profile(across=tuple(np.repeat(wear.places.across, 2).tolist()), values=tuple(values))

@@ -54,15 +54,15 @@ def bonded_layer(bearing: BallBearing, film: Film) -> BondedLayer:
     InputError
         The races are bare.
     """
-    if film.material is None or not film.thickness:
+    if film.body is None or not film.thickness:
         raise InputError(
             "bonded_layer: film", "needs a material and a thickness", cure="Bare races have no layer."
         )
     ring: Material = bearing.ring_material
     return BondedLayer(
         thickness=film.thickness,
-        film_modulus=film.material.elastic_modulus,
-        film_poisson=film.material.poisson_ratio,
+        film_modulus=film.body.elastic_modulus,
+        film_poisson=film.body.poisson_ratio,
         ring_modulus=ring.elastic_modulus,
         ring_poisson=ring.poisson_ratio,
         ball_modulus=bearing.ball_material.elastic_modulus,

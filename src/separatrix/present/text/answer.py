@@ -30,9 +30,8 @@ from separatrix.present.text.tables import (
 )
 from separatrix.study.cage_body import cage_inertia
 from separatrix.study.pocket_shape import half_play, tilt
-from separatrix.study.reading import inputs_of, resolved
-from separatrix.study.reading.document import SECTIONS
-from separatrix.study.study import CageDesign, ClearanceState, Guidance, Study
+from separatrix.study.sources import inputs_of, resolved
+from separatrix.study.study import ORDER, CageDesign, ClearanceState, Guidance, Study
 
 INCOMPLETE = "INCOMPLETE: interrupted. What was not finished is left out, or has a dash in its place."
 
@@ -68,7 +67,7 @@ def check(answer: CheckAnswer, study: Study) -> list[str]:
 
 
 def _valid(study: Study) -> str:
-    absent = [f"[{name}]" for name in SECTIONS if getattr(study, name) is None]
+    absent = [f"[{name}]" for name in ORDER if getattr(study, name) is None]
     return "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
 
 
@@ -87,13 +86,13 @@ def _machine(study: Study) -> list[tuple[str, str]]:
     speeds = [f"inner ring {shown(operation.inner_speed, 'rad/s')}"]
     speeds += [f"outer ring {shown(operation.outer_speed, 'rad/s')}"] if operation.outer_speed else []
     around = [shown(one, unit) for one, unit in ((operation.fluid, ""), (operation.temperature, "K")) if one]
-    coat = "none" if film.material is None else f"{film.material.name}, {shown(film.thickness, 'm')}"
+    coat = "none" if film.body is None else f"{film.body.name}, {shown(film.thickness, 'm')}"
     turns = abs(operation.inner_speed - operation.outer_speed) * 30.0 / pi
     diameter = bearing.pitch_diameter if bearing.bore is None else bearing.bore
     which = "pitch diameter" if bearing.bore is None else "bore"
     return [
         ("Bearing", f"{balls}, pitch diameter {shown(bearing.pitch_diameter, 'm')}{bore}"),
-        ("Contact", f"{shown(bearing.contact_angle, 'rad')} free angle; {steels}"),
+        ("Contact", f"{shown(bearing.free_angle, 'rad')} free angle; {steels}"),
         ("Operation", ", ".join([*speeds, *loads]) + (f"; {' at '.join(around)}" if around else "")),
         ("Speed parameter", f"{1e3 * diameter * turns / 1e6:.3g} million mm rpm ({which} x speed)"),
         ("Film on the races", f"{coat}; friction {shown(film.race_friction, '-')}"),
@@ -193,7 +192,7 @@ def shown(value: object, unit: str) -> str:
 
 
 def _sources(study: Study) -> list[str]:
-    own = (study.bearing.ball_material, study.bearing.ring_material, study.film.material)
+    own = (study.bearing.ball_material, study.bearing.ring_material, study.film.body)
     materials = {one.name: one for one in (*own, study.cage.material if study.cage else None) if one}
     for candidate in study.ranking.candidates if study.ranking else ():
         if candidate.material is not None:

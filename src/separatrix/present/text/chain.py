@@ -196,7 +196,7 @@ def contact_words(study: Study) -> str:
         return words
     where = "" if wear.races is Worn.BOTH else f" of the {wear.races.value} race"
     if not wear.is_band:
-        return f"{words}; film{where} worn by a measured profile of {len(wear.across)} places"
+        return f"{words}; film{where} worn by a measured profile of {len(wear.places.across)} places"
     band = quantity(wear.width, "m") if wear.width is not None else f"{wear.share:.3g} of the contact's width"
     left = f"{quantity(wear.thickness, 'm')} left" if wear.thickness else f"bare, friction {wear.friction:g}"
     return f"{words}; film{where} worn over {band}, {left}"
@@ -210,9 +210,9 @@ def basis(study: Study, answer: OfCage) -> list[tuple[str, str]]:
     turning = [f"{words} ring {stated(operation, key)}" for words, key in rings]
     loaded = [f"{stated(operation, key)} {words}" for words, key in loads if getattr(operation, key)]
     coat = "none"
-    if film.material is not None:
-        modulus = quantity(film.material.elastic_modulus, "Pa")
-        coat = f"{film.material.name}, {quantity(film.thickness, 'm')}, modulus {modulus}"
+    if film.body is not None:
+        modulus = quantity(film.body.elastic_modulus, "Pa")
+        coat = f"{film.body.name}, {quantity(film.thickness, 'm')}, modulus {modulus}"
     balls = f"{at.ball_count} balls of {quantity(at.ball_diameter, 'm')}"
     found, slopes = solution.restitution, solution.slopes
     inner, outer = solution.bearing.inner, solution.bearing.outer
