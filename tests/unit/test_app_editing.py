@@ -92,17 +92,11 @@ def test_a_form_sent_back_unchanged_changes_no_value(study):
 
 def test_the_form_has_every_key_of_the_records():
     """What a study file may hold can be typed in; candidates of the user's own are written in the text."""
-    shown = {
-        name for one in form(draft.Checked(text="", study=None, faults=())) for name in map(label, one.fields)
-    }
+    drawn = form(draft.Checked(text="", study=None, faults=()))
+    shown = {field.sent["field"] for section in drawn for field in section.fields}
     forms = {name: one.key.form or one.hint for name, one in keys_of(Study).items()}
     known = {f"{name}.{key}" for name, form in forms.items() if is_record(form) for key in keys_of(form)}
     assert shown == (known | {".title", ".extends", ".library"}) - {"ranking.candidates"}
-
-
-def label(field):
-    """Section and key of a field."""
-    return field.sent["field"]
 
 
 def test_a_wrong_unit_is_refused_beside_its_field(page):

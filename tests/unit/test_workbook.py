@@ -1,39 +1,34 @@
-"""Workbooks that are written: a template reads back as the study, results hold what `rank.json` does."""
+"""Workbooks that are written: a study reads back the same, results hold what `rank.json` does."""
 
-import dataclasses
 import json
 import re
 import time
+import tomllib
 import zipfile
 from fractions import Fraction
 
 import openpyxl
 import pytest
 from minimal_xlsx import Formula, Shown, workbook
-from separatrix.study.reading.cells import COLUMNS, sheets_of
-from separatrix.study.reading.document import SECTIONS, load
-from separatrix.study.reading.templates import template_keys, template_workbook
-from separatrix.study.reading.values import READERS
+from rich_studies import PLANE, SPACE
 
 from separatrix.cli import main
 from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.sheet import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
 from separatrix.ground.units import parse
+from separatrix.ground.workbook import COLUMNS, sheets_of
 from separatrix.present import load as load_dataset
 from separatrix.saving import write_ranking
-from separatrix.study.reading import read_study, shipped_studies
+from separatrix.study.reading import read_study
+from separatrix.study.study import ORDER, shipped_studies
+from separatrix.study.template import study_keys, template, template_workbook
 
 STUDY = """
 title = "= A title that begins like a formula"
 extends = "cryogenic-turbopump"
 
-[film]
-thickness = "0.5 um +- 20 %"
-race_friction = { between = [0.08, 0.12] }
-
 [cage]
 mass = "25.0000000000000001 g"
-pocket_clearance = { mean = "0.6 mm", standard_deviation = "20 um" }
 pocket_position_scatter = "10.123456789012 um"
 
 [stability]
@@ -50,37 +45,37 @@ material = { elastic_modulus = "5 GPa", poisson_ratio = 0.4 }
 
 [[ranking.candidates]]
 name = "@SUM(1)"
-friction = { "air" = "0.1 +- 30 %" }
+friction = { "air" = 0.1 }
 material = "Armalon"
 """
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A folder with the study above."""
-    place = tmp_path_factory.mktemp("workbooks")
-    (place / "case.toml").write_text(STUDY)
-    return place
-
-
-@pytest.fixture(scope="module")
-def answer(folder):
-    """The document of a small ranking, as it is saved, and the folder of the answer."""
-    small = STUDY.replace('thickness = "0.5 um +- 20 %"', 'thickness = "0.5 um"')
-    small = small.replace("{ between = [0.08, 0.12] }", "0.1").replace('"0.1 +- 30 %"', "0.1")
-    small = small.replace('{ mean = "0.6 mm", standard_deviation = "20 um" }', '"0.6 mm"')
-    (folder / "small.toml").write_text(small)
+def answer(tmp_path_factory):
+    """The document of a small ranking, as it is saved, and its folder."""
+    folder = tmp_path_factory.mktemp("workbooks")
+    (folder / "small.toml").write_text(STUDY)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("separatrix.figures.save_all", lambda *_: None)  # they take long
         assert main(["rank", str(folder / "small.toml"), "--out", str(folder / "out"), "--quiet"]) == 0
     return json.loads((folder / "out" / "rank.json").read_text())
 
 
+@pytest.fixture(scope="module")
+def folder(answer, tmp_path_factory):
+    """The folder of the small ranking."""
+    return tmp_path_factory.getbasetemp() / "workbooks0"
+
+
 def typed(key, value):
     """Yield the rows of a value as one types them: numbers with their unit, and uncertainty, beside them."""
     if isinstance(value, dict):
         for part, item in value.items():
-            yield from typed(f"{key}.{part}", item)
+            name = part if re.fullmatch(r"\w+", part) else f'"{part}"'
+            yield from typed(f"{key}.{name}" if key else name, item)
+    elif isinstance(value, list) and isinstance(value[0], dict):
+        for number, item in enumerate(value, 1):
+            yield from typed(f"{key}.{number}", item)
     elif isinstance(value, list):
         yield key, "; ".join(map(str, value)), None, None
     else:
@@ -89,54 +84,58 @@ def typed(key, value):
         yield (key, float(found[1]), found[3], found[2]) if is_exact else (key, value, None, None)
 
 
-def in_workbook(path):
-    """Return a study file as the workbook that somebody could have typed in its place."""
-    document = load(path)
-    sections = {"study": document.top, **{name: dict(document.sections.get(name, {})) for name in SECTIONS}}
-    candidates = sections["ranking"].pop("candidates", [])
-    sheets = {
-        name: [list(COLUMNS), *(row for key, value in given.items() for row in typed(key, value))]
-        for name, given in sections.items()
-    }
+def candidates_sheet(candidates):
+    """Return the sheet with a row for each candidate."""
     environments = dict.fromkeys(env for one in candidates for env in one["friction"])
     parts = ("mean", "standard_deviation", "count", "source")
-    heads = [("", "name"), ("", "material"), ("GPa", "elastic_modulus"), ("", "poisson_ratio")]
+    heads = [
+        ("", "name"),
+        ("", "material"),
+        ("GPa", "elastic_modulus"),
+        ("", "poisson_ratio"),
+        ("g/cm3", "density"),
+    ]
     heads += [(env, part) for env in environments for part in parts]
     rows = []
     for one in candidates:
         friction = {e: f if isinstance(f, dict) else {"mean": f} for e, f in one["friction"].items()}
         own = one.get("material") if isinstance(one.get("material"), dict) else {}
-        row = [
-            one["name"],
-            None if own else one.get("material"),
-            *map(own.get, ("elastic_modulus", "poisson_ratio")),
-        ]
+        row = [one["name"], None if own else one.get("material"), *(own.get(part) for _, part in heads[2:5])]
         rows.append(row + [friction.get(env, {}).get(part) for env in environments for part in parts])
-    return workbook(sheets | {"candidates": [list(head) for head in zip(*heads, strict=True)] + rows})
+    return [list(head) for head in zip(*heads, strict=True)] + rows
 
 
-def rewritten(path, folder):
-    """Return a study read from the workbook that its own file is turned into."""
-    there = folder / f"{path.stem}.xlsx"
-    there.write_bytes(in_workbook(path))
-    return read_study(there)
-
-
-@pytest.mark.filterwarnings("ignore:Data of the library")  # at 90 K there are none
-@pytest.mark.parametrize("path", shipped_studies().values(), ids=shipped_studies())
-def test_a_study_typed_into_a_workbook_is_the_same(path, tmp_path):
-    """Every number to the last bit, every material and every candidate."""
-    assert rewritten(path, tmp_path) == read_study(path)
-
-
-def test_every_way_to_write_a_value_has_cells(folder):
-    """Distributions, lists with and without one unit, long numbers, tables, candidates in place."""
-    expected = read_study(folder / "case.toml")
-    found = rewritten(folder / "case.toml", folder)
-    assert found == expected
-    assert set(found.distributions) == {
-        *("film.thickness", "film.race_friction", "cage.pocket_clearance", "ranking.@SUM(1).air"),
+def in_workbook(text, *, with_sheet=True):
+    """Return a study as the workbook that somebody could have typed in its place."""
+    data = tomllib.loads(text)
+    sheets = {"study": {key: value for key, value in data.items() if not isinstance(value, dict)}, **data}
+    candidates = data.get("ranking", {}).pop("candidates", []) if with_sheet else []
+    found = {
+        name: [[*COLUMNS], *([*row] for row in typed("", given))]
+        for name, given in sheets.items()
+        if isinstance(given, dict)
     }
+    return workbook(found | ({"candidates": candidates_sheet(candidates)} if candidates else {}))
+
+
+def read_from(folder, name, content):
+    """Return the study of a file of this name and content."""
+    (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return read_study(folder / name)
+
+
+TEXTS = {name: path.read_text() for name, path in shipped_studies().items()}
+TEXTS |= {"space": SPACE, "plane": PLANE, "variant": STUDY}
+
+
+@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
+@pytest.mark.parametrize("with_sheet", [True, False], ids=["sheet", "dotted"])
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_study_typed_into_a_workbook_is_the_same(name, with_sheet, tmp_path):
+    """Every number to the last bit, every distribution, material and candidate, in either form."""
+    expected = read_from(tmp_path, "a.toml", TEXTS[name])
+    found = read_from(tmp_path, "a.xlsx", in_workbook(TEXTS[name], with_sheet=with_sheet))
+    assert found == expected
     for key, one in expected.distributions.items():
         assert found.distributions[key].quantile(0.3) == one.quantile(0.3)
 
@@ -157,6 +156,7 @@ def test_the_template_is_what_the_verb_new_writes(tmp_path, capsys):
     ):
         assert main(["new", *options]) == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.xlsx"]
+    assert read_study(path) == read_from(tmp_path, "mine.toml", template())
 
 
 @pytest.mark.parametrize("name", ["n.xlsx", "link.xlsx", "n.toml"])
@@ -166,9 +166,9 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
         (tmp_path / taken).write_text("mine")
     (tmp_path / "link.xlsx").symlink_to("nowhere.xlsx")
     built = []
-    monkeypatch.setattr("separatrix.study.reading.template", lambda: built.append("text") or "")
+    monkeypatch.setattr("separatrix.study.template.template", lambda: built.append("text") or "")
     monkeypatch.setattr(
-        "separatrix.study.reading.templates.template_workbook", lambda: built.append("workbook") or b""
+        "separatrix.study.template.template_workbook", lambda: built.append("workbook") or b""
     )
     path = tmp_path / name
     assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2
@@ -180,40 +180,19 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
 
 
 def test_the_template_says_what_the_text_file_says(tmp_path):
-    """Every key of the text is a row of its section's sheet, with a remark that is whole."""
+    """Every key of the text is a row of its section's sheet; a word has the list of those it may be."""
     (tmp_path / "t.xlsx").write_bytes(template_workbook())
     book = openpyxl.load_workbook(tmp_path / "t.xlsx")
-    assert book.sheetnames == ["instructions", "study", *SECTIONS, "candidates", "lists"]
-    for one in template_keys():
-        assert not one.meaning.endswith((":", ",", " of"))
-        if one.section in SECTIONS:
-            keys = [cell.value.split(".")[0] for cell in book[one.section]["A"][1:] if cell.value]
-            assert one.key in keys
-    known = {f"{one.section}.{one.key}" for one in template_keys()}
-    assert {"bearing.free_angle", "film.race_friction", "cage.pocket_clearance"} < {
-        f"{one.section}.{one.key}" for one in template_keys() if one.is_required
-    }
-    assert known - {f"{s}.{k}" for s in READERS for k in READERS[s]} == {
-        *(".title", ".extends", "ranking.candidates.name", "ranking.candidates.friction"),
-        "ranking.candidates.material",
-    }
-
-
-def test_choices_have_lists_of_what_may_be_chosen(tmp_path):
-    """The guidance, the units of a length and the materials of balls can be chosen from lists."""
-    (tmp_path / "t.xlsx").write_bytes(template_workbook())
-    book = openpyxl.load_workbook(tmp_path / "t.xlsx")
-    listed = {}
-    for sheet, key in (("cage", "guidance"), ("bearing", "ball_material"), ("bearing", "ball_diameter")):
-        row = next(cell.row for cell in book[sheet]["A"] if cell.value == key)
-        rules = {str(rule.sqref): rule.formula1 for rule in book[sheet].data_validations.dataValidation}
-        cells = (
-            rules[f"{'D' if key == 'ball_diameter' else 'B'}{row}"].removeprefix("=lists!").replace("$", "")
-        )
-        listed[key] = [cell.value for (cell,) in book["lists"][cells]]
-    assert listed["guidance"] == ["outer", "inner", "ball"]
-    assert "Si3N4" in listed["ball_material"]
-    assert listed["ball_diameter"][:3] == ["m", "cm", "mm"]
+    assert book.sheetnames == ["instructions", "study", *ORDER, "candidates"]
+    for section in ORDER:
+        rows = {cell.value.split(".")[0]: cell for cell in book[section]["A"][1:]}
+        assert list(rows) == [one.name for one in study_keys(section)]
+        assert {name for name, cell in rows.items() if cell.font.bold} >= {
+            one.name for one in study_keys(section) if one.one.is_required
+        }
+    lists = {str(rule.sqref): rule.formula1 for rule in book["cage"].data_validations.dataValidation}
+    row = next(cell.row for cell in book["cage"]["A"] if cell.value == "guidance")
+    assert lists[f"B{row}"] == '"outer,inner,ball"'
 
 
 HEAD = ["key", "value", "+-", "unit"]
@@ -251,6 +230,14 @@ def test_sheets_of_ones_own_and_rows_without_value_are_passed_over(tmp_path):
     assert found.cage == read_study("cryogenic-turbopump").cage
 
 
+@pytest.mark.parametrize("value", [52100.0, "52100"])
+def test_a_name_of_digits_is_a_name(tmp_path, value):
+    """Spreadsheet programs make a number of the steel 52100; a value in quotes is what stands in them."""
+    sheets = {"bearing": [HEAD, ["ball_material", value]], "cage": [HEAD, ["mass", '"26 g"']]}
+    found = variant(tmp_path / "a.xlsx", **sheets)
+    assert (found.bearing.ball_material.name, found.cage.mass) == ("52100", 0.026)
+
+
 def test_a_number_in_a_cell_loses_no_digit(tmp_path):
     """The number of the cell and its unit give what the same digits give as text."""
     assert variant(tmp_path / "a.xlsx", ["thickness", 0.123456789012, None, "um"]).film.thickness == parse(
@@ -262,8 +249,7 @@ def test_headings_may_stand_in_any_order(tmp_path):
     """Columns are found by their headings; units and widths may be absent when values bring them."""
     film = [["meaning", "value", "±", "key"], ["thin", "0.25 um", "20 %", "thickness"]]
     top = [["key", "value"], ["extends", "cryogenic-turbopump"]]
-    (tmp_path / "a.xlsx").write_bytes(workbook({"study": top, "film": film}))
-    found = read_study(tmp_path / "a.xlsx")
+    found = read_from(tmp_path, "a.xlsx", workbook({"study": top, "film": film}))
     assert found.film.thickness == 2.5e-7
     assert set(found.distributions) == {"film.thickness"}
 
@@ -272,8 +258,18 @@ def test_data_of_other_programs_are_left_alone(tmp_path):
     """Power Query keeps its queries in UTF-16 inside the workbook; nothing of them is read."""
     query = '<?xml version="1.0" encoding="utf-16"?><DataMashup/>'.encode("utf-16")
     top, film = [HEAD, ["extends", "le7"]], [HEAD, ["race_friction", 0.07]]
-    (tmp_path / "a.xlsx").write_bytes(workbook({"study": top, "film": film}, customXml__item1_dot_xml=query))
-    assert read_study(tmp_path / "a.xlsx").film.race_friction == 0.07
+    content = workbook({"study": top, "film": film}, customXml__item1_dot_xml=query)
+    assert read_from(tmp_path, "a.xlsx", content).film.race_friction == 0.07
+
+
+def test_a_text_file_may_extend_a_workbook(tmp_path):
+    """And a workbook a text file, which in turn extends a shipped study."""
+    base = read_from(tmp_path, "base.xlsx", in_workbook(STUDY))
+    thin = read_from(tmp_path, "thin.toml", 'extends = "base.xlsx"\n[film]\nthickness = "0.1 um"\n')
+    assert (thin.film.thickness, thin.cage) == (1e-7, base.cage)
+    content = workbook({"study": [HEAD, ["extends", "thin.toml"]], "cage": [HEAD, ["mass", 26.0, None, "g"]]})
+    over = read_from(tmp_path, "over.xlsx", content)
+    assert (over.film.thickness, over.cage.mass, over.ranking) == (1e-7, 0.026, base.ranking)
 
 
 # Results
@@ -403,17 +399,8 @@ def test_what_we_write_we_read(tmp_path):
 
 def test_a_study_in_a_workbook_is_ranked(folder, answer, capsys):
     """Every verb takes a workbook: its ranking is that of the same study as text."""
-    (folder / "small.xlsx").write_bytes(in_workbook(folder / "small.toml"))
+    (folder / "small.xlsx").write_bytes(in_workbook(STUDY))
     capsys.readouterr()
     assert main(["rank", str(folder / "small.xlsx"), "--json", "--quiet"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["overall"] == answer["overall"]
-
-
-def test_variants_of_a_workbook(folder):
-    """A text file may extend a workbook, and a workbook may be extended by one."""
-    (folder / "base.xlsx").write_bytes(in_workbook(folder / "case.toml"))
-    (folder / "thin.toml").write_text('extends = "base.xlsx"\n[film]\nthickness = "0.1 um"\n')
-    found, base = read_study(folder / "thin.toml"), read_study(folder / "base.xlsx")
-    assert found.film.thickness == 1e-7
-    assert dataclasses.replace(found.cage) == base.cage

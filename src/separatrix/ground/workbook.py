@@ -360,7 +360,8 @@ class _Making:
                 for path, cell in cells.items():
                     _, hint, is_name = self._found((*at, *path))
                     is_width = len(path) == 3 and path[-1] != MEAN
-                    value = _value(hint, is_name, _Row(cell, cell, None, columns[path][1]), is_width)
+                    unit = columns[path][1] if is_number(cell.value) else None  # a text may have its own
+                    value = _value(hint, is_name, _Row(cell, cell, None, unit), is_width)
                     if len(path) == 3 and hint is not str and not _begins_as_number(str(value).lstrip("[")):
                         cure = "Leave the cell empty if it was not measured."
                         raise InputError(cell.place, "must be a number", shown(value), cure)
