@@ -5,9 +5,8 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import fields, is_dataclass
-from enum import Enum
-from typing import Any, NamedTuple, get_args, get_type_hints
+from dataclasses import is_dataclass
+from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
 from reference_meanings import Line, lines_of
 
@@ -20,17 +19,17 @@ from separatrix.comparing.records import Comparison
 from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
-from separatrix.ground.units import format_quantity, unit_of
+from separatrix.ground.schema import Described, is_record, keys_of
+from separatrix.ground.units import UNITS, format_quantity
 from separatrix.study import study
-from separatrix.study.reading import document
-from separatrix.study.reading.templates import quantity_of, section_remarks, template_keys, units_like
-from separatrix.study.reading.values import READERS, required_fields
+from separatrix.study.ball_bearing import Material
+from separatrix.study.template import keys_in, remark_of, sections, study_keys
 
 KEYS = """# Keys of a study
 
-After this page you can look up each key of a study file: its unit, its default and its meaning. The page is
-written from the program. Rules that connect several keys: [study file](../reference/study-file.md). The unit
-is that of the results; the file may state
+After this page you can look up each key of a study file: its unit, the values that it takes, its meaning and
+its default. The page is written from the program. Rules that connect several keys:
+[study file](../reference/study-file.md). The unit is that of the results; the file may state
 [another of the same kind](../reference/study-file.md#how-values-are-written).
 """
 NAMES = """# Names in the JSON documents
@@ -259,46 +258,33 @@ def _cell(text: str) -> str:
 
 
 def study_page() -> str:
-    """Return the page of the keys of a study, section by section."""
+    """Return the page of the keys of a study, section by section, with those of records inside."""
+    film = sections()["film"]
+    found = {path: study_keys(path) for path in sections()}
+    found["film.wear"] = tuple(keys_in("film.wear", keys_of(film)["wear"].hint))
+    found["ball_material"] = tuple(keys_in("material", Material))
+    heads = {"": "Above the first section", "ball_material": "A material in place"}
     page = [KEYS]
-    for section in ("", *document.SECTIONS, "ranking.candidates"):
-        page.append(f"## {f'[{section}]' if section else 'Above the first section'}\n")
-        if remark := section_remarks().get(section):
-            page.append(f"{remark[0].upper()}{remark[1:]}.\n")
-        page.append("| key | unit | default | meaning |\n|---|---|---|---|")
-        for one in (one for one in template_keys() if one.section == section):
-            unit, default = _unit(section, one.key, one.example), _default(section, one.key)
-            page.append(f"| `{one.key}` | {unit} | {default} | {_cell(one.meaning)} |")
+    for path, keys in found.items():
+        page.append(f"## {heads.get(path, f'[{path}]')}\n")
+        if path in sections() and (remark := remark_of(path)):
+            page.append(f"{remark}\n")
+        page.append("| key | unit | takes | meaning |\n|---|---|---|---|")
+        for key in keys:
+            unit = key.one.unit if key.one.unit in UNITS else ""
+            page.append(f"| `{key.name}` | {unit} | {_takes(key.one)} | {_cell(key.meaning)} |")
         page.append("")
     return "\n".join(page)
 
 
-def _unit(section: str, key: str, example: Any) -> str:
-    record = study.SECTIONS.get(section)
-    if record and key in {one.name for one in fields(record)} and (unit := unit_of(record, key)):
-        return unit
-    first = example[0] if isinstance(example, list) else example
-    spelled = units_like(quantity_of(first)[1])
-    return spelled[0] if spelled else ""
-
-
-def _default(section: str, key: str) -> str:
-    record = study.SECTIONS.get(section)
-    field = {one.name: one for one in fields(record)}.get(key) if record else None
-    if record is None or field is None:
-        return ""
-    if key in required_fields(record):
-        return "required"
-    value = field.default
-    if isinstance(value, Enum):
-        return f'`"{value.value}"`'
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return ""
-    unit = unit_of(record, key)
-    return f"`{format_quantity(value, unit)}`" if unit else f"`{value}`"
-
-
-def keys_without_line() -> set[tuple[str, str]]:
-    """Return keys that a study may have and the template does not show."""
-    shown = {(one.section, one.key) for one in template_keys()}
-    return {(section, key) for section, keys in READERS.items() for key in keys} - shown
+def _takes(one: Described) -> str:
+    """Return the values of a key in words."""
+    hint, bound, unit = one.hint, one.key.bound, one.unit or "-"
+    kinds = {int: "whole number", bool: "true or false", str: "text"}
+    table = "name or table" if one.key.named else "table"
+    kind = "list" if get_origin(hint) is tuple else table if is_record(hint) else kinds.get(hint, "")
+    if bound is None or bound.low == -bound.high < -1e3:  # nothing real is outside
+        return kind
+    low, high = (f"{end:.0f}" if hint is int else format_quantity(end, unit) for end in bound[:2])
+    ends = f"{'above ' * bound.open_low}{low} to {'below ' * bound.open_high}{high}"
+    return ", ".join(part for part in (kind, bound.sign or ends) if part)

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from commands import document
 from reference_meanings import lines_of
-from reference_tables import VERBS, json_page, keys_without_line, names_of, records_of, study_page
+from reference_tables import VERBS, json_page, names_of, records_of, study_page
 
 import separatrix
 from separatrix.ranking.records import Ranked
+from separatrix.study.template import sections, study_keys
 
 BY_NAME = {"study", "provenance", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
@@ -96,11 +97,14 @@ def test_every_name_has_a_meaning(verb):
 
 
 def test_every_key_of_a_study_has_a_line():
-    """The keys that are read are those of the template; candidates have a section of their own."""
-    assert keys_without_line() == {("ranking", "candidates")}
+    """With its unit, its bounds and its meaning; candidates have a section of their own."""
     page = study_page()
-    assert "| `mass` | kg |" in page
-    assert "| `ball_count` |  | required |" in page
+    for section in sections():
+        assert f"\n## {f'[{section}]' if section else 'Above the first section'}\n" in page
+        assert all(f"\n| `{one.name}` |" in page for one in study_keys(section))
+    assert "| `mass` | kg | > 0 | May be left out" in page
+    assert "| `ball_count` |  | whole number, 3 to 200 | Required. |" in page
+    assert "| `contact_angle` | rad | 0 deg to below 90 deg | Without load" in page
 
 
 def test_a_line_states_unit_dimensions_and_meaning():
