@@ -27,6 +27,9 @@ STUDY = """
 title = "= A title that begins like a formula"
 extends = "cryogenic-turbopump"
 
+[film]
+thickness = "0.5 um"
+
 [cage]
 mass = "25.0000000000000001 g"
 pocket_position_scatter = "10.123456789012 um"
