@@ -20,6 +20,7 @@ from separatrix.study.study import (
     Friction,
     Guidance,
     KinematicModel,
+    Kinematics,
     Material,
     PocketContact,
     PocketShape,
@@ -45,7 +46,7 @@ def moving(asked) -> MovingCage:
     return moving_cage(solve(asked), 0.0)
 
 
-CONTROLLED = KinematicModel.OUTER_RACE_CONTROL
+CONTROLLED = Kinematics(model=KinematicModel.OUTER_RACE_CONTROL)
 STILL = study(operation=replace(STUDY.operation, inner_speed=0.0))
 NAMELESS = cage(ball_cage_stiffness=None, material=None, material_name=None)
 REFUSED = [

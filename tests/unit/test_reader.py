@@ -222,7 +222,7 @@ def test_a_record_built_in_python_checks_itself():
     with pytest.raises(InputError) as refused:
         Part(size="5 N", angle=2.0, names=("a name",), count=True, shape="round")
     assert sorted(one.path for one in refused.value.problems) == [
-        "Part.angle", "Part.count", "Part.names.0", "Part.shape", "Part.size",
+        "Part.angle", "Part.count", "Part.names[1]", "Part.shape", "Part.size",
     ]  # fmt: skip
 
 

@@ -103,7 +103,7 @@ RECORDS = [
     ({"pocket_shape": "square"}, "pocket_shape must be one of PocketShape.SQUARE, "),
     ({"pocket_contact": None}, "CageDesign.pocket_contact is missing"),
     ({"guidance": "ball"}, "guidance must be one of Guidance.OUTER, "),
-    ({"pocket_axial_clearance": 4e-4}, "pocket_axial_clearance has no meaning for a square pocket"),
+    ({"pocket_axial_clearance": 4e-4}, "pocket_axial_clearance has a meaning only for an elongated pocket"),
     ({"pocket_shape": PocketShape.ELONGATED}, "pocket_axial_clearance is missing: an elongated pocket"),
     (
         {"pocket_shape": PocketShape.ELONGATED, "pocket_axial_clearance": 7e-4},
@@ -151,14 +151,14 @@ RECORDS = [
     ),
     ({"pocket_angles": (0.0, 2.0, 2.0)}, "pocket_angles must be strictly increasing (items 2 and 3)"),
     ({"pocket_angles": (0.0, 4.0, 2.0)}, "got 114.6 deg after 229.2 deg"),
-    ({"pocket_angles": (0.0, math.nan, 2.0)}, "pocket_angles must each be a finite angle"),
+    ({"pocket_angles": (0.0, math.nan, 2.0)}, "pocket_angles[2] must be a finite number"),
     ({"pocket_angles": (0.0, 2.0, 7.0)}, "pocket_angles must each be a finite angle within one turn of 0"),
     ({"pocket_angles": (-1.0, 2.0, 6.0)}, "pocket_angles must lie within one turn"),
     ({"land_count": 3} | GUIDED, "land_count must be a whole number from 1 to 2; got 3"),
-    ({"land_count": 2}, "land_count has no meaning for a cage guided by its balls"),
-    ({"land_out_of_round": 1e-5}, "land_out_of_round has no meaning for a cage guided by its balls"),
+    ({"land_count": 2}, "land_count needs guidance: without it"),
+    ({"land_out_of_round": 1e-5}, "land_out_of_round needs guidance: without it"),
     (
-        {"land_lobes": 1} | GUIDED,
+        {"land_lobes": 1, "land_out_of_round": 1e-6} | GUIDED,
         "land_lobes must be a whole number from 2 to 100; got 1. One lobe is an offset",
     ),
     ({"land_out_of_round": 1e-4} | GUIDED, "the square of land_lobes, 100 um: beyond it a lobe touches"),
@@ -180,8 +180,11 @@ def test_a_cage_that_cannot_be_is_refused_in_one_line(changes, words):
 
 RAMPS = [
     ({"ramp_time": -1.0}, "Operation.ramp_time must be >= 0"),
-    ({"ramp_start": 0.0}, "Operation.ramp_start must be > 0 and <= 1; got 0. It is the share"),
-    ({"ramp_start": 1.5}, "Operation.ramp_start must be > 0 and <= 1"),
+    (
+        {"ramp_time": 1.0, "ramp_start": 0.0},
+        "Operation.ramp_start must be > 0 and <= 1; got 0. It is the share",
+    ),
+    ({"ramp_time": 1.0, "ramp_start": 1.5}, "Operation.ramp_start must be > 0 and <= 1"),
 ]
 
 
@@ -197,7 +200,7 @@ FILES = [
     ({"operation": "ramp_start = 0.2"}, "[operation] ramp_start needs ramp_time: without it"),
     ({"cage": "land_lobes = 3"}, "[cage] land_lobes needs land_out_of_round: without it the land is round"),
     ({"cage": "pocket_angles = []"}, "[cage] pocket_angles must not be empty"),
-    ({"cage": 'pocket_angles = ["0 deg", 3]'}, "pocket_angles, item 2, needs a unit of angle"),
+    ({"cage": 'pocket_angles = ["0 deg", 3]'}, "pocket_angles[2] needs a unit of angle"),
     ({"cage": 'pocket_angles = "30 deg"'}, "[cage] pocket_angles must be a list"),
     (
         {"cage": 'pocket_angles = ["0 deg", "30 deg"]'},
@@ -213,7 +216,7 @@ FILES = [
     ),
     (
         {"cage": f"pocket_spacing_scatter = 0.01\npocket_angles = [{EVEN}]"},
-        "[cage] pocket_angles and pocket_spacing_scatter exclude each other",
+        "[cage] pocket_spacing_scatter and pocket_angles exclude each other",
     ),
     (
         {"cage": "pocket_spacing_scatter = 0.126"},

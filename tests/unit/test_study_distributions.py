@@ -16,7 +16,6 @@ from separatrix.present import in_words
 from separatrix.ranking.records import measured
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.study.keys import (
-    radial_clearance,
     study_numbers,
     value_of,
     with_values,
@@ -157,7 +156,7 @@ def test_a_film_given_in_place_or_as_a_material_has_one_name(study_of):
 def test_an_uncertain_clearance_moves_the_angle(study_of):
     """The study holds an angle; its clearance is the uncertain number."""
     base = read_study("cryogenic-turbopump")
-    clearance = radial_clearance(base.bearing)
+    clearance = base.bearing.free_clearance
     text = f'[bearing]\nradial_clearance = "{clearance * 1e6:.6f} um +- 5 %"\n'
     study = study_of(text)
     assert study.bearing.free_angle == pytest.approx(base.bearing.free_angle, rel=1e-6)
@@ -171,7 +170,7 @@ def test_a_clearance_that_was_given_stays_where_the_ball_varies(study_of):
     """The angle follows from clearance and diameter, if the clearance is what the file says."""
     given = study_of('[bearing]\nradial_clearance = "83 um"\nball_diameter = "11.1125 mm +- 0.1 %"\n')
     larger = with_values(given, {"bearing.ball_diameter": 11.12e-3})
-    assert radial_clearance(larger.bearing) == pytest.approx(83e-6, rel=1e-12)
+    assert larger.bearing.free_clearance == pytest.approx(83e-6, rel=1e-12)
     by_angle = with_values(read_study("cryogenic-turbopump"), {"bearing.ball_diameter": 11.12e-3})
     assert by_angle.bearing.free_angle == read_study("cryogenic-turbopump").bearing.free_angle
 

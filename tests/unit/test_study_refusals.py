@@ -73,8 +73,8 @@ EDITS = r"""
 bore = "50 mm" => bor = "50 mm" :: line 10 ; [bearing] bor ; Did you mean bore?
 bore = "50 mm" => axial_load = "3 N" :: line 10 ; [bearing] axial_load ; belongs in [operation]
 [kinematics] => [kinematic] :: line 18 ; [kinematic] ; Did you mean kinematics?
-title = "A valid study" => runs = 3 :: line 1 ; runs ; is outside a section
-[operation] => [[operation]] :: line 14: [operation] ; one section, headed [operation]
+title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
+[operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]
 "11.1125 mm" => 11.1 :: line 4 ; [bearing] ball_diameter needs a unit of length; got 11.1 ; Write "11.1 mm".
 "11.1125 mm" => "11.1" :: needs a unit of length ; Write "11.1 mm".
 "11.1125 mm" => "3 N" :: needs a unit of length (m,  ; got "3 N" ; a force
@@ -141,7 +141,7 @@ axial_load = "300 daN" => axial_load = "300 daN"\ntemperature = "-300 degC"
 model = "free" => model = "jones" :: "outer race control" ; got "jones"
 thickness = "0.5 um"\n =>  :: [film] thickness is missing
 material = "PTFE transfer film"\n =>  :: [film] material is missing
-material = "PTFE transfer film" => elastic_modulus = "4 GPa" :: [film] lacks: poisson_ratio
+material = "PTFE transfer film" => elastic_modulus = "4 GPa" :: [film] poisson_ratio is missing. Give all of
 "0.5 um" => "0 um" :: [film] thickness must be > 0 ; bare
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
@@ -154,7 +154,7 @@ runs = 64 => runs = 0.5 :: [stability] runs must be a whole number ; got 0.5
 ["0.1 m/s", "0.5 m/s", "2 m/s"] => "0.5 m/s" :: [stability] kicks must be a list
 "0.1 m/s" => "0 m/s" :: [stability] kicks ; > 1e-09
 "0.1 m/s" => "0.5 m/s" :: [stability] kicks ; strictly increasing
-"0.1 m/s" => "0.1 m" :: [stability] kicks, item 1, needs a unit of speed
+"0.1 m/s" => "0.1 m" :: [stability] kicks[1] needs a unit of speed
 to = 0.95 => to = 1.0 :: [stability] restitution_factors ; < 1
 from = 0.05 => from = 0.99 :: [stability] restitution_factors must be strictly increasing
 count = 19 => count = 1 :: restitution_factors ; count from 2 ; got 1
@@ -285,7 +285,7 @@ BYTES = {
     "Latin-1": ('title = "Käfig"'.encode("latin-1"), "not UTF-8"),
     "UTF-16": ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
     "random bytes": (bytes(range(256)), "not UTF-8"),
-    "only a title": (b'title = "Cage"\n', "lacks the sections [bearing], [operation], [film]"),
+    "only a title": (b'title = "Cage"\n', "lacks: [operation], [bearing], [film]"),
     "no TOML at all": (b"ball diameter: 11 mm\n", "line 1 is not valid TOML"),
     "an open string": (b'title = """Cage\n', "not valid TOML"),
     "an open bracket": (b"[bearing\n", "line 1 is not valid TOML"),

@@ -133,12 +133,15 @@ STUDIES = {
         '[bearing]\nball_material = "Ours"\n',
         "is not a bearing material of the library",
     ),
-    "a library that is a number": ("library = 5\n", "must be the path of a file or a folder"),
+    "a library that is a number": (
+        "library = 5\n",
+        "library[1] must be text; got 5. Give the path of a file or a folder",
+    ),
     "a library that is missing": (
         'library = "no.toml"\n',
         'library does not name a file or folder; got "no.toml"',
     ),
-    "an empty list": ("library = []\n", "must be one path or a list of 1 to 20"),
+    "an empty list": ("library = []\n", "library must have 1 to 20 items"),
     "an empty folder": ('library = "empty"\n', "names a folder without a .toml file"),
     "a library that is a study": ('library = "case.toml"\n', "is not a key of a library of materials"),
     "a library with an endless name": (f'library = "{"x" * 300}"\n', "does not name a file or folder"),

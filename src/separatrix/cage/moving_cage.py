@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,17 @@ from separatrix.cage.disturbance import free_leads
 from separatrix.chain.ball_traction import BallTraction, FreeBall
 from separatrix.chain.restitution import hertz_coefficient_for
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.schema import Fault, Faults, between, check, key, not_negative, positive, record
+from separatrix.ground.schema import (
+    Fault,
+    Faults,
+    between,
+    check,
+    key,
+    not_negative,
+    one_of,
+    positive,
+    record,
+)
 from separatrix.ground.units import (
     Kilogram,
     KilogramMetre,
@@ -61,6 +71,8 @@ class MovingCage:
     InputError
         A size is not finite or has the wrong sign, or sizes contradict each other.
     """
+
+    RULES: ClassVar = (one_of("pocket_angles", "pocket_spacing_scatter"),)
 
     mass: Kilogram = key(_SIZE)  # M
     moment_of_inertia: KilogramMetre2 = key(

@@ -37,8 +37,8 @@ ROUNDING = 1e-9
 """Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
 
 MOST_SHOWN = 20
-IGNORED = ("separatrix_version", "provenance")
-"""Keys of a document that are not the answer."""
+IGNORED = ("separatrix_version", "provenance", "warnings")
+"""Keys of a document that are not the answer: warnings name the lines of files."""
 
 
 def pair_of(first: Mapping[str, Saved], second: Mapping[str, Saved]) -> tuple[Saved, Saved, tuple[str, ...]]:
@@ -212,6 +212,8 @@ def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[
     """Yield what differs; numbers of a list are compared with the largest of that list."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         for name in {**a, **b}:
+            if name == "origin":  # a place in a file
+                continue
             at = f"{key}.{name}" if key else str(name)
             if name in a and name in b:
                 yield from _differing(a[name], b[name], at, None)

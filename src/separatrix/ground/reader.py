@@ -31,7 +31,7 @@ from separatrix.ground.schema import (
     without_unit,
 )
 from separatrix.ground.toml import KeyPath
-from separatrix.ground.units import printable, shown
+from separatrix.ground.units import format_quantity, printable, shown
 
 Schema = TypeVar("Schema")
 MOST_FAULTS = 100
@@ -176,7 +176,7 @@ def read_document(schema: type[Schema], document: Document, helper: Helper | Non
     try:
         value = reading.record(schema, document.data, ())
     except Refused:
-        raise together(reading.faults) from None
+        raise together(reading.in_order()) from None
     notes = (*document.notes, *reading.notes)
     return Loaded(value=value, sources=reading.sources, notes=notes, distributions=reading.distributions)
 
@@ -250,8 +250,11 @@ def _dropped(section: Any, variant: Mapping[str, Any]) -> Iterator[str]:
             )
     for name, one in keys_of(section).items():
         for only in one.key.only:
-            words = [toml.folded(str(getattr(value, "value", value))) for value in only.values]
-            if only.key in variant and toml.folded(str(variant[only.key])) not in words:
+            try:
+                chosen = toml.choice(keys_of(section)[only.key].hint)(variant.get(only.key), "")
+            except InputError:  # it is not given, or refused where the section is read
+                continue
+            if chosen not in only.values:
                 yield name
 
 
@@ -271,7 +274,7 @@ class Reading:
     schema: type
     document: Document
     helper: Helper | None = None
-    faults: list[InputError] = field(default_factory=list)
+    faults: list[tuple[KeyPath, InputError]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     sources: dict[KeyPath, Source] = field(default_factory=dict)
     distributions: dict[KeyPath, Any] = field(default_factory=dict)
@@ -282,13 +285,24 @@ class Reading:
         """Note a mistake in the value of a path."""
         for one in error.problems or (error,):
             if isinstance(error, Elsewhere):
-                self.faults.append(one)
+                self.faults.append((path, one))
             elif len(self.faults) < MOST_FAULTS:
                 place, name = self.document.place(path), self.document.name(path)
-                self.faults.append(one.at(f"{place}: {name}{one.path}" if path else place))
+                self.faults.append((path, one.at(f"{place}: {name}{one.path}" if path else place)))
             elif len(self.faults) == MOST_FAULTS:
                 rule = f"was not read to its end: it has more than {MOST_FAULTS} mistakes"
-                self.faults.append(InputError(self.document.label, rule))
+                self.faults.append(((), InputError(self.document.label, rule)))
+
+    def in_order(self) -> list[InputError]:
+        """Mistakes in the order of the file; what concerns the file as a whole comes last."""
+        known = {path: place for place, path in enumerate(self.document.places)}
+        none = len(known)
+
+        def order(fault: tuple[KeyPath, InputError]) -> int:
+            parts = (fault[0][:length] for length in range(len(fault[0]), 0, -1))
+            return next((known[part] for part in parts if part in known), none)
+
+        return [error for _, error in sorted(self.faults, key=order)]
 
     def record(self, owner: type[Schema], raw: Any, path: KeyPath, above: Described | None = None) -> Schema:
         """Record of a table; fields of an open unit have that of the key above."""
@@ -321,7 +335,7 @@ class Reading:
                 refused.add(name)
                 self._unknown(name, raw[name], path, keys)
         for fault in faults_of(owner, keys, values, written, refused):
-            self._refuse_fault(fault, path)
+            self._refuse_fault(fault, path, keys)
         self._ignore_silent_keys(keys, values, written, refused, raw, path)
         if len(self.faults) > before:
             raise Refused
@@ -331,7 +345,7 @@ class Reading:
         """Record of values that follow from those of a table."""
         faults = tuple(faults_of(owner, keys_of(owner), values, set(values), set()))
         for fault in faults:
-            self._refuse_fault(fault, path)
+            self._refuse_fault(fault, path, keys_of(owner))
         if faults:
             raise Refused
         return built(owner, values)
@@ -346,18 +360,21 @@ class Reading:
         path: KeyPath,
     ) -> None:
         """Note written keys that have no effect beside the value of another, and take their defaults."""
+        unused: dict[str, list[str]] = {}
         for name, only in silent_keys(keys, values, written, refused).items():
             if only.ignored and only.key in written:
-                at = (*path, name)
-                because = f"not used, because {only.key} is {shown(raw[only.key])}."
-                self.notes.append(f"{self.document.place(at)}: {self.document.name(at)}: {because}")
+                unused.setdefault(only.key, []).append(name)
                 values[name] = keys[name].default
+        for other, names in unused.items():
+            at = (*path, names[0])
+            where = ", ".join([f"{self.document.place(at)}: {self.document.name(at)}", *names[1:]])
+            self.notes.append(f"{where}: not used, because {other} is {shown(raw[other])}.")
 
     def _noted(self, hint: Any, one: Described, raw: Any, path: KeyPath) -> Any:
         """Value of a path and its source; `_NOTHING` where it was refused."""
         if len(self.faults) > MOST_FAULTS:
             return _NOTHING
-        text = "" if isinstance(raw, dict | list) else str(raw)
+        text = "" if isinstance(raw, dict | list) else shown(raw)
         self.sources[path] = Source(Origin.GIVEN, self.document.place(path), text)
         try:
             return self.convert(hint, one, raw, path)
@@ -367,10 +384,12 @@ class Reading:
             pass
         return _NOTHING
 
-    def _refuse_fault(self, fault: Fault, path: KeyPath) -> None:
-        at = (*path, *fault.path)
-        got = fault.got
-        if got is None:
+    def _refuse_fault(self, fault: Fault, path: KeyPath, keys: Mapping[str, Described]) -> None:
+        at, got = (*path, *fault.path), fault.got
+        if got is None and at in self.distributions:
+            one, unit = self.distributions[at], keys[str(fault.path[0])].unit
+            got = f"{one.text}, whose mean is {format_quantity(one.mean, unit or '-', 8)}"
+        elif got is None:
             raw = self.document.written(at)
             got = "" if raw is None else shown(raw)
         self.refuse(at, InputError("", fault.rule, got, fault.cure))
@@ -417,7 +436,7 @@ class Reading:
             raise InputError("", "must be a list in [brackets]", shown(raw), one.key.hint)
         if not isinstance(raw, list):
             return (self.convert(without_unit(hint)[0], one, raw, path),)
-        if not raw and one.unit:
+        if not raw and one.unit and without_unit(hint)[0] is float:
             raise InputError("", "must not be empty", cure="Leave it out, or give its values.")
         one = one._replace(key=replace(one.key, read=None))
         made = self._each(hint, one, (((*path, i), item) for i, item in enumerate(raw)))

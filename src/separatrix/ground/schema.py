@@ -29,6 +29,7 @@ import textwrap
 import typing
 from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import MISSING, dataclass, field, fields
+from enum import Enum
 from functools import cache, partial
 from itertools import pairwise
 from types import NoneType, UnionType
@@ -37,7 +38,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeVar, dataclass_trans
 from separatrix.ground.bounds import Bound, is_number
 from separatrix.ground.errors import InputError, noted, together
 from separatrix.ground.toml import KeyPath, text
-from separatrix.ground.units import UNITS, format_quantity, parse, shown
+from separatrix.ground.units import UNITS, format_quantity, parse, shown, unit_of
 
 Made = TypeVar("Made")
 
@@ -393,7 +394,7 @@ def _rules(
     """What type, bound and length of each key refuse; a default is right."""
     for name in (name for name in keys if name in written and name not in bad):
         if values[name] is None and keys[name].key.read is None:  # from Python
-            yield Fault(name, "must not be None", keys[name].key.hint, "")
+            yield Fault(name, "is missing", keys[name].key.hint, "")
         elif values[name] is not MISSING:
             yield from _of_type(keys[name].hint, keys[name], values[name], (name,))
 
@@ -421,7 +422,9 @@ def _of_type(hint: Any, one: Described, value: Any, path: KeyPath) -> Faults:
     elif origin is tuple:
         yield from _of_list(arguments, one, value, path)
     elif isinstance(hint, type) and known.read is None and not isinstance(value, hint):
-        yield Fault(path, f"must be of {hint.__name__}", known.hint)
+        is_choice = issubclass(hint, Enum)
+        names = ", ".join(f"{hint.__name__}.{option.name}" for option in hint) if is_choice else hint.__name__
+        yield Fault(path, f"must be one of {names}" if is_choice else f"must be of {names}", known.hint)
 
 
 def _of_list(arguments: tuple[Any, ...], one: Described, value: Any, path: KeyPath) -> Faults:
@@ -503,28 +506,38 @@ def _check_itself(self: Any) -> None:
     values = {one.name: getattr(self, one.name) for one in fields(owner)}
     wrong: list[InputError] = []
     for name, one in keys.items():
-        if isinstance(values[name], str) and one.unit in UNITS:
+        value = values[name]
+        if one.unit in UNITS and (
+            isinstance(value, str) or (type(value) is tuple and str in map(type, value))
+        ):
             with noted(wrong):
-                values[name] = parse(values[name], one.unit, f"{owner.__name__}.{name}")
+                values[name] = _parsed(value, one.unit, f"{owner.__name__}.{name}")
                 object.__setattr__(self, name, values[name])
     written = {name for name, one in keys.items() if one.is_required or values[name] != one.default}
     refused = {error.path.partition(".")[2] for error in wrong}
     for fault in faults_of(owner, keys, values, written, refused):
-        where = ".".join([owner.__name__, *map(str, fault.path)])
-        wrong.append(InputError(where, fault.rule, _got(fault, keys, values), fault.cure))
+        where = owner.__name__ + "".join(f"[{x + 1}]" if isinstance(x, int) else f".{x}" for x in fault.path)
+        wrong.append(InputError(where, fault.rule, _got(fault, owner, values), fault.cure))
     if wrong:
         raise together(wrong)
 
 
-def _got(fault: Fault, keys: Mapping[str, Described], values: Mapping[str, Any]) -> str:
+def _parsed(value: Any, unit: str, where: str) -> Any:
+    """A text as a number in SI, or each text of a tuple."""
+    if isinstance(value, str):
+        return parse(value, unit, where)
+    return tuple(parse(one, unit, where) if isinstance(one, str) else one for one in value)
+
+
+def _got(fault: Fault, owner: type, values: Mapping[str, Any]) -> str:
     """Value of a fault for a message, where no file has its text."""
     if fault.got is not None or not fault.path:
         return fault.got or ""
     name, *rest = fault.path
-    value, unit = values[str(name)], keys[str(name)].unit
+    value, unit = values[str(name)], unit_of(owner, str(name))
     for part in rest:
         if is_record(type(value)):
-            value, unit = getattr(value, str(part)), keys_of(type(value))[str(part)].unit
+            value, unit = getattr(value, str(part)), unit_of(type(value), str(part))
         else:
             value = value[part]
     if value is None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from functools import partial
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 from separatrix.friction.prediction import FRICTION_LIMIT
 from separatrix.ground.bounds import is_number
@@ -120,17 +120,15 @@ def _read_material(raw: Any, path: KeyPath, reading: Reading) -> Material | None
     """A material; of a name that of the candidate, else of the library; None if only a candidate has it."""
     helper, one = helper_of(reading), keys_of(CageDesign)["material"]
     if not isinstance(raw, str):
-        made: Material = helper.named(raw, one, reading) or reading.record(Material, raw, path, one)
-        return made
+        return cast("Material", helper.named(raw, one, reading) or reading.record(Material, raw, path, one))
     ranking = reading.done.get("ranking")
-    known = {folded(c.name): c.material for c in ranking.candidates} if ranking else {}
-    if folded(text(raw, "")) in known and (own := known[folded(raw)]) is not None:
-        return own
-    if folded(raw) in known and helper.library.named(one.key.named, raw) is None:
-        return None
-    more = f" Candidates are {', '.join(c.name for c in ranking.candidates)}." if ranking else ""
-    name = helper.known(raw, one.key.named, more)
-    return helper.library.material(one.key.named, name, temperature_of(reading))
+    known = {folded(c.name): c for c in ranking.candidates} if ranking else {}
+    candidate = known.get(folded(text(raw, "")))
+    if candidate is not None and (candidate.material or not helper.library.named("cage material", raw)):
+        return cast("Material | None", candidate.material)
+    more = f" Candidates are {', '.join(c.name for c in known.values())}." if known else ""
+    name = helper.known(raw, "cage material", more)
+    return helper.library.material("cage material", name, temperature_of(reading))
 
 
 POCKET_AND_LAND: dict[str, Callable[..., Any]] = {
@@ -161,7 +159,7 @@ class CageDesign:
     """The cage: inertia, pockets and guidance."""
 
     RULES: ClassVar = (
-        one_of("pocket_spacing_scatter", "pocket_angles"),
+        one_of("pocket_angles", "pocket_spacing_scatter"),
         all_or_none("inner_diameter", "outer_diameter", "width"),
     )
 
@@ -387,13 +385,6 @@ def lobes_touch_where_they_are(
         yield Fault("land_out_of_round", rule, "It is an amplitude: half of high less low.")
 
 
-def scatter_or_angles(pocket_angles: tuple[Radian, ...], pocket_spacing_scatter: Ratio) -> Faults:
-    """Pockets are at their angles, or displaced at random."""
-    if pocket_angles and pocket_spacing_scatter != 0.0:
-        rule = "and pocket_angles exclude each other"
-        yield Fault("pocket_spacing_scatter", rule, "Give one of the two.")
-
-
 def share_rules(owner: type) -> None:
     """Give a record the rules that cages have alike."""
     check(owner)(clearance_can_be)
@@ -402,7 +393,6 @@ def share_rules(owner: type) -> None:
     check(owner, after=(slot_lies_along_the_circumference,))(offset_stays_in_the_pocket)
     before = (slot_lies_along_the_circumference, offset_stays_in_the_pocket)
     check(owner, after=before)(scatter_stays_in_the_clearance)
-    check(owner)(scatter_or_angles)
     check(owner)(lobes_touch_where_they_are)
 
 

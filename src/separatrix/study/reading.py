@@ -256,8 +256,11 @@ def require(study: Study, verb: str, *sections: str) -> None:
     InputError
         Names the missing sections, the verb, and where to see what they look like.
     """
-    if study.left_out is not None and (verb == "check" or "cage" in sections):
+    needs_cage = verb == "check" or "cage" in sections
+    if study.left_out is not None and needs_cage:
         raise study.left_out
+    for fault in stiffness_is_known(study.cage, study.ranking) if study.cage and needs_cage else ():
+        raise InputError(f"{study.name}: [cage] ball_cage_stiffness", fault.rule, cure=fault.cure)
     missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
     if missing:
         rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"

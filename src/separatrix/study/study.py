@@ -253,6 +253,7 @@ class Study:
         compare=False,
         length=(1, 20),
         single=True,
+        hint="Give the path of a file or a folder, in quotes, or a list of them.",
         without="materials.toml, and the folder materials, beside the study",
     )
     """Files or folders with your own materials."""
@@ -357,7 +358,11 @@ def with_models(study: Study, models: Mapping[str, str]) -> Study:
         raise InputError(study.name, "lacks the section [cage]")
     origins = {f"cage.{name}": f"--{name} {value.value}" for name, value in chosen.items()}
     cage = replace(study.cage, **chosen)  # type: ignore[arg-type]  # the enums of these fields
-    return replace(study, cage=cage, origins={**study.origins, **origins})
+    content = study.content
+    if content is not None:
+        given = {**content["data"].get("cage", {}), **{name: one.value for name, one in chosen.items()}}
+        content = {**content, "data": {**content["data"], "cage": given}}
+    return replace(study, cage=cage, origins={**study.origins, **origins}, content=content)
 
 
 ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")
