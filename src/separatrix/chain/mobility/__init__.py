@@ -1,17 +1,15 @@
-"""Mobility of a ball along its orbit: rates, dampings, law of traction, restitution of impacts."""
+"""Mobility of a ball along its orbit: rates, dampings, law of traction."""
 
 from separatrix.chain.mobility.closure import free_ball, held_ball
-from separatrix.chain.mobility.record import Impacts, LinearMobility, Mobility, SlipLaw
-from separatrix.chain.mobility.solve import impacts, linear_mobility, mobility
+from separatrix.chain.mobility.record import LinearMobility, Mobility, SlipLaw
+from separatrix.chain.mobility.solve import linear_mobility, mobility
 
 __all__ = [
-    "Impacts",
     "LinearMobility",
     "Mobility",
     "SlipLaw",
     "free_ball",
     "held_ball",
-    "impacts",
     "linear_mobility",
     "mobility",
 ]

@@ -71,16 +71,3 @@ def modes(slopes: Array, masses: Array) -> Modes:
         right=patterns[:, 0].real if is_real else None,
         left=measures[0].real if is_real else None,
     )
-
-
-def mobility_at(found: Modes, frequency: Array) -> NDArray[np.complex128]:
-    """Y(i omega) at frequencies [Hz], same shape [m/s/N]."""
-    s = 2j * np.pi * np.asarray(frequency)[..., None]
-    terms = found.shares * found.rates / (s + found.rates)
-    return np.asarray(terms.sum(axis=-1))
-
-
-def step_damping(found: Modes, time: Array) -> Array:
-    """F/u after a force was put on at time 0, same shape [N s/m]."""
-    followed = found.shares * -np.expm1(-found.rates * np.asarray(time)[..., None])
-    return np.asarray(1.0 / followed.sum(axis=-1).real)

@@ -1,4 +1,4 @@
-"""What the mobility of a ball is made of: its linear motion, its law of traction, its impacts."""
+"""What the mobility of a ball is made of: its linear motion, its law of traction."""
 
 from __future__ import annotations
 
@@ -64,8 +64,7 @@ class Mobility:
     `capacity` is race friction times both loads. F(u) at speeds beyond the free orbit, shape (push,), is
     forward and backward that of the slip fields, the slowest mode held; `force_law` is that of `traction`.
     `law_error` is the largest difference of the law from their mean, `asymmetry` half their largest
-    difference, both over the capacity. After a unit force was put on, `step_damping` is F/u, shape
-    (instant,); the size of Y = u/F and 1/Re Y have shape (frequency,).
+    difference, both over the capacity.
     """
 
     ball: int  # number of the most loaded ball, from 0
@@ -78,35 +77,3 @@ class Mobility:
     force_forward: Annotated[Array, "N", ("push",)]
     force_backward: Annotated[Array, "N", ("push",)]
     force_law: Annotated[Array, "N", ("push",)]
-    instant: Annotated[Array, "s", ("instant",)]  # time since a unit force was put on
-    step_damping: Annotated[Array, "N s/m", ("instant",)]  # force over speed at that time
-    frequency: Annotated[Array, "Hz", ("frequency",)]  # of a small alternating force
-    mobility: Annotated[Array, "m/s/N", ("frequency",)]
-    damping_at_frequency: Annotated[Array, "N s/m", ("frequency",)]
-    """1/Re Y, what a small alternating force feels."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Impacts:
-    """Share of its speed with which the cage returns from an impact on one ball; below 0 it goes on.
-
-    Arrays have shape (impact,). `restitution_forward` and `_backward` integrate the whole slip fields, the
-    cage coming from behind the ball and from in front of it; so does `peak_force`, the larger of both.
-    `restitution_law` has the law of traction. `restitution_linear` is the limit of gentle impacts.
-    `felt_mass` is that of a ring that may turn; `restitution_summed` is the paper's formula with this mass,
-    `nominal_restitution_factor` the paper's, with all of the cage's.
-    """
-
-    felt_mass: Kilogram
-    ball_cage_stiffness: NewtonPerMetre  # linear stiffness of the pocket in the impacts
-    nominal_restitution_factor: Ratio  # the paper's formula, with the whole cage mass
-    restitution_summed: Ratio  # the paper's formula, with the felt mass
-    restitution_linear: Ratio  # limit of gentle impacts
-    speed: Annotated[Array, "m/s", ("impact",)]  # of the cage before the impact
-    restitution_forward: Annotated[Array, "-", ("impact",)]
-    """By the slip fields, the cage from behind the ball."""
-    restitution_backward: Annotated[Array, "-", ("impact",)]
-    """By the slip fields, the cage from in front of the ball."""
-    restitution_law: Annotated[Array, "-", ("impact",)]  # by the fitted law of traction
-    peak_force: Annotated[Array, "N", ("impact",)]  # the larger of both senses
-    duration: Annotated[Array, "s", ("impact",)]  # of the contact
