@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
+from separatrix.chain.ball_mobility import LinearMobility, Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.lubrication import LubricationCurve
-from separatrix.chain.mobility import LinearMobility, Mobility
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy

@@ -13,8 +13,8 @@ from pathlib import Path
 from separatrix import answers
 from separatrix.cage import MovingCage, analyse, moving_cage, settings_for
 from separatrix.cage import simulate as follow
+from separatrix.chain.ball_mobility import SlipLaw, linear_mobility
 from separatrix.chain.contacts import BearingState, race_tracks
-from separatrix.chain.mobility import SlipLaw, linear_mobility
 from separatrix.chain.race_curve import beyond_strips
 from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_ratio, shear, shown_curve

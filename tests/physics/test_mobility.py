@@ -16,12 +16,20 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
+from separatrix.chain import ball_mobility
+from separatrix.chain.ball_mobility import (
+    SlipLaw,
+    balanced,
+    fitted_law,
+    groove,
+    held_ball,
+    mobility,
+    pitch_angle,
+    pocket_friction_effect,
+    pushed,
+)
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.contacts import bearing_state, race_tracks
-from separatrix.chain.mobility import SlipLaw, closure, held_ball, mobility
-from separatrix.chain.mobility.field import balanced, groove, pitch_angle, pocket_friction_effect
-from separatrix.chain.mobility.law import fitted_law
-from separatrix.chain.mobility.push import pushed
 from separatrix.chain.race_curve import race_slope
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
@@ -354,7 +362,7 @@ def test_a_ball_off_the_inner_race_is_refused(monkeypatch):
     given = records("cryo")
     state = bearing_state(given[0], given[1], given[2], given[3].race_friction)
     lifted = replace(state, inner=replace(state.inner, load=0.0))
-    monkeypatch.setattr(closure, "bearing_state", lambda *_: lifted)
+    monkeypatch.setattr(ball_mobility, "bearing_state", lambda *_: lifted)
     with pytest.raises(InputError, match="must press a ball on both races"):
         held_ball.__wrapped__(*given, SlipLaw.RIGID)
 

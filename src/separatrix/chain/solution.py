@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from separatrix.chain.ball_mobility import Mobility, free_ball, mobility
 from separatrix.chain.ball_traction import FreeBall
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
@@ -25,7 +26,6 @@ from separatrix.chain.contacts import (
     require_rolling,
 )
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
-from separatrix.chain.mobility import Mobility, free_ball, mobility
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
 from separatrix.chain.pocket import (
     REFERENCE,

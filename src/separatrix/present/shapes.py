@@ -22,10 +22,10 @@ from separatrix.answers import (
 )
 from separatrix.cage import Cause, MovingCage, RunOutcome
 from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
+from separatrix.chain.ball_mobility import Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.mobility import Mobility
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import NotDrawn, UncertainMaterial

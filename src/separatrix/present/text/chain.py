@@ -8,10 +8,10 @@ from math import degrees
 import numpy as np
 
 from separatrix.answers import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
+from separatrix.chain.ball_mobility import Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.mobility import Mobility
 from separatrix.present.nodes import Leaf, Node, field_units, fields_of, plain
 from separatrix.present.shapes import shape
 from separatrix.present.text.sentences import strain_facts
