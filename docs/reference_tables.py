@@ -152,19 +152,13 @@ TRIBOMETER = (
 )
 TRACTION = (
     *CONTACTS,
-    Line("free_rolling", meaning="the exact contact in free rolling"),
-    Line("strips_traction_coefficient", "-", "increment", "the curve by strips"),
-    Line("exact_traction_coefficient", "-", "increment", "the curve by the exact contact"),
     Line("by_spin_roll_ratio", meaning="curves by strips at other pivoting-to-rolling ratios"),
     Line("shear", meaning="shear of a few strips in free rolling"),
-    Line("models", meaning="a row for each model of the contact"),
-    Line("outside", meaning="where the strips leave their range, a sentence each"),
 )
 FILMS = (
     *CHAIN,
     Line("film_thickness_here", "m", meaning="the study's own film"),
     Line("lubrication_reason", meaning="why there is no `lubrication`"),
-    Line("here", "-", meaning="the study's own share of the band over the contact"),
 )
 VERBS = {
     "check": Verb((answers.CheckAnswer,), CONTACTS),

@@ -21,7 +21,7 @@ _PUBLIC = {
     "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes "
     "ellipse_of_curvatures race_curvatures",
     "chain.lubrication": "LubricationCurve lubrication_curve",
-    "chain.mobility": "Impacts LinearMobility Mobility SlipLaw",
+    "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
     "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
     "chain.solution": "Solution solve",
     "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "

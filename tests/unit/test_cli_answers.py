@@ -51,7 +51,6 @@ KEYS = {
     **{("traction", race): CURVE for race in ("inner", "outer")},
     ("restitution", ""): " ".join(f"{name} {name}_free_spin" for name in DAMPING.split()),
     ("mobility", ""): "rates damping damping_relaxed effective_mass capacity speed force_forward force_law",
-    ("mobility", "impacts"): "speed restitution_forward restitution_law nominal_restitution_factor",
     ("simulate", ""): "outcome largest_offset whirl_frequency whirl_speed pocket_power",
     ("stability", "curve"): CRITICAL,
     ("stability", "linear_limit"): "restitution_factor critical_friction",

@@ -33,7 +33,7 @@ Nodes = dict[Place, dict[str, Plain]]
 
 NOT_RESULTS = frozenset(
     {"study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"}
-    | {"complete", "reason", "static_reason", "impacts_reason", "outcome_sentence", "paper_statement"}
+    | {"complete", "reason", "static_reason", "outcome_sentence", "paper_statement"}
     | {"words", "ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"}
 )
 """Inputs, sentences that follow from numbers, and single drawn bearings."""

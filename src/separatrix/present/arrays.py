@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import xarray as xr
 
-from separatrix.answers import MapAnswer, SensitivityAnswer, TractionAnswer
+from separatrix.answers import MapAnswer, SensitivityAnswer
 from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
 from separatrix.explore.sweep import Sweep
-from separatrix.ground.units import Array, Rows
+from separatrix.ground.units import Rows
 from separatrix.present.container import DAMAGE, check_container, damaged
 from separatrix.present.nodes import Group, Leaf, Node, Table, plain
 from separatrix.present.shapes import all_notes, shape
@@ -218,50 +218,11 @@ def _blank(like: object) -> object:
 
 Key = TypeVar("Key")
 
-AREA = {
-    "along": ("m", ("column",)),
-    "across": ("m", ("row",)),
-    "fraction": ("-", ("row", "column")),
-    "pressure": ("Pa", ("row", "column")),
-    "traction": ("Pa", ("direction", "row", "column")),
-    "slip": ("-", ("direction", "row", "column")),
-    "stick": ("-", ("row", "column")),
-    "stick_line": ("m", ("row",)),
-}
-"""Fields of an exact contact with their units and axes."""
-
 
 @functools.singledispatch
 def arranged(answer: object) -> Node:
     """Return the node of an answer as its dataset has it."""
     return shape(answer)
-
-
-@arranged.register
-def _(found: TractionAnswer) -> Node:
-    """With the fields of the exact contacts; where their grids differ the smaller one ends in NaN."""
-    node, areas = shape(found), (found.inner_area, found.outer_area)
-    solutions = [area.solution for area in areas if area is not None]
-    if len(solutions) < len(areas):
-        return node
-    size = {"row": max(x.across.size for x in solutions), "column": max(x.along.size for x in solutions)}
-    for race, area in zip(("inner", "outer"), areas, strict=True):
-        group = node[race]
-        if area is None or not isinstance(group, Group):
-            continue
-        for name, (unit, axes) in AREA.items():
-            value = area.stick_line if name == "stick_line" else getattr(area.solution, name)
-            shown = _padded(value, tuple(size.get(axis, 2) for axis in axes))
-            group.fields[f"area_{name}"] = Leaf(shown, unit, axes)
-    return node
-
-
-def _padded(values: Array | NDArray[np.bool_] | None, shape: tuple[int, ...]) -> Array:
-    """Return values in the first places of an array of this shape, NaN in the others."""
-    full = np.full(shape, np.nan)
-    if values is not None:
-        full[tuple(slice(n) for n in values.shape)] = values
-    return full
 
 
 @arranged.register

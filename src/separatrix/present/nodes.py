@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from separatrix.chain.mobility import SlipLaw
+from separatrix.chain.ball_mobility import SlipLaw
 from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.units import Rows
 from separatrix.study import study

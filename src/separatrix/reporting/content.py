@@ -50,7 +50,7 @@ MOST_ROWS = 40
 
 NEEDED = {
     "bearing": ("balls", "contacts"),
-    "traction": ("inner", "outer", "models", "outside"),
+    "traction": ("inner", "outer", "outside"),
     "restitution": ("restitution_factor", "race_damping", "inner", "outer"),
     "stability": ("curve", "here", "chain", "cage"),
     "rank": ("environment", "environments", "stability", "chain", "pocket"),
