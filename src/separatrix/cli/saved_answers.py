@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
 
 COMPARE = "Two answers of one verb side by side: what differs, and by more than counting noise?"
-COMPARE_EPILOG = "A and B are folders of answers, their .json, .nc or .html files, of any verb with a study."
+COMPARE_EPILOG = "A and B are folders of answers, their .json or .html files, of any verb with a study."
 
 
 def compare(
@@ -120,9 +120,6 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     from separatrix.present import document
     from separatrix.verdict.long_jobs import Interrupted
 
-    if saved.document is None:
-        cure = "Name the .json that was written beside it."
-        raise InputError(saved.path, "has no document to compare with", cure=cure)
     stored, kept = saved.document, _kept_by(saved)
     if stored.get("complete") is False:
         raise InputError(saved.path, "was interrupted", cure="Resume it: run its command again.")
@@ -148,7 +145,7 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
 
 def _kept_by(saved: Saved) -> Document:
     """Provenance of an answer, with what must be there."""
-    stored = saved.document or {}
+    stored = saved.document
     kept = stored.get("provenance")
     if not isinstance(kept, dict):
         cure = "Only answers since provenance is kept can be computed again."

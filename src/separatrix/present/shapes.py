@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf
+from math import inf, isnan
 from typing import TypeVar
 
 import numpy as np
@@ -26,6 +26,7 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.mobility import Mobility
+from separatrix.chain.shown_traction import ExactArea
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import NotDrawn, UncertainMaterial
@@ -99,9 +100,21 @@ def _(found: TractionAnswer) -> Node:
             own: TractionCurve | None = getattr(found, f"{race}_{model}")
             coefficient = None if own is None else own.traction_coefficient
             node[f"{model}_traction_coefficient"] = Leaf(coefficient, "-", ("increment",))
+        if (area := getattr(found, f"{race}_area")) is not None:
+            node["area"] = Group(shape(area))
         races[race] = Group(node | {"free_rolling": models[race]})
     ranges = {"models": models["models"], "outside": models["outside"]}
     return {"race_friction": Leaf(found.race_friction, "-"), **races, **ranges}
+
+
+@shape.register
+def _(area: ExactArea) -> Node:
+    """The fields of the contact; None where a row of strips slips throughout."""
+    found, line = area.solution, area.stick_line
+    fields = fields_of(found, "along", "across", "fraction", "pressure", "traction", "slip")
+    ends = [None] * len(found.across) if line is None else [None if isnan(x) else x for x in line]
+    sticks = Leaf(found.stick, "-", ("row", "column"))
+    return fields | {"stick": sticks, "stick_line": Leaf(ends, "m", ("row",))}
 
 
 def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve], shear: ShearField) -> Node:
@@ -280,7 +293,11 @@ def _(found: RankingAnswer) -> Node:
 
 @shape.register
 def _(found: SensitivityAnswer) -> Node:
-    return shape(found.uncertain) | _cage(found)
+    here = {
+        "film_thickness_here": Leaf(found.film_thickness, "m"),
+        "race_friction_here": Leaf(found.race_friction, "-"),
+    }
+    return shape(found.uncertain) | here | _cage(found)
 
 
 @shape.register
