@@ -11,11 +11,11 @@ import openpyxl
 import pytest
 from minimal_xlsx import Formula, Shown, workbook
 
+import separatrix
 from separatrix.cli import main
 from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.sheet import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
 from separatrix.ground.units import parse
-from separatrix.present import load as load_dataset
 from separatrix.saving import write_ranking
 from separatrix.study.reading import read_study, shipped_studies
 from separatrix.study.reading.cells import COLUMNS, sheets_of
@@ -289,7 +289,7 @@ def cells(path):
 @pytest.fixture(scope="module")
 def data(folder, answer):
     """The dataset of the small ranking, for its units."""
-    return load_dataset(folder / "out" / "rank.nc")
+    return separatrix.load(folder / "out" / "rank.json")
 
 
 def test_numbers_are_those_of_the_document(folder, answer):

@@ -23,8 +23,9 @@ VERBS = (
 )
 """Verbs of a study whose answers are read; of a folder with several, two are compared in this order."""
 
-ENDINGS = (".json", ".html", ".htm")
-"""Endings of files with answers: documents, reports."""
+REPORTS = (".html", ".htm")
+ENDINGS = (".json", *REPORTS, ".nc")
+"""Endings of files of answers: documents, reports, and the arrays, which are not read back."""
 
 MOST_BYTES = 256 * 1024**2
 REPORT = re.compile(
@@ -71,7 +72,7 @@ def read_answers(path: Path) -> dict[str, Saved]:
         if not found:
             raise InputError(where, "does not contain an answer", cure=_MAKE)
         return found
-    if path.suffix.casefold() in ENDINGS[1:]:
+    if path.suffix.casefold() in REPORTS:
         match = REPORT.search(_bytes(path))
         if match is None:
             raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
