@@ -36,8 +36,9 @@ def dataset(found: Mapping[str, Any]) -> xr.Dataset:
     """
     body = {key: value for key, value in found.items() if key not in HEAD}
     data = _arrays(node_of(body, found["units"]))
-    texts = {key: json.dumps(found[key]) for key in ("study", "warnings", "provenance")}
-    data.attrs |= {key: found[key] for key in HEAD if key != "units"} | texts
+    for key in HEAD:
+        if key in found and key != "units":
+            data.attrs[key] = found[key] if isinstance(found[key], str | int) else json.dumps(found[key])
     return data
 
 

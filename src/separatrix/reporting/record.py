@@ -28,7 +28,7 @@ class Kept:
     @cached_property
     def data(self) -> xr.Dataset | None:
         """Its labelled arrays; None of an interrupted one."""
-        return arrays(self.document, f"{self.document['verb']}.json")
+        return arrays(self.document, f"{self.document.get('verb')}.json")
 
 
 @dataclass(frozen=True, slots=True)
