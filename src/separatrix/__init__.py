@@ -30,6 +30,7 @@ _PUBLIC = {
     "SolvedCase exact_contact rolling_cases",
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "comparing.records": "Comparison",
+    "comparing.saved": "load",
     "data_answers": "Materials TribometerAnswer materials tribometer",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
@@ -40,7 +41,7 @@ _PUBLIC = {
     "reporting.record": "Report",
     "verdict.long_jobs": "Interrupted Runner",
     "ranking": "Ranking",
-    "present": "dataset document load save to_dataframe to_xarray",
+    "present": "dataset document save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Material MotionModel Operation PocketContact PocketShape PressureSlip Race "

@@ -15,11 +15,11 @@ from separatrix.study.reading.document import SECTIONS, load
 from separatrix.study.reading.templates import template_keys, template_workbook
 from separatrix.study.reading.values import READERS
 
+import separatrix
 from separatrix.cli import main
 from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.sheet import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
 from separatrix.ground.units import parse
-from separatrix.present import load as load_dataset
 from separatrix.saving import write_ranking
 from separatrix.study.reading import read_study, shipped_studies
 
@@ -289,7 +289,7 @@ def cells(path):
 @pytest.fixture(scope="module")
 def data(folder, answer):
     """The dataset of the small ranking, for its units."""
-    return load_dataset(folder / "out" / "rank.nc")
+    return separatrix.load(folder / "out" / "rank.json")
 
 
 def test_numbers_are_those_of_the_document(folder, answer):

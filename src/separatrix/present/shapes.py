@@ -258,7 +258,11 @@ def _(found: RankingAnswer) -> Node:
 
 @shape.register
 def _(found: SensitivityAnswer) -> Node:
-    return shape(found.uncertain) | _cage(found)
+    here = {
+        "film_thickness_here": Leaf(found.film_thickness, "m"),
+        "race_friction_here": Leaf(found.race_friction, "-"),
+    }
+    return shape(found.uncertain) | here | _cage(found)
 
 
 @shape.register
