@@ -9,12 +9,7 @@ import pytest
 from separatrix import verbs
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import ValidityWarning
-from separatrix.ranking.reason import (
-    Moved,
-    beyond_motion,
-    pocket_pressure,
-    transmitted_force,
-)
+from separatrix.ranking.reason import Moved, beyond_motion, pocket_pressure, transmitted_force
 from separatrix.study.reading import beyond_bearings, plausible_cage_masses, read_study
 from separatrix.study.study import BallBearing, Operation, PocketShape, Study
 

@@ -35,27 +35,12 @@ from separatrix.chain.pocket import (
     pocket_conditions,
     pocket_speed,
 )
-from separatrix.chain.restitution import (
-    Restitution,
-    ball_pocket_stiffness,
-    restitution,
-)
+from separatrix.chain.restitution import Restitution, ball_pocket_stiffness, restitution
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.units import (
-    MetrePerSecond,
-    NewtonPerMetre,
-    Ratio,
-)
+from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import NAMELESS, cage_candidate, environment_of
-from separatrix.study.study import (
-    CageDesign,
-    Candidate,
-    ClearanceState,
-    Friction,
-    Material,
-    Study,
-)
+from separatrix.study.study import CageDesign, Candidate, ClearanceState, Friction, Material, Study
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 WORN_MOBILITY = (
