@@ -89,7 +89,7 @@ class Solution:
         Warns
         -----
         ValidityWarning
-            A contact leaves what races bear or what the model holds: `contact_limits`.
+            A contact leaves what races bear or what the model holds.
         """
         asked = self.study
         state = bearing_state(asked.bearing, asked.operation, asked.kinematics, asked.film.race_friction)
