@@ -17,7 +17,7 @@ from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction import exact
 from separatrix.chain.traction.curve import TractionCurve, traction_curve
-from separatrix.chain.traction.exact.normal import pressed_contact
+from separatrix.chain.traction.exact.pressure import pressed_contact
 from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
 from separatrix.chain.traction.film import track_of
 from separatrix.ground.errors import ConvergenceError, InputError

@@ -35,28 +35,13 @@ from separatrix.chain.pocket import (
     pocket_conditions,
     pocket_speed,
 )
-from separatrix.chain.restitution import (
-    Restitution,
-    ball_pocket_stiffness,
-    restitution,
-)
+from separatrix.chain.restitution import Restitution, ball_pocket_stiffness, restitution
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.units import (
-    MetrePerSecond,
-    NewtonPerMetre,
-    Ratio,
-)
+from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import cage_candidate, environment_of
-from separatrix.study.study import (
-    CageDesign,
-    Candidate,
-    ClearanceState,
-    Friction,
-    Material,
-    Study,
-)
+from separatrix.study.study import CageDesign, Candidate, ClearanceState, Friction, Material, Study
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 WORN_MOBILITY = (
@@ -105,7 +90,7 @@ class Solution:
         Warns
         -----
         ValidityWarning
-            A contact leaves what races bear or what the model holds: `contact_limits`.
+            A contact leaves what races bear or what the model holds.
         """
         asked = self.study
         state = bearing_state(
