@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import inf, isnan
-from typing import TypeVar
 
 import numpy as np
 
@@ -39,10 +38,6 @@ from separatrix.present.text.tables import quantity
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, Ranking
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
-
-Key = TypeVar("Key")
-Record = TypeVar("Record")
-
 
 # The chain.
 
