@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from separatrix.ground.errors import InputError
 from separatrix.ground.schema import Fault, Faults, check, key, positive, record
 from separatrix.ground.units import (
     Array,

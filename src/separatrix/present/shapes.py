@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import inf
-from typing import TypeVar
 
 import numpy as np
 
@@ -38,10 +37,6 @@ from separatrix.present.text.tables import quantity
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, Ranking
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
-
-Key = TypeVar("Key")
-Record = TypeVar("Record")
-
 
 # The chain.
 
