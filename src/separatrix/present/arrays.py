@@ -177,7 +177,7 @@ def _array(value: object, *, is_text: bool) -> NDArray[np.generic]:
     """
     with contextlib.suppress(ValueError):  # some rows are shorter than others
         if (array := np.array(value)).dtype.kind in "biuf":
-            return array
+            return np.where(np.isfinite(array), array, np.nan) if array.dtype.kind == "f" else array
     found = list(_leaves(value))
     if any(isinstance(one, str) for one in found) or (is_text and all(one is None for one in found)):
         return np.array(_without_none(value, ""), dtype=object)
