@@ -9,10 +9,9 @@ import warnings
 from dataclasses import replace
 
 from separatrix.chain.contacts import race_tracks
-from separatrix.chain.race_curve import RaceTrack, exact_slope, strips
+from separatrix.chain.race_curve import exact_slope, strips
 from separatrix.chain.restitution import restitution
 from separatrix.chain.solution import Solution, solve
-from separatrix.chain.traction import bonded_layer, traction_slope
 from separatrix.ground.errors import SeparatrixError, ValidityWarning
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
@@ -38,18 +37,8 @@ EXACT = TractionSettings(model=TractionModel.EXACT)
 OWN = replace(EXACT, pressure=ContactPressure.COATED)
 
 
-def by_layer(track: RaceTrack) -> float:
-    """Slope of strips under a bonded layer."""
-    film = track.film
-    layer = bonded_layer(read_study("cryogenic-turbopump").bearing, film)
-    return traction_slope(
-        track.ellipse, track.creep, race_friction=film.race_friction, film_compliance=0.0, layer=layer
-    )[0]
-
-
 WAYS = {
     "series": lambda track: strips(track, ContactPressure.HERTZ).slope,
-    "layer": by_layer,
     "coated": lambda track: strips(track, ContactPressure.COATED).slope,
     "exact": lambda track: exact_slope(track, EXACT).slope,
     "own": lambda track: exact_slope(track, OWN).slope,

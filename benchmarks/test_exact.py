@@ -8,10 +8,10 @@ import pytest
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve_each
-from separatrix.chain.traction.exact.flexibility import Body, Layer, solid
-from separatrix.chain.traction.exact.normal import pressed_contact
+from separatrix.chain.traction.exact.influence import Body, Layer, solid
+from separatrix.chain.traction.exact.pressure import pressed_contact
+from separatrix.chain.traction.exact.slip import FrictionLaw
 from separatrix.chain.traction.exact.slope import traction_slope
 
 STEEL = solid(200e9, 0.25)

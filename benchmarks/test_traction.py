@@ -5,7 +5,6 @@ import numpy as np
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.traction import solve_strip, traction_curve, traction_slope
-from separatrix.chain.traction.layer import BondedLayer, layer_tables
 from separatrix.chain.traction.master import film_tables
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
@@ -64,17 +63,5 @@ def test_master_tables(benchmark):
     def fresh():
         film_tables.cache_clear()
         return film_tables(200)
-
-    benchmark(fresh)
-
-
-def test_layer_tables(benchmark):
-    """Paid once a layer and ellipse: 12 strips of 200 and 400 elements."""
-    steel = {"ring_modulus": 205e9, "ring_poisson": 0.285, "ball_modulus": 205e9, "ball_poisson": 0.285}
-    layer = BondedLayer(thickness=1e-6, film_modulus=2e9, film_poisson=0.4, **steel)
-
-    def fresh():
-        layer_tables.cache_clear()
-        return layer_tables(layer, 0.01, 200)
 
     benchmark(fresh)

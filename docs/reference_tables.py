@@ -40,8 +40,8 @@ meaning. The page is written from the records of the program and from the
 a document are for, and the files beside it: [results](../reference/results.md).
 
 Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
-`warnings` (sentences), `provenance` (what `reproduce` needs) and `study` (every resolved input with
-`value`, `unit` and `origin`).
+`warnings` (sentences), `provenance` (what `reproduce` needs), `study` (every resolved input with
+`value`, `unit` and `origin`) and `units` (of each result, under the same names).
 """
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
@@ -150,20 +150,16 @@ TRIBOMETER = (
     Line("friction_file", meaning="path of the friction file, null if none was written"),
 )
 TRACTION = (
+    Line("area", meaning="fields of the exact contact in free rolling"),
     *CONTACTS,
-    Line("free_rolling", meaning="the exact contact in free rolling"),
-    Line("strips_traction_coefficient", "-", "increment", "the curve by strips"),
-    Line("exact_traction_coefficient", "-", "increment", "the curve by the exact contact"),
     Line("by_spin_roll_ratio", meaning="curves by strips at other pivoting-to-rolling ratios"),
     Line("shear", meaning="shear of a few strips in free rolling"),
-    Line("models", meaning="a row for each model of the contact"),
-    Line("outside", meaning="where the strips leave their range, a sentence each"),
 )
+OWN_FILM = Line("film_thickness_here", "m", meaning="the study's own film")
 FILMS = (
     *CHAIN,
-    Line("film_thickness_here", "m", meaning="the study's own film"),
+    OWN_FILM,
     Line("lubrication_reason", meaning="why there is no `lubrication`"),
-    Line("here", "-", meaning="the study's own share of the band over the contact"),
 )
 VERBS = {
     "check": Verb((answers.CheckAnswer,), CONTACTS),
@@ -175,7 +171,14 @@ VERBS = {
     "map": Verb((answers.MapAnswer, *CHAIN_RECORDS), (*OF_CAGE, *COUNTS)),
     "simulate": Verb((answers.SimulationAnswer, *CHAIN_RECORDS), RUN),
     "rank": Verb((answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
-    "sensitivity": Verb((answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
+    "sensitivity": Verb(
+        (answers.SensitivityAnswer, *CHAIN_RECORDS),
+        (
+            *OF_CAGE,
+            OWN_FILM,
+            Line("race_friction_here", "-", meaning="the study's own friction on the races"),
+        ),
+    ),
     "sweep": Verb(
         (Sweep, WorstCase, Duty),
         (

@@ -1,5 +1,6 @@
-"""Save an answer as netCDF, load it later, and draw a plot of your own from it."""
+"""Save an answer as JSON, load it later as labelled arrays, and draw a plot of your own from it."""
 
+import json
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -13,8 +14,8 @@ study = separatrix.read_study("cryogenic-turbopump")
 study = replace(study, operation=replace(study.operation, radial_load=500.0))
 answer = separatrix.bearing(study)
 with tempfile.TemporaryDirectory() as folder:
-    path = Path(folder) / "bearing.nc"  # as `separatrix bearing` writes it
-    separatrix.save(answer.to_xarray(), path)
+    path = Path(folder) / "bearing.json"  # as `separatrix bearing` writes it
+    path.write_text(json.dumps(answer.document()))
     data = separatrix.load(path)
 
 print(data[["load_inner", "load_outer", "orbital_speed"]])

@@ -18,7 +18,7 @@ MOMENT = StabilitySettings(kicks=(0.1,), runs=1, duration=1e-3)
 def chain() -> None:
     """A bearing from its loads to the mobility of its balls, and a cage among such balls."""
     solution = separatrix.solve(separatrix.read_study("cryogenic-turbopump"))
-    _ = solution.restitution, solution.mobility, solution.impacts
+    _ = solution.restitution, solution.mobility
     run_ensemble(moving_cage(solution, 0.05, BallModel.FREE), MOMENT)
 
 

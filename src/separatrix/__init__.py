@@ -21,7 +21,7 @@ _PUBLIC = {
     "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes "
     "ellipse_of_curvatures race_curvatures",
     "chain.lubrication": "LubricationCurve lubrication_curve",
-    "chain.mobility": "Impacts LinearMobility Mobility SlipLaw",
+    "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
     "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
     "chain.solution": "Solution solve",
     "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
@@ -30,6 +30,7 @@ _PUBLIC = {
     "SolvedCase exact_contact rolling_cases",
     "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
     "comparing.records": "Comparison",
+    "comparing.saved": "load",
     "data_answers": "Materials TribometerAnswer materials tribometer",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
     "explore.sweep": "Sweep SweptCase",
@@ -40,7 +41,7 @@ _PUBLIC = {
     "reporting.record": "Report",
     "verdict.long_jobs": "Interrupted Runner",
     "ranking": "Ranking",
-    "present": "dataset document load save to_dataframe to_xarray",
+    "present": "dataset document save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Material MotionModel Operation PocketContact PocketShape PressureSlip Race "

@@ -8,13 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
+from separatrix.chain.ball_mobility import LinearMobility, Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
-from separatrix.chain.film_curves import ExactFilms, WearCurve
 from separatrix.chain.lubrication import LubricationCurve
-from separatrix.chain.mobility import Impacts, LinearMobility, Mobility
-from separatrix.chain.models import ModelComparison
-from separatrix.chain.shown_traction import ExactArea
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import UncertainStudy
@@ -39,54 +36,34 @@ class CheckAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TractionAnswer:
-    """Traction curves by the study's model and the other one, by strips at other pivoting-to-rolling ratios.
-
-    And models side by side, and the shear of strips in free rolling. None where there is no exact answer.
-    """
+    """Traction curves by the study's model, by strips at other pivoting-to-rolling ratios, and the shear."""
 
     race_friction: Ratio
     bearing: BearingState  # equilibrium and contacts
-    comparison: ModelComparison  # slopes, damping and restitution factor by each model
     inner: TractionCurve  # curve of the inner race by the study's model
     outer: TractionCurve  # curve of the outer race by the study's model
-    inner_strips: TractionCurve  # curve of the inner race by strips
-    outer_strips: TractionCurve  # curve of the outer race by strips
-    inner_exact: TractionCurve | None  # curve of the inner race by the exact contact
-    outer_exact: TractionCurve | None  # curve of the outer race by the exact contact
-    inner_area: ExactArea | None  # fields of the exact contact, inner race
-    outer_area: ExactArea | None  # fields of the exact contact, outer race
     inner_others: tuple[TractionCurve, ...]  # inner race at other pivoting-to-rolling ratios
     outer_others: tuple[TractionCurve, ...]  # outer race at other pivoting-to-rolling ratios
     inner_shear: ShearField  # shear of strips in free rolling, inner race
     outer_shear: ShearField  # shear of strips in free rolling, outer race
+    outside: tuple[str, ...]  # where the strips leave their range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RestitutionAnswer:
-    """Restitution factor, and what it would be with other films; None without a film material.
-
-    `exact_films` are of a study with the exact model, `wear` of one with a worn band.
-    """
+    """Restitution factor, and what it would be with other films; None without a film material."""
 
     solution: Solution  # the chain
     film_thickness: Metre  # film thickness of the study
     lubrication: LubricationCurve | None  # restitution factor against the thickness of other films
-    exact_films: ExactFilms | None  # the same by exact contacts
-    wear: WearCurve | None  # restitution factor against the width of a worn band
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MobilityAnswer:
-    """Mobility of the most loaded ball, its small motion between rigid bodies, and the cage's impacts on it.
+    """Mobility of the most loaded ball, and its small motion between rigid bodies."""
 
-    `impacts` is None, with the reason, for a study whose cage has no stiffness, or without a cage.
-    """
-
-    solution: Solution  # the chain
     mobility: Mobility  # by the slip fields of the study's contacts
     rigid: LinearMobility  # small motion of the same ball between rigid bodies
-    impacts: Impacts | None  # of the cage on this ball
-    impacts_reason: str = ""  # why there are no impacts; empty if there are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -85,7 +85,7 @@ class Answer(Generic[Record]):
         """Labelled arrays with their units, as they are saved in netCDF files."""
         from separatrix.present import dataset
 
-        return dataset(self.verb, self.record, self.study, self.notes)
+        return dataset(self.document())
 
     def to_dataframe(self) -> pd.DataFrame:
         """One row for each ball, point, material or case."""
@@ -266,13 +266,11 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     """
     from separatrix.comparing.pair import compared, pair_of
     from separatrix.comparing.saved import Saved, read_answers
-    from separatrix.saving import WITHOUT_DATA
 
     def saved(one: Answer[Any] | str | Path) -> dict[str, Saved]:
         if not isinstance(one, Answer):
             return read_answers(Path(one))
-        data = None if one.verb in WITHOUT_DATA else one.to_xarray()
-        return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document(), data=data)}
+        return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document())}
 
     return compared(*pair_of(saved(first), saved(second)))
 
@@ -296,7 +294,7 @@ def report(
 
     def compute(verb: str) -> Kept:
         answer = _answer(verb, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
-        return Kept(answer.document(), answer.to_xarray())
+        return Kept(answer.document())
 
     kept, missing, _ = answers_of(asked, None, compute)
     return report_of(kept, missing)

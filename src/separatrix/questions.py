@@ -61,7 +61,7 @@ VERBS: tuple[Verb, ...] = (
         name="mobility",
         help="Resistance of the races to a ball that is pushed along its orbit.",
         epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
-        "the capacity of the races, and with a cage the restitution of impacts against their speed.",
+        "the capacity of the races.",
     ),
     Verb(
         name="stability",

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import csv
-import json
 import logging
 import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.ground.messages import harmless
+from separatrix.ground.messages import harmless, json_text
 from separatrix.ground.staged import staged
 from separatrix.present import in_words
 
@@ -58,7 +57,7 @@ def save_answer(
     verb = str(found["verb"])
     asked = (verb, record, study, list(found["warnings"]))
     with staged(folder) as stage:
-        for suffix, content in ((".json", written(found)), (".txt", in_words(*asked, full=True))):
+        for suffix, content in ((".json", json_text(found) + "\n"), (".txt", in_words(*asked, full=True))):
             (stage / f"{verb}{suffix}").write_text(harmless(content), encoding="utf-8")
         if verb in WITHOUT_DATA or not found.get("complete", True):
             return
@@ -69,7 +68,7 @@ def save_answer(
         from separatrix.present import dataset, save
 
         logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
-        data = dataset(*asked)
+        data = dataset(found)
         save(data, stage / f"{verb}.nc")
         if pictures:
             figures.save_all(figures.draw(verb, data), stage)
@@ -81,11 +80,6 @@ def save_answer(
             write_page(data, stage / "simulation.html")
         if animation:
             animate(data, stage / "simulation.gif", progress=progress)
-
-
-def written(found: Document) -> str:
-    """Return a document as the text of its JSON file."""
-    return json.dumps(found, indent=1, allow_nan=False) + "\n"
 
 
 def write_ranking(found: Document, data: xr.Dataset, path: Path) -> None:
@@ -118,7 +112,9 @@ def write_ranking(found: Document, data: xr.Dataset, path: Path) -> None:
 LEADING = ("environment", "name", "rank", "verdict", "friction", "margin")
 """Columns of a table that come first."""
 
-ELSEWHERE = ("study", "environments", "overall", "stability", "own_curves", "chain", "cage", "provenance")
+ELSEWHERE = (
+    *("study", "environments", "overall", "stability", "own_curves", "chain", "cage", "provenance", "units"),
+)
 """Keys of a ranking that are not on the sheet of its single values."""
 
 WHOLE_RECORDS = ("record", "table")

@@ -13,12 +13,11 @@ from pathlib import Path
 from separatrix import answers
 from separatrix.cage import MovingCage, analyse, moving_cage, settings_for
 from separatrix.cage import simulate as follow
+from separatrix.chain.ball_mobility import SlipLaw, linear_mobility
 from separatrix.chain.contacts import BearingState, race_tracks
-from separatrix.chain.film_curves import exact_films, wear_curve
-from separatrix.chain.mobility import SlipLaw, linear_mobility
-from separatrix.chain.models import compare_models
+from separatrix.chain.race_curve import beyond_strips
 from separatrix.chain.restitution import Restitution
-from separatrix.chain.shown_traction import curves_by_model, curves_by_ratio, exact_area, shear
+from separatrix.chain.shown_traction import curves_by_ratio, shear, shown_curve
 from separatrix.chain.solution import Solution, solve
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case, asked_cases, checked_points, read_axis
 from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
@@ -43,7 +42,7 @@ from separatrix.study.candidates import (
     require_friction,
     required_environment,
 )
-from separatrix.study.study import LEAST_KICK, MOST_KICK, NO_KICK, Study, TractionModel
+from separatrix.study.study import LEAST_KICK, MOST_KICK, NO_KICK, Study
 from separatrix.verdict.draws import uncertain_inputs
 from separatrix.verdict.long_jobs import Runner, made_into
 from separatrix.verdict.reasons import force_limit
@@ -93,33 +92,24 @@ def bearing(study: Study) -> BearingState:
 
 
 def traction(study: Study) -> answers.TractionAnswer:
-    """Traction curves by both models, and by strips at other pivoting-to-rolling ratios."""
+    """Traction curves, and by strips at other pivoting-to-rolling ratios."""
     solution = solve(study)
     _ = solution.slopes  # refused, and warned of, as everything after them
-    inner, outer = race_tracks(study.bearing, study.film, solution.bearing)
-    # the comparison states where its models leave their range
+    tracks = race_tracks(study.bearing, study.film, solution.bearing)
+    # `outside` states where the strips leave their range
     with warnings.catch_warnings(action="ignore", category=ValidityWarning):
-        inner_strips, inner_exact = curves_by_model(inner, study.traction)
-        outer_strips, outer_exact = curves_by_model(outer, study.traction)
-        inner_area, outer_area = (exact_area(one, study.traction) for one in (inner, outer))
-        comparison = compare_models(solution)
-    is_exact = study.traction.model is TractionModel.EXACT
+        inner, outer = (shown_curve(track, study.traction) for track in tracks)
+        outside = tuple(beyond_strips(tracks, study.traction))
     return answers.TractionAnswer(
         race_friction=study.film.race_friction,
         bearing=solution.bearing,
-        comparison=comparison,
-        inner=(is_exact and inner_exact) or inner_strips,
-        outer=(is_exact and outer_exact) or outer_strips,
-        inner_strips=inner_strips,
-        outer_strips=outer_strips,
-        inner_exact=inner_exact,
-        outer_exact=outer_exact,
-        inner_area=inner_area,
-        outer_area=outer_area,
-        inner_others=curves_by_ratio(inner, inner_strips),
-        outer_others=curves_by_ratio(outer, outer_strips),
-        inner_shear=shear(inner),
-        outer_shear=shear(outer),
+        inner=inner,
+        outer=outer,
+        inner_others=curves_by_ratio(tracks[0], inner),
+        outer_others=curves_by_ratio(tracks[1], outer),
+        inner_shear=shear(tracks[0]),
+        outer_shear=shear(tracks[1]),
+        outside=outside,
     )
 
 
@@ -128,15 +118,9 @@ def restitution(study: Study) -> answers.RestitutionAnswer:
     solution = solve(study)
     _warn_if_overdamped(solution.restitution)
     _ = solution.clearances  # refused, and warned of
-    # of films that are not the study's
-    with warnings.catch_warnings(action="ignore", category=ValidityWarning):
-        films, wear = exact_films(solution), wear_curve(solution)
+    thickness = study.film.thickness or 0.0
     return answers.RestitutionAnswer(
-        solution=solution,
-        film_thickness=study.film.thickness or 0.0,
-        lubrication=solution.lubrication,
-        exact_films=films,
-        wear=wear,
+        solution=solution, film_thickness=thickness, lubrication=solution.lubrication
     )
 
 
@@ -154,19 +138,10 @@ def _warn_if_overdamped(found: Restitution) -> None:
 
 
 def mobility(study: Study) -> answers.MobilityAnswer:
-    """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
-    solution = solve(study)
-    found = solution.mobility
-    rigid = linear_mobility(
-        study.bearing, study.operation, study.kinematics.model, study.film, study.traction, SlipLaw.RIGID
-    )
-    impacts, reason = None, ""
-    try:
-        impacts = solution.impacts
-    except InputError as error:
-        reason = str(error)
+    """How the races let a ball be pushed along its orbit."""
+    records = (study.bearing, study.operation, study.kinematics.model, study.film, study.traction)
     return answers.MobilityAnswer(
-        solution=solution, mobility=found, rigid=rigid, impacts=impacts, impacts_reason=reason
+        mobility=solve(study).mobility, rigid=linear_mobility(*records, SlipLaw.RIGID)
     )
 
 

@@ -17,8 +17,8 @@ import pytest
 from exact_cases import body, contact, kalker
 
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import ContactProblem, rolling_contact
+from separatrix.chain.traction.exact.slip import FrictionLaw
 
 TABLE = Path(__file__).parent / "sources" / "kalker_c11.csv"
 

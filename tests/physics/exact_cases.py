@@ -5,12 +5,11 @@ import math
 import numpy as np
 
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
-from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid
 from separatrix.chain.traction.exact.grid import Grid
-from separatrix.chain.traction.exact.newton import settle
+from separatrix.chain.traction.exact.influence import Body, Layer, Solid
 from separatrix.chain.traction.exact.operator import rolling_operator
+from separatrix.chain.traction.exact.slip import FrictionLaw, settle
 
 MU = 0.1
 P0 = 1e-3  # over G

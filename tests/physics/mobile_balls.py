@@ -7,9 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 import separatrix
-from separatrix.chain.mobility import SlipLaw, held_ball
-from separatrix.chain.mobility.field import HeldBall, friction_slopes
-from separatrix.chain.mobility.modes import Modes, modes
+from separatrix.chain.ball_mobility import HeldBall, Modes, SlipLaw, friction_slopes, held_ball, modes
 from separatrix.study.study import BallBearing, Film, KinematicModel, Kinematics, Material, Operation, Study
 
 RPM = math.pi / 30.0

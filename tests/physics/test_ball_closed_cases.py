@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from separatrix.chain.ball_mobility import HeldBall, balanced, modes
 from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants
 from separatrix.chain.equilibrium.problem import Problem
 from separatrix.chain.hertz import approach_coefficient
-from separatrix.chain.mobility.field import HeldBall, balanced
-from separatrix.chain.mobility.modes import modes
 
 M, RADIUS, ORBIT, SPEED, Q, MU = 2.029805e-3, 3.969e-3, 19.25e-3, 50_000 * math.pi / 30.0, 600.0, 0.1
 HARD = 1e17

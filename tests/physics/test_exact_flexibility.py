@@ -5,23 +5,17 @@ import pytest
 from exact_cases import body
 from scipy.integrate import dblquad
 
-from separatrix.chain.traction.exact import images
-from separatrix.chain.traction.exact.flexibility import (
-    Layer,
-    Solid,
-    flexibility,
-    half_space_flexibility,
-    solid,
-)
-from separatrix.chain.traction.exact.images import (
+from separatrix.chain.traction.exact.influence import (
+    IMAGES,
     Images,
     body_images,
     corner_sums,
+    flexibility,
+    half_space_flexibility,
     influence,
     pair_images,
+    solid,
 )
-from separatrix.chain.traction.layer import BondedLayer, surface_compliance
-from separatrix.ground.errors import InputError
 
 SOFT = body(0.3, (0.01, 0.46, 0.1))
 PLAIN = ((0, 1.0),)
@@ -54,20 +48,22 @@ def test_limits_of_wavenumber():
     assert thin[1] == pytest.approx(1.0 / SOFT.surface.compression_modulus, rel=0.2)
 
 
-def test_the_plane_layer_of_the_strips_is_the_same():
-    """c_rr agrees with the transfer matrix that the strips use, to the 1e-9 of its exponentials."""
-    layer = BondedLayer(
-        thickness=1e-6,
-        film_modulus=2e9,
-        film_poisson=0.4,
-        ring_modulus=205e9,
-        ring_poisson=0.285,
-        ball_modulus=205e9,
-        ball_poisson=0.285,
-    )
-    kh = np.array([0.01, 0.1, 1.0, 5.0])
-    coated = body(0.285, (solid(2e9, 0.4).shear_modulus, 0.4, 1e-6), G=solid(205e9, 0.285).shear_modulus)
-    assert flexibility(coated, kh / 1e-6)[0] == pytest.approx(surface_compliance(layer, kh), rel=1e-9)
+def test_a_film_in_series_holds_to_half_a_percent_but_not_a_stiff_one():
+    """c_rr of the race and of the bare ball against half-planes plus kh/G, up to kh = 0.03: docs' claims.
+
+    Dense MoS2 (136 GPa) stiffens the race against stretching: 1.2 % at kh = 0.03.
+    """
+    kh, steel = np.array([0.003, 0.01, 0.03]), solid(205e9, 0.285)
+    bare = half_space_flexibility(steel)[0]
+
+    def gap(modulus, poisson):
+        film = solid(modulus, poisson)
+        coated = body(0.285, (film.shear_modulus, poisson, 1e-6), G=steel.shear_modulus)
+        return (2.0 * bare + kh / film.shear_modulus) / (flexibility(coated, kh / 1e-6)[0] + bare) - 1.0
+
+    for modulus in (0.5e9, 1.5e9, 4e9, 20e9):
+        assert np.abs(gap(modulus, 0.38)).max() < 5e-3  # the claim itself
+    assert gap(136e9, 0.3)[-1] == pytest.approx(0.0116, abs=5e-4)  # measured
 
 
 def test_a_layer_of_the_base_is_no_layer():
@@ -97,24 +93,6 @@ def test_error_of_the_fit(layers, limit):
     error = np.abs(found.weights @ np.exp(-np.outer(found.depths, k)) - c).max(axis=1) / np.ptp(c, axis=1)
     assert error.max() < 1.2 * found.error
     assert found.error < limit
-
-
-def test_layers_too_unlike_are_refused():
-    """A hard film a hundred times thinner than the soft one below it does not fit."""
-    with pytest.raises(InputError, match=r"Body.layers must fit 24 images to 0.001"):
-        body_images(body(0.3, (100.0, 0.25, 0.001), (0.001, 0.45, 0.1)))
-
-
-def test_films_that_cannot_be_are_refused():
-    """Nearly incompressible films, no thickness, no stiffness."""
-    with pytest.raises(InputError, match=r"must not exceed 0.49"):
-        Layer(thickness=1e-6, solid=Solid(shear_modulus=1e9, poisson_ratio=0.495))
-    with pytest.raises(InputError, match=r"Layer.thickness must be finite"):
-        Layer(thickness=float("nan"), solid=Solid(shear_modulus=1e9, poisson_ratio=0.3))
-    with pytest.raises(InputError, match=r"Solid.shear_modulus must be finite"):
-        Solid(shear_modulus=0.0, poisson_ratio=0.3)
-    with pytest.raises(InputError, match=r"Solid.poisson_ratio must lie from 0 to 0.5"):
-        Solid(shear_modulus=1.0, poisson_ratio=0.6)
 
 
 def _point_source(x, y, d, c_rr, c_zz, c_rz, c_tt):
@@ -181,4 +159,4 @@ def test_pairs_of_bodies():
     both = corner_sums(x, y, pair.depths, pair.weights)
     assert both[:4] == pytest.approx(sums[0][:4] + sums[1][:4], rel=1e-8)
     assert both[4:] == pytest.approx(sums[0][4:] - sums[1][4:], rel=1e-6, abs=1e-9)
-    assert pair_images(SOFT, SOFT).depths.size == images.IMAGES + 1
+    assert pair_images(SOFT, SOFT).depths.size == IMAGES + 1

@@ -70,20 +70,28 @@ def flat(**changed):
 FIELD = np.zeros((2, 8, 8))
 SPOILT = np.full((2, 8, 8), NAN)
 
+
+def rows(make, says, *values, form="g"):
+    """Rows of the values that one rule refuses."""
+    return [(lambda value=value: make(value), f"{says}; got {value:{form}}.") for value in values]
+
+
+POSITIVE, SLIP = "must be finite and > 0", "solve: slip must be finite and at most 1000 [-]"
+PLACES = "Profile.across must be finite, in increasing order, one place for each value [m]; got "
 REFUSED = [
     # solids and films
-    (lambda: solid(NAN, 0.3), "solid: elastic_modulus must be finite and > 0 [Pa]; got nan."),
-    (lambda: solid(INF, 0.3), "solid: elastic_modulus must be finite and > 0 [Pa]; got inf."),
-    (lambda: solid(1e9, -1.0), "solid: poisson_ratio must lie from 0 to 0.5 [-]; got -1."),
-    (lambda: solid(1e9, NAN), "solid: poisson_ratio must lie from 0 to 0.5 [-]; got nan."),
-    (
-        lambda: Solid(shear_modulus=INF, poisson_ratio=0.3),
-        "Solid.shear_modulus must be finite and > 0 [Pa]; got inf.",
+    *rows(lambda E: solid(E, 0.3), f"solid: elastic_modulus {POSITIVE} [Pa]", NAN, INF),
+    *rows(lambda nu: solid(1e9, nu), "solid: poisson_ratio must lie from 0 to 0.5 [-]", -1.0, NAN),
+    *rows(
+        lambda G: Solid(shear_modulus=G, poisson_ratio=0.3), f"Solid.shear_modulus {POSITIVE} [Pa]", INF, 0.0
     ),
-    (lambda: film(h=NAN), "Layer.thickness must be finite and > 0 [m]; got nan."),
-    (lambda: film(h=INF), "Layer.thickness must be finite and > 0 [m]; got inf."),
-    (lambda: film(h=0.0), "Layer.thickness must be finite and > 0 [m]; got 0."),
-    (lambda: film(nu=0.495), "Layer.solid.poisson_ratio must not exceed 0.49 in a film [-]; got 0.495."),
+    *rows(
+        lambda nu: Solid(shear_modulus=1.0, poisson_ratio=nu),
+        "Solid.poisson_ratio must lie from 0 to 0.5 [-]",
+        0.6,
+    ),
+    *rows(lambda h: film(h=h), f"Layer.thickness {POSITIVE} [m]", NAN, INF, 0.0),
+    *rows(lambda nu: film(nu=nu), "Layer.solid.poisson_ratio must not exceed 0.49 in a film [-]", 0.495),
     (lambda: made(film(h=1.0)), "Body.layers must be at most"),
     (
         lambda: made(film(E=9e12, h=1e-8), film(h=1e-5)),
@@ -91,52 +99,39 @@ REFUSED = [
     ),
     (lambda: made(film(E=0.2e9)), "rolling_contact: film strain p0/M_c must not exceed 1 [-]; got 2."),
     # friction and profiles
-    (
-        lambda: FrictionLaw(coefficient=NAN),
-        "FrictionLaw.coefficient must be finite and >= 0 [-]; got nan.",
+    *rows(
+        lambda mu: FrictionLaw(coefficient=mu),
+        "FrictionLaw.coefficient must be finite and >= 0 [-]",
+        *(NAN, INF, -0.1),
     ),
-    (
-        lambda: FrictionLaw(coefficient=INF),
-        "FrictionLaw.coefficient must be finite and >= 0 [-]; got inf.",
-    ),
-    (
-        lambda: FrictionLaw(coefficient=0.1, cohesion=NAN),
-        "FrictionLaw.cohesion must be finite and >= 0 [Pa]; got nan.",
+    *rows(
+        lambda c: FrictionLaw(coefficient=0.1, cohesion=c),
+        "FrictionLaw.cohesion must be finite and >= 0 [Pa]",
+        *(NAN, -1.0),
     ),
     (
         lambda: FrictionLaw(coefficient=0.1, shear_strength=NAN),
         "FrictionLaw.shear_strength must be > 0 [Pa]; got nan.",
     ),
-    (
-        lambda: Profile(across=(0.0, NAN), values=(0.1, 0.1)),
-        "Profile.across must be finite, in increasing order, one place for each value [m]; got (0.0, nan).",
+    (lambda: Profile(across=(0.0, NAN), values=(0.1, 0.1)), f"{PLACES}(0.0, nan)."),
+    (lambda: Profile(across=(0.0,), values=(0.1, 0.2)), f"{PLACES}(0.0,)."),
+    *rows(
+        lambda value: Profile(across=(0.0,), values=(value,)),
+        "Profile.values must be finite and >= 0",
+        *(NAN, INF, -0.1),
     ),
-    (
-        lambda: Profile(across=(0.0,), values=(0.1, 0.2)),
-        "Profile.across must be finite, in increasing order, one place for each value [m]; got (0.0,).",
-    ),
-    (
-        lambda: Profile(across=(0.0,), values=(NAN,)),
-        "Profile.values must be finite and >= 0; got nan.",
-    ),
-    (lambda: Profile(across=(0.0,), values=(INF,)), "Profile.values must be finite and >= 0; got inf."),
-    (lambda: Profile(across=(0.0,), values=(-0.1,)), "Profile.values must be finite and >= 0; got -0.1."),
-    (
-        lambda: worn_band(NAN, worn=0.3, film=0.1),
-        "Profile.across must be finite, in increasing order, one place for each value [m]; got (nan, nan,",
-    ),
-    (
-        lambda: worn_band(-1e-4, worn=0.3, film=0.1),
-        "Profile.across must be finite, in increasing order, one place for each value [m]; got (0.0001, 0",
-    ),
+    (lambda: worn_band(NAN, worn=0.3, film=0.1), f"{PLACES}(nan, nan,"),
+    (lambda: worn_band(-1e-4, worn=0.3, film=0.1), f"{PLACES}(0.0001, 0"),
     # problem and grid
     *(
-        (
-            lambda name=name, value=value: made(ellipse=replace(ELLIPSE, **{name: value})),
-            f"ContactProblem.ellipse.{name} must be one number, finite and > 0; got {value}.",
-        )
+        row
         for name in ("load", "semi_minor", "semi_major", "max_pressure")
-        for value in (NAN, INF, 0.0)
+        for row in rows(
+            lambda value, name=name: made(ellipse=replace(ELLIPSE, **{name: value})),
+            f"ContactProblem.ellipse.{name} must be one number, finite and > 0",
+            *(NAN, INF, 0.0),
+            form="",
+        )
     ),
     (
         lambda: made(ellipse=contact_ellipse(np.array([1.0, 2.0]), 180.0, 15.0, 110e9)),
@@ -150,55 +145,50 @@ REFUSED = [
         lambda: flat(curvature_transverse=1e-12),
         "ContactProblem: contact under its own pressure must not reach beyond 100 half lengths",
     ),
-    (
-        lambda: made(film_compliance=NAN),
-        "ContactProblem.film_compliance must be finite and >= 0 [m/Pa]; got nan.",
+    *rows(
+        lambda L: made(film_compliance=L),
+        "ContactProblem.film_compliance must be finite and >= 0 [m/Pa]",
+        *(NAN, INF, -1.0),
     ),
-    (
-        lambda: made(film_compliance=INF),
-        "ContactProblem.film_compliance must be finite and >= 0 [m/Pa]; got inf.",
+    *rows(lambda r: made(roughness=r), "ContactProblem.roughness must be finite and >= 0 [m]", *(-1e-7, NAN)),
+    *rows(
+        lambda n: rolling_contact(problem(), columns=n),
+        "rolling_contact: columns must be a whole number and lie from 4 to 256",
+        3,
     ),
-    (lambda: made(roughness=-1e-7), "ContactProblem.roughness must be finite and >= 0 [m]; got -1e-07."),
-    (lambda: made(roughness=NAN), "ContactProblem.roughness must be finite and >= 0 [m]; got nan."),
-    (
-        lambda: rolling_contact(problem(), columns=3),
-        "rolling_contact: columns must be a whole number and lie from 4 to 256; got 3.",
-    ),
-    (
-        lambda: rolling_contact(problem(), rows=10.5),
-        "rolling_contact: rows must be a whole number and lie from 4 to 256; got 10.5.",
-    ),
-    (
-        lambda: rolling_contact(problem(), rows=NAN),
-        "rolling_contact: rows must be a whole number and lie from 4 to 256; got nan.",
+    *rows(
+        lambda n: rolling_contact(problem(), rows=n),
+        "rolling_contact: rows must be a whole number and lie from 4 to 256",
+        *(10.5, NAN),
     ),
     # creeps
-    (lambda: slipping(longitudinal=1e9), "solve: slip must be finite and at most 1000 [-]; got 1e+09."),
-    (lambda: slipping(lateral=NAN), "solve: slip must be finite and at most 1000 [-]; got nan."),
-    (lambda: slipping(spin=INF), "solve: slip must be finite and at most 1000 [-]; got"),
-    (lambda: slipping(curvature=1e20), "solve: slip must be finite and at most 1000 [-]; got"),
-    (lambda: slope(spin=NAN), "traction_slope: creep.spin must be finite; got nan."),
-    (lambda: slope(spin=1e9), "solve: slip must be finite and at most 1000 [-]; got"),
-    (lambda: slope(curvature=INF), "traction_slope: creep.curvature must be finite; got inf."),
+    *rows(lambda xi: slipping(longitudinal=xi), SLIP, 1e9),
+    *rows(lambda eta: slipping(lateral=eta), SLIP, NAN),
+    (lambda: slipping(spin=INF), f"{SLIP}; got"),
+    (lambda: slipping(curvature=1e20), f"{SLIP}; got"),
+    *rows(lambda s: slope(spin=s), "traction_slope: creep.spin must be finite", NAN),
+    (lambda: slope(spin=1e9), f"{SLIP}; got"),
+    *rows(lambda q: slope(curvature=q), "traction_slope: creep.curvature must be finite", INF),
     (
         lambda: traction_slope(problem(), Creep(spin=0.0, curvature=0.0), columns=(20, 20)),
         "traction_slope: columns must be strictly increasing; got (20, 20).",
     ),
     # fields
     (lambda: solve(made(), np.zeros((2, 3, 3))), "solve: slip must have the shape (2, 8, 8); got (2, 3, 3)."),
-    (lambda: solve_each(made(), [SPOILT]), "solve: slip must be finite and at most 1000 [-]; got nan."),
+    (lambda: solve_each(made(), [SPOILT]), f"{SLIP}; got nan."),
     (lambda: solve(made(), FIELD, start=SPOILT), "solve: start must be finite [Pa]; got nan."),
     (
         lambda: solve(made(), FIELD, start=FIELD[:1]),
         "solve: start must have the shape (2, 8, 8); got (1, 8, 8).",
     ),
-    (
-        lambda: solve(made(), FIELD, tolerance=NAN),
-        "solve: tolerance must be > 0 and at most 0.1 [-]; got nan.",
+    *rows(
+        lambda t: solve(made(), FIELD, tolerance=t),
+        "solve: tolerance must be > 0 and at most 0.1 [-]",
+        NAN,
+        0.0,
     ),
-    (lambda: solve(made(), FIELD, tolerance=0.0), "solve: tolerance must be > 0 and at most 0.1 [-]; got 0."),
-    (lambda: shift(made(), SPOILT), "solve: slip must be finite and at most 1000 [-]; got nan."),
-    (lambda: transient(made(), [SPOILT]), "solve: slip must be finite and at most 1000 [-]; got nan."),
+    (lambda: shift(made(), SPOILT), f"{SLIP}; got nan."),
+    (lambda: transient(made(), [SPOILT]), f"{SLIP}; got nan."),
 ]
 
 

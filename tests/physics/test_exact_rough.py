@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.traction.exact.bound import FrictionLaw, rough_compliance
 from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve_each
 from separatrix.chain.traction.exact.grid import elliptic_grid
 from separatrix.chain.traction.exact.operator import rolling_operator
+from separatrix.chain.traction.exact.slip import FrictionLaw, rough_compliance
 from separatrix.chain.traction.exact.slope import traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 

@@ -9,16 +9,15 @@ from scipy.optimize import brentq
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse, ellipse_shape
-from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells
 from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
-from separatrix.chain.traction.exact.coupling import pressure_slip
-from separatrix.chain.traction.exact.flexibility import Body, Layer, solid
 from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure
-from separatrix.chain.traction.exact.normal import film_strain
+from separatrix.chain.traction.exact.influence import Body, Layer, solid
+from separatrix.chain.traction.exact.pressure import film_strain, pressure_slip
+from separatrix.chain.traction.exact.slip import FrictionLaw, over_cells
 from separatrix.chain.traction.exact.slope import traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.chain.traction.profile import Profile, worn_band
-from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.errors import ConvergenceError
 
 STEEL = solid(200e9, 0.285)
 BARE = Body(base=STEEL)
@@ -178,17 +177,13 @@ def test_worn_track(share, inner, outer):
 
 
 def test_profiles():
-    """Means over the rows, steps, constants beyond the ends, and what is refused."""
+    """Means over the rows, steps, and constants beyond the ends."""
     grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=8, rows=8)
     line = Profile(across=(-1.0, 1.0), values=(0.0, 2.0))
     assert over_cells(line, grid)[:, 0] == pytest.approx(1.0 + grid.y)
     band = over_cells(worn_band(0.5, worn=0.0, film=3.0), grid)
     assert band.shape == grid.shape
     assert band[:, 0].tolist() == [3.0, 3.0, 0.0, 0.0, 0.0, 0.0, 3.0, 3.0]
-    with pytest.raises(InputError, match=r"Profile.across must be finite, in increasing order"):
-        Profile(across=(1.0, 0.0), values=(1.0, 1.0))
-    with pytest.raises(InputError, match=r"Profile.values must be finite and >= 0; got -1"):
-        Profile(across=(0.0,), values=(-1.0,))
 
 
 def test_bounds():

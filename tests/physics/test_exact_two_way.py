@@ -8,7 +8,7 @@ from exact_cases import body, kalker
 from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.traction.exact import ContactProblem, FrictionLaw, rolling_contact, solve_two_way
 from separatrix.chain.traction.exact import two_way as module
-from separatrix.chain.traction.exact.flexibility import half_space_flexibility
+from separatrix.chain.traction.exact.influence import half_space_flexibility
 from separatrix.ground.errors import ConvergenceError, InputError
 
 BALL, TRACK = body(0.1), body(0.1, G=20.0)

@@ -1,4 +1,4 @@
-"""Mobility of a ball: rates, dampings and responses against an independent program, and limits.
+"""Mobility of a ball: rates, dampings and impacts against an independent program, and limits.
 
 The numbers marked "dynamics3d" are those of our notes on bearing dynamics, sections 2.2 and 3 (E2, E11):
 computed by us with separate small programs, rigid Coulomb contacts with a slip speed of 1e-4 w d_m/4. They
@@ -6,6 +6,7 @@ are printed to 4 to 6 digits; 1e-3 covers the quadrature of theirs and of ours.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,14 +16,20 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
+from separatrix.chain import ball_mobility
+from separatrix.chain.ball_mobility import (
+    SlipLaw,
+    balanced,
+    fitted_law,
+    groove,
+    held_ball,
+    mobility,
+    pitch_angle,
+    pocket_friction_effect,
+    pushed,
+)
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.contacts import bearing_state, race_tracks
-from separatrix.chain.mobility import Impacts, SlipLaw, closure, held_ball, impacts, mobility
-from separatrix.chain.mobility.field import balanced, groove, pitch_angle, pocket_friction_effect
-from separatrix.chain.mobility.impact import follow_impact, law_returns, linear_return
-from separatrix.chain.mobility.law import fitted_law
-from separatrix.chain.mobility.modes import mobility_at, modes, step_damping
-from separatrix.chain.mobility.push import pushed
 from separatrix.chain.race_curve import race_slope
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
@@ -65,24 +72,15 @@ def test_one_state_of_a_ball(name, damping, mass):
     assert found.mass > held(name).problem.ball_mass  # the spin that follows adds to it
 
 
-def test_responses_of_a_ball():
-    """F/u after a step at 10 us, 100 us, 1 ms; 1/Re Y at 300, 1000, 2891 Hz (dynamics3d E11)."""
+def test_modes_are_those_of_the_motion():
+    """Y(i omega) by its modes, and by solving (i omega M - S) x = e_1; 1/Re Y of dynamics3d E11."""
     found = modes_of("cryo")
-    assert step_damping(found, np.array((1e-5, 1e-4, 1e-3))) == pytest.approx(
-        (703.53, 212.59, 190.18), rel=1e-4
-    )
-    assert 1.0 / mobility_at(found, np.array((300.0, 1000.0, 2891.0))).real == pytest.approx(
-        (202.92, 213.61, 271.59), rel=1e-4
-    )
-    assert mobility_at(found, np.array(0.0)).real == pytest.approx(1.0 / found.relaxed, rel=1e-12)
-    assert step_damping(found, np.array(1.0)) == pytest.approx(found.relaxed, rel=1e-12)
-
-
-def test_mobility_is_the_solution_of_the_motion():
-    """Y(i omega) by solving (i omega M - S) x = e_1, without modes."""
-    found, omega = modes_of("cryo"), 2.0 * math.pi * 5000.0
-    x = np.linalg.solve(1j * omega * found.masses - found.slopes, np.eye(4)[0])
-    assert mobility_at(found, np.array(5000.0)) == pytest.approx(x[0], rel=1e-9)
+    for frequency, damping in ((300.0, 202.92), (1000.0, 213.61), (2891.0, 271.59)):
+        s = 2j * math.pi * frequency
+        x = np.linalg.solve(s * found.masses - found.slopes, np.eye(4)[0])
+        response = np.sum(found.shares * found.rates / (s + found.rates))
+        assert response == pytest.approx(x[0], rel=1e-9)
+        assert 1.0 / response.real == pytest.approx(damping, rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -140,6 +138,45 @@ def test_push_with_the_contact_angles_held():
     assert forces == pytest.approx([3.73, 11.48, 41.61, 62.19, 71.86, 72.88], abs=0.011)
 
 
+RING = {"cryo": (12.5e-3, 3e6), "wheel 6000": (2.5e-3, 1e6)}
+"""Mass that an impact feels, M/2 of a ring free to turn, and stiffness of the pocket."""
+
+
+def impact(moved: Callable, size: int, ring: tuple[float, float], speed: float) -> tuple[float, float, float]:
+    """Restitution, largest force and duration of an impact on a ball with x' = moved(x, force)."""
+    mass, k = ring
+
+    def rates(_: float, z: Array) -> Array:
+        force = k * z[size + 1]
+        return np.append(moved(z[:size], force), (-force / mass, z[size] - z[0]))
+
+    def parted(t: float, z: Array) -> float:
+        return float(z[size + 1]) if t > 1e-7 else 1.0
+
+    parted.terminal = True
+    start = np.zeros(size + 2)
+    start[size] = speed
+    how = {"events": parted, "rtol": 1e-6, "atol": 1e-13, "method": "LSODA"}
+    end = solve_ivp(rates, (0.0, 0.02), start, **how)
+    return -end.y[size, -1] / speed, k * end.y[size + 1].max(), end.t[-1]
+
+
+def by_fields(name: str, speed: float, sense: float = 1.0) -> tuple[float, float, float]:
+    """The same by the whole slip fields, the place of the ball between its grooves following at once."""
+    ball = held(name)
+    inverse, state = np.linalg.inv(ball.masses), ball.state.copy()
+
+    def moved(x: Array, force: float) -> Array:
+        state[2:] = ball.state[2:] + sense * x / ball.units
+        for _ in range(2):  # what the second step leaves is of fourth order
+            balance, slopes = balanced(ball, state)
+            step = np.linalg.solve(slopes[:2, :2], balance[:2])
+            state[:2] -= step
+        return inverse @ (sense * (balance[2:] - slopes[2:, :2] @ step) + np.eye(4)[0] * force)
+
+    return impact(moved, 4, RING[name], speed)
+
+
 RELAXED = [
     ("cryo", 6.567e-3, (0.1479, 0.1319, 0.0396, -0.1589)),
     ("wheel 6000", 1.289e-3, (0.2323, -0.1224, -0.2730, -0.3063)),
@@ -150,19 +187,10 @@ RELAXED = [
 def test_return_with_the_quasi_steady_push(name, mass, returns):
     """E11: m_e u' = N - F(u) from .02 to 2 m/s; its slow impacts differ, as docs/validation.md says."""
     u = np.append(0.0, np.geomspace(1e-4, 2.0, 120))
-    law, (M, k) = CubicSpline(u, relaxed_push(name, u)), RING[name]
-
-    def rates(_: float, z: Array) -> list[float]:
-        return [(k * z[2] - float(law(z[0]))) / mass, -k * z[2] / M, z[1] - z[0]]
-
-    def parted(t: float, z: Array) -> float:
-        return float(z[2]) if t > 1e-7 else 1.0
-
-    parted.terminal = True
-    how = {"events": parted, "rtol": 1e-8, "atol": 1e-13, "method": "LSODA"}
+    law, ring = CubicSpline(u, relaxed_push(name, u)), RING[name]
     for speed, factor, off in zip((0.02, 0.1, 0.5, 2.0), returns, (0.02, 3e-3, 3e-4, 3e-4), strict=True):
-        end = solve_ivp(rates, (0.0, 0.02), [0.0, speed, 0.0], **how).y[1, -1]
-        assert -end / speed == pytest.approx(factor, abs=off)
+        found = impact(lambda x, N: (N - law(x)) / mass, 1, ring, speed)[0]
+        assert found == pytest.approx(factor, abs=off)
 
 
 def test_push_begins_with_the_linear_law():
@@ -213,50 +241,28 @@ def test_law_of_a_force_that_falls_again_stays():
     assert law.force(u)[-1] > 0.85 * force.max()
 
 
-# Impacts: a ring free to turn, M/2.
-
-RING = {"cryo": (12.5e-3, 3e6), "wheel 6000": (2.5e-3, 1e6)}
-
-
-def returned(
-    name: str, speed: float, sense: float = 1.0, law: SlipLaw = SlipLaw.RIGID, tolerance: float = 1e-4
-):
-    """Restitution, peak force and duration by the whole slip fields."""
-    b, (mass, k) = held(name, law), RING[name]
-    numbers = (b.problem, b.rings, b.state, b.slips, b.cells, b.nodes, mass, k, speed, sense, tolerance)
-    end, peak, duration, steps = follow_impact(*numbers)
-    assert steps > 0
-    return -end / speed, peak, duration
-
-
 @pytest.mark.parametrize(("name", "factor"), [("cryo", 0.17275), ("wheel 6000", 0.3204)])
 def test_return_of_a_gentle_impact(name, factor):
     """By four linear modes (dynamics3d E11), and the slip fields of a weak impact from either side."""
-    assert linear_return(modes_of(name), *RING[name]) == pytest.approx(factor, abs=6e-5)
-    knee = held(name).capacity / modes_of(name).held
+    found, ring = modes_of(name), RING[name]
+    S, per_force = (np.linalg.solve(found.masses, one) for one in (found.slopes, np.eye(4)[0]))
+    assert impact(lambda x, N: S @ x + per_force * N, 4, ring, 0.01)[0] == pytest.approx(factor, abs=6e-5)
+    knee = held(name).capacity / found.held
     for sense in (1.0, -1.0):
-        assert returned(name, 1e-3 * knee, sense)[0] == pytest.approx(factor, abs=1e-3)
+        assert by_fields(name, 1e-3 * knee, sense)[0] == pytest.approx(factor, abs=1e-3)
 
 
 def test_peak_and_duration_of_an_impact():
     """Cryo at .5 m/s: 65.90 N by the linear modes (dynamics3d E11); 184.2 us in a weak impact."""
-    assert returned("cryo", 0.5)[1] == pytest.approx(65.9, rel=2e-3)
-    assert returned("cryo", 1e-3)[2] == pytest.approx(184.2e-6, rel=2e-3)
-
-
-@pytest.mark.parametrize("speed", [0.1, 2.0])
-def test_error_of_an_impact_falls_with_the_tolerance(speed):
-    """Third order: a tolerance a thousand times smaller needs ten times the steps; 1e-4 is good to 5e-4."""
-    fine = returned("cryo", speed, tolerance=1e-7)[0]
-    assert returned("cryo", speed, tolerance=1e-4)[0] == pytest.approx(fine, abs=5e-4)
-    assert returned("cryo", speed, tolerance=1e-5)[0] == pytest.approx(fine, abs=5e-5)
+    assert by_fields("cryo", 0.5)[1] == pytest.approx(65.9, rel=2e-3)
+    assert by_fields("cryo", 1e-3)[2] == pytest.approx(184.2e-6, rel=2e-3)
 
 
 def test_a_hard_impact_carries_the_ball_along():
     """Beyond the capacity the cage goes on behind the ball; the bare mass is its limit, (m - M)/(m + M)."""
     m, (mass, _) = held("wheel 6000").problem.ball_mass, RING["wheel 6000"]
     bare = (m - mass) / (m + mass)
-    found = [returned("wheel 6000", v)[0] for v in (0.02, 0.1, 0.5, 2.0)]
+    found = [by_fields("wheel 6000", v)[0] for v in (0.02, 0.1, 0.5, 2.0)]
     assert found[0] > 0.25 > 0.0 > found[1] > found[2] > found[3] > bare
     assert found[3] == pytest.approx(bare, abs=0.03)
 
@@ -265,57 +271,11 @@ def test_a_hard_impact_carries_the_ball_along():
 def test_one_state_reproduces_an_impact(name):
     """m_e u' = N - F(u): within 0.02 below the capacity; up to four times it within 0.08 (why: the page)."""
     found, (mass, k) = mobility(*records(name), SlipLaw.RIGID), RING[name]
-    at = found.capacity / math.sqrt(k * mass)
+    at, law = found.capacity / math.sqrt(k * mass), found.traction
     for over, error in ((0.1, 0.02), (0.5, 0.02), (1.0, 0.04), (4.0, 0.08)):
-        both = np.mean([returned(name, over * at, sense)[0] for sense in (1.0, -1.0)])
-        (one,) = law_returns(found.traction, mass, k, np.array((over * at,)))
+        both = np.mean([by_fields(name, over * at, sense)[0] for sense in (1.0, -1.0)])
+        one = impact(lambda x, N: (N - law.force(x)) / law.mass, 1, (mass, k), over * at)[0]
         assert one == pytest.approx(both, abs=error)
-
-
-def test_one_state_of_a_linear_law_is_the_modes_of_one():
-    """A law without an end of its elements, against the linear motion of one mode."""
-    law = BallTraction(mass=6.5e-3, slope=206.0, speed=math.inf)
-    one = modes(np.array(((-206.0,),)), np.array(((6.5e-3,),)))
-    (found,) = law_returns(law, 12.5e-3, 3e6, np.array((0.3,)))
-    assert found == pytest.approx(linear_return(one, 12.5e-3, 3e6), abs=2e-4)
-
-
-def test_a_heavy_cage_comes_to_rest_on_a_ball_that_yields_slowly():
-    """Without a vibration (4 C^2 < k m) the pocket does not open again: by fields, modes and law.
-
-    A hard impact slides the ball along and opens; a gentle one of a light cage returns.
-    """
-    ball, (mass, k) = held("cryo"), RING["cryo"]
-    law = BallTraction(mass=6.5e-3, slope=356.0, speed=0.5)
-    speeds, given = np.array((0.005, 2.0)), {"ball_cage_stiffness": k, "race_damping": 356.6}
-    found = impacts(ball, law, felt_mass=1.0, cage_mass=2.0, **given, speeds=speeds)
-    assert found.restitution_linear == 0.0
-    for returns in (found.restitution_forward, found.restitution_backward, found.restitution_law):
-        assert returns[0] == 0.0
-        assert returns[1] < 0.0
-    light = impacts(ball, law, felt_mass=mass, cage_mass=2.0 * mass, **given, speeds=speeds[:1])
-    assert light.restitution_forward[0] > 0.1
-
-
-def test_impacts_are_a_record_of_the_same():
-    """The table has the returns of single impacts, and the paper's formula with both masses."""
-    ball, (mass, k) = held("cryo"), RING["cryo"]
-    law = BallTraction(mass=6.5e-3, slope=206.0, speed=0.5)
-    found = impacts(
-        ball,
-        law,
-        felt_mass=mass,
-        cage_mass=2 * mass,
-        ball_cage_stiffness=k,
-        race_damping=356.6,
-        speeds=np.array((0.5,)),
-    )
-    assert isinstance(found, Impacts)
-    assert found.restitution_forward[0] == pytest.approx(returned("cryo", 0.5)[0], rel=1e-12)
-    assert found.restitution_backward[0] == pytest.approx(returned("cryo", 0.5, -1.0)[0], rel=1e-12)
-    assert found.restitution_linear == pytest.approx(0.17275, abs=1e-4)
-    assert found.nominal_restitution_factor == pytest.approx(0.2715, abs=1e-3)  # the study's, restitution.md
-    assert found.restitution_summed > found.nominal_restitution_factor
 
 
 # The slip law, and which ball.
@@ -402,7 +362,7 @@ def test_a_ball_off_the_inner_race_is_refused(monkeypatch):
     given = records("cryo")
     state = bearing_state(given[0], given[1], given[2], given[3].race_friction)
     lifted = replace(state, inner=replace(state.inner, load=0.0))
-    monkeypatch.setattr(closure, "bearing_state", lambda *_: lifted)
+    monkeypatch.setattr(ball_mobility, "bearing_state", lambda *_: lifted)
     with pytest.raises(InputError, match="must press a ball on both races"):
         held_ball.__wrapped__(*given, SlipLaw.RIGID)
 

@@ -1,4 +1,4 @@
-"""Datasets as `present.load` returns them, made by hand, for the tests of the figures."""
+"""Datasets as `present.dataset` makes them, made by hand, for the tests of the figures."""
 
 from __future__ import annotations
 

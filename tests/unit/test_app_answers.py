@@ -13,12 +13,11 @@ from commands import work_undrawn
 from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
-from separatrix.app import server
 from separatrix.app.jobs import Job, Jobs
 from separatrix.app.page import TEMPLATES, Folder, Page
-from separatrix.app.server import application, made_ready
+from separatrix.app.server import application
 from separatrix.app.worker import Task
-from separatrix.present import load
+from separatrix.comparing.saved import load
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
 PATIENCE = 300.0
@@ -96,11 +95,7 @@ def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
     assert '<option value="duty.csv">' in page.get("/study/small.toml").text
     page.post("/run/small.toml", data={"verb": "sweep", "cases": "duty.csv", "margins": "on"})
     until(page, lambda jobs: jobs[0].startswith("finished"))
-    path, end = root / "small" / "sweep.nc", time.monotonic() + 20
-    while path not in page.app.state.page._read:  # read as the job has ended
-        assert time.monotonic() < end
-        time.sleep(0.05)
-    data = load(path)
+    data = load(root / "small" / "sweep.json")
     assert data["time_share"].values == pytest.approx([0.25, 0.75])
     assert np.isfinite(data["margin"].values).all()
     assert 'data-source="/plot/sweep/envelope/small.toml"' in page.get("/answer/sweep/small.toml").text
@@ -119,37 +114,13 @@ def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
     page.post("/jobs/forget")
 
 
-def test_the_newest_answers_are_read_before_they_are_looked_at(page, monkeypatch):
-    """At the start of the server, and at the end of a job."""
-    again = Page(folder=page.app.state.page.folder, jobs=page.app.state.page.jobs)
-    made_ready(again)
-    monkeypatch.setattr("separatrix.present.load", refuse)
-    for verb in ("rank", "map", "sweep"):
-        assert again.dataset(again.folder.answers("small.toml") / f"{verb}.nc") is not None
-        assert page.app.state.page.dataset(again.folder.answers("small.toml") / f"{verb}.nc") is not None
-
-
-def test_the_page_ends_after_what_it_reads(tmp_path, monkeypatch):
-    """A thread that the interpreter ends while it reads a dataset would keep the lock of HDF5 for ever."""
-    read = []
-
-    def slow(_):
-        time.sleep(0.5)  # longer than the page is open
-        read.append(True)
-
-    monkeypatch.setattr(server, "made_ready", slow)
-    with TestClient(application(tmp_path)):
-        pass
-    assert read == [True]
-
-
 def refuse(path):
     """Stand for a reader that must not be asked."""
     raise AssertionError(path)
 
 
 def test_reading_one_file_delays_no_other(root):
-    """A dataset that takes a second to read leaves titles and tables to other requests."""
+    """An answer that takes a second to read leaves titles and tables to other requests."""
     page, begun, may_end = Page(folder=Folder(root=root), jobs=Jobs(root)), Event(), Event()
 
     def slowly():

@@ -26,7 +26,7 @@ def outside(tmp_path):
     place = tmp_path / "outside"
     (place / "small").mkdir(parents=True)
     (place / "small" / "rank.json").write_text(json.dumps(ANSWER))
-    for name in ("rank.txt", "rank.nc", "report.html", "log.csv", "draft.toml"):
+    for name in ("rank.txt", "report.html", "log.csv", "draft.toml"):
         (place / "small" / name).write_text(f"# {NEIGHBOUR}\n")
     return place / "small"
 
@@ -82,13 +82,6 @@ def test_answers_outside_are_not_shown(page, outside, how, place):
     assert NEIGHBOUR not in found.text
     assert found.status_code == missing.status_code
     assert "rank.json" not in found.text.replace("small/rank.json", "")
-
-
-@pytest.mark.parametrize("how", ["folder", "files"])
-def test_answers_outside_are_not_read_ahead(page, outside, how):
-    """They are left out of the newest."""
-    linked(page, outside, how)
-    assert page.app.state.page.newest(("rank",)) == []
 
 
 def test_a_study_beside_a_way_back_in_is_not_reached(page, outside):

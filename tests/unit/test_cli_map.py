@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from commands import COMMAND, document, pieces, refused
 
-from separatrix import present
+import separatrix
 from separatrix.chain.solution import solve
 from separatrix.cli import main
 from separatrix.explore.cases import read_axis
@@ -186,7 +186,7 @@ def test_the_dataset_stands_on_x_and_y(capsys):
     """Points have the dimensions (y, x) with the parameters' names and units."""
     clearance = "cage.pocket_clearance=0.2..1mm:3"
     found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
-    data = present.load("m/map.nc")
+    data = separatrix.load("m/map.json")
     assert data["probability_whirl"].dims == ("y", "x")
     assert data["x"].attrs == {"units": "m", "long_name": "cage.pocket_clearance"}
     for point in found["points"]:

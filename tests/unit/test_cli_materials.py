@@ -139,7 +139,6 @@ def test_a_library_named_on_the_command_line_is_read_too(folder, ask, tmp_path_f
 def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     """A saved answer has the whole record inside it, and draws its figures; a new answer differs."""
     from separatrix.figures import draw
-    from separatrix.present import load
 
     assert main(["restitution", "case.toml", "--quiet", "--out", "old"]) == 0
     capsys.readouterr()
@@ -155,7 +154,7 @@ def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
     assert new["study"]["film"]["material"]["record"]["library"]["sha256"] != record["library"]["sha256"]
     (folder / "materials.toml").unlink()
     assert {path.name: path.read_bytes() for path in (folder / "old").iterdir()} == before
-    saved = load(folder / "old" / "restitution.nc")
+    saved = separatrix.load(folder / "old" / "restitution.json")
     assert "fitted to test 12" in json.dumps(dict(saved.attrs), default=str)
     assert [name for name, _ in draw("restitution", saved)] == ["restitution-film"]
 

@@ -18,7 +18,7 @@ import pytest
 from commands import document, refused
 from pypdf import PdfReader
 
-from separatrix import api, present, saving, verbs
+from separatrix import api, verbs
 from separatrix.cli import main
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.reporting.content import answers, read_document
@@ -131,7 +131,7 @@ def elsewhere(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A study beside a folder with the answers to it, as documents and datasets."""
+    """A study beside a folder with the answers to it, as documents."""
     place = tmp_path_factory.mktemp("report")
     (place / "hostile.toml").write_text(STUDY + CAGE)
     out = place / "answers"
@@ -140,8 +140,7 @@ def folder(tmp_path_factory):
         warnings.simplefilter("ignore", ValidityWarning)
         for verb in (api.bearing, api.traction, api.restitution, api.rank):
             found = verb(place / "hostile.toml")
-            (out / f"{found.verb}.json").write_text(saving.written(found.document()))
-            present.save(found.to_xarray(), out / f"{found.verb}.nc")
+            (out / f"{found.verb}.json").write_text(json.dumps(found.document()))
     return out
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from commands import document, refused
 
-from separatrix import present
+import separatrix
 from separatrix.cli import main
 from separatrix.explore import uncertain
 from separatrix.figures import draw
@@ -158,7 +158,7 @@ def test_text_and_files(capsys):
     pictures = {path.stem for path in Path("here").glob("*.png")}
     assert {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-1-air",
             "sensitivity-2-vacuum", "sensitivity-film"} <= pictures  # fmt: skip
-    data = present.load(Path("here") / "sensitivity.nc")
+    data = separatrix.load(Path("here") / "sensitivity.json")
     assert {name for name, _ in draw("sensitivity", data)} == pictures
     assert data["material_probability_stable"].attrs["units"] == "-"
     assert data["cloud_friction"].dims == ("environment", "material", "sample")

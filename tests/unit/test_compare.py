@@ -4,6 +4,7 @@ import contextlib
 import io
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from separatrix.cli import main
 from separatrix.comparing.results import difference_interval, differing, units
 from separatrix.comparing.saved import read_answers
 from separatrix.comparing.shown import pictures
+from separatrix.ground.errors import InputError
 from separatrix.verdict.judgement import wilson_interval
 
 FEW = """extends = "cryogenic-turbopump"
@@ -63,7 +65,7 @@ DEAR = {"traction": _steeper, "sensitivity": _worse}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Documents of every verb for two studies, and the arrays of a ranking."""
+    """Documents of every verb for two studies."""
     made = tmp_path_factory.mktemp("compare")
     for name, text in (("first", FEW), ("second", THIN)):
         (made / f"{name}.toml").write_text(text)
@@ -71,11 +73,9 @@ def folder(tmp_path_factory):
         for verb, options in VERBS.items():
             if name == "second" and verb in DEAR:
                 continue
-            arrays = ("--out", str(made / "arrays")) if (name, verb) == ("first", "rank") else ()
             out = io.StringIO()
-            with contextlib.redirect_stdout(out), pytest.MonkeyPatch.context() as patch:
-                patch.setattr("separatrix.figures.save_all", lambda *_: None)
-                assert main([verb, str(made / f"{name}.toml"), *options, *arrays, "--json", "--quiet"]) == 0
+            with contextlib.redirect_stdout(out):
+                assert main([verb, str(made / f"{name}.toml"), *options, "--json", "--quiet"]) == 0
             (made / name / f"{verb}.json").write_text(out.getvalue())
     for verb in DEAR:
         answer = json.loads((made / "first" / f"{verb}.json").read_text())
@@ -131,7 +131,8 @@ def test_a_folder_is_compared_by_its_ranking_and_names_the_rest(folder, capsys, 
     assert "Both also have answers of sensitivity, stability" in text
     assert text.count("\n") < 60
     assert max(map(len, text.splitlines())) < 112
-    assert {path.name for path in Path("compare").iterdir()} == {"compare.json", "compare.txt"}
+    pictures = {"comparison.png", "comparison.svg"}
+    assert {path.name for path in Path("compare").iterdir()} == {"compare.json", "compare.txt"} | pictures
     assert len(Path("compare/compare.txt").read_text()) > len(text)
     assert main(["compare", str(folder / "first"), str(folder / "second"), "--full", "--json"]) == 0
 
@@ -209,31 +210,28 @@ def test_python_compares_answers_and_files(folder):
 
 
 def test_two_curves_are_drawn_together(folder, tmp_path):
-    """Of rankings with their margins: a row for each material; without the arrays it is refused."""
-    data = separatrix.load(folder / "arrays" / "rank.nc")
-    for name, times in (("first", 1.0), ("second", 1.1)):
-        (tmp_path / name).mkdir()
-        data["critical_friction"].values[:] *= times
-        separatrix.save(data, tmp_path / name / "rank.nc")
-    one, other = (read_answers(tmp_path / name)["rank"] for name in ("first", "second"))
+    """Of rankings with their margins: a row for each material; without a part of the arrays it is refused."""
+    one, other = (read_answers(folder / name)["rank"] for name in ("first", "second"))
     ((name, figure),) = pictures(one, other)
     assert name == "comparison"
     assert [len(axes.lines) > 1 for axes in figure.axes] == [True, True]
-    assert len(figure.axes[1].get_yticks()) == one.data.sizes["material"]
+    assert len(figure.axes[1].get_yticks()) == len(one.document["overall"])
     figures.save(figure, tmp_path / "two.png")
-    spoiled = other.data.drop_vars("scatter_low")
-    separatrix.save(spoiled, tmp_path / "second" / "rank.nc")
-    assert main(["compare", str(tmp_path / "first"), str(tmp_path / "second"), "--out", str(tmp_path)]) == 2
+    curve = [
+        {"restitution_factor": row["restitution_factor"]} for row in other.document["stability"]["curve"]
+    ]
+    spoiled = other.document | {"stability": other.document["stability"] | {"curve": curve}}
+    with pytest.raises(InputError, match="lacks critical_friction"):
+        list(pictures(one, replace(other, document=spoiled)))
 
 
 def test_what_cannot_be_compared_is_refused(folder, capsys, tmp_path, monkeypatch):
-    """Two verbs, one kind of file against the other, a study that separatrix did not write."""
+    """Two verbs, a netCDF file, a study that separatrix did not write."""
     monkeypatch.chdir(tmp_path)
     rank, stability = (str(folder / "first" / f"{verb}.json") for verb in ("rank", "stability"))
     assert "must be an answer of rank" in refused(capsys, "compare", rank, stability)
-    separatrix.save(separatrix.bearing("cryogenic-turbopump").to_xarray(), Path("bearing.nc"))
-    shutil.copy(folder / "first" / "bearing.json", "other.json")
-    assert "two files of one kind" in refused(capsys, "compare", "other.json", "bearing.nc")
+    for call in (("compare", rank, "rank.nc"), ("report", "rank.nc", rank), ("reproduce", "rank.nc")):
+        assert "answers are read from their .json. Name the rank.json" in refused(capsys, *call)
     for change, said in (
         ({"study": {}}, "did not write"),
         ({"seed": None}, "seed"),

@@ -2,9 +2,7 @@
 
 import json
 
-import numpy as np
 import pytest
-import xarray as xr
 from commands import document, refused
 
 from separatrix.cli import main
@@ -20,23 +18,15 @@ STUDY = {
 }
 
 
-def saved(path, study, materials, **numbers):
-    """Write a ranking in one environment; all numbers that are not given are NaN."""
-    names = ("margin", "probability_stable", "friction", "restitution_threshold")
-    values = {name: np.array(numbers.get(name, [np.nan] * len(materials)), dtype=float) for name in names}
-    verdicts = np.array(numbers.get("verdict", [""] * len(materials)), dtype=object)
-    columns = {f"overall_{name}": ("material", one) for name, one in {**values, "verdict": verdicts}.items()}
-    rows = {
-        f"material_{name}": (("environment", "material"), one[np.newaxis])
-        for name, one in {**values, "verdict": verdicts}.items()
-    }
-    data = xr.Dataset(
-        columns
-        | rows
-        | {"material": np.array(materials, dtype=object), "environment": np.array(["gas"], dtype=object)},
-        attrs={"verb": "rank", "title": path.stem, "seed": 1, "study": json.dumps(study)},
-    )
-    data.to_netcdf(path, engine="h5netcdf")
+def saved(path, study, materials, verb="rank", **numbers):
+    """Write a ranking in one environment; all numbers that are not given are null."""
+    names = ("margin", "probability_stable", "friction", "restitution_threshold", "verdict")
+    values = {name: numbers.get(name, [None] * len(materials)) for name in names}
+    rows = [
+        {"name": material} | {name: values[name][i] for name in names} for i, material in enumerate(materials)
+    ]
+    answer = {"verb": verb, "title": path.stem, "seed": 1, "study": study, "overall": rows}
+    path.write_text(json.dumps(answer | {"environments": [{"name": "gas", "materials": rows}]}))
     return str(path)
 
 
@@ -50,15 +40,19 @@ def pair(tmp_path, monkeypatch):
     other["ranking"]["candidates"][0]["friction"]["gas"]["mean"] = 0.2
     other["ranking"]["table"]["conditions"]["normal_force"]["value"] = [1.0, 2.0]
     first = {"margin": [0.5], "probability_stable": [0.0], "friction": [0.1], "verdict": ["UNSTABLE"]}
-    second = {"margin": [-0.25, 0.1], "friction": [0.2, 0.3], "verdict": ["UNDECIDED", "STABLE"]}
+    second = {
+        "margin": [-0.25, 0.1],
+        "friction": [0.2, 0.3],
+        "verdict": ["UNDECIDED", "STABLE"],
+    }
     return (
-        saved(tmp_path / "first.nc", STUDY, ["A"], **first),
-        saved(tmp_path / "second.nc", other, ["A", "B"], **second),
+        saved(tmp_path / "first.json", STUDY, ["A"], **first),
+        saved(tmp_path / "second.json", other, ["A", "B"], **second),
     )
 
 
 def test_verdict_margin_and_probability_of_each_material(pair, capsys):
-    """A material that only one of them has is there too; 0 is a number, NaN is none."""
+    """A material that only one of them has is there too; 0 is a number, null is none."""
     found = document(capsys, "compare", *pair)
     rows = {(row["place"], row["name"]): row for row in [*found["verdicts"], *found["rows"]]}
     verdict, margin = rows["gas / A", "verdict"], rows["gas / A", "margin"]
@@ -93,7 +87,5 @@ def test_the_tables_are_printed_and_written(pair, tmp_path, capsys):
 
 def test_a_ranking_is_not_compared_with_a_simulation(pair, tmp_path, capsys):
     """One line says which is which."""
-    data = xr.load_dataset(pair[0], engine="h5netcdf")
-    data.attrs["verb"] = "simulate"
-    data.to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
-    assert "rank" in refused(capsys, "compare", pair[0], str(tmp_path / "run.nc"))
+    run = saved(tmp_path / "run.json", STUDY, ["A"], verb="simulate")
+    assert "rank" in refused(capsys, "compare", pair[0], run)

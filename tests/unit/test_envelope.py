@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from math import pi
 from pathlib import Path
@@ -12,6 +13,8 @@ import pytest
 from cages import threshold_points
 from commands import document, refused
 
+import separatrix
+from separatrix import present
 from separatrix.app.plotly import spec
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
@@ -21,7 +24,7 @@ from separatrix.figures import draw
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.ground.errors import InputError
 from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
-from separatrix.present import dataset, load
+from separatrix.present import to_xarray
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import Kept
 from separatrix.study.reading import read_study
@@ -65,7 +68,7 @@ def case(**known):
 
 def test_a_duty_cycle_names_its_worst_case_and_its_time(answered):
     """By the lowest margin; text and dataset say the same, and the picture is drawn."""
-    data, text = load(answered / "sweep.nc"), (answered / "sweep.txt").read_text()
+    data, text = separatrix.load(answered / "sweep.json"), (answered / "sweep.txt").read_text()
     margin = data["margin"].values
     assert int(data["worst_case"]) == 2
     assert float(data["worst_value"]) == margin[2] == min(margin[1:])
@@ -84,7 +87,7 @@ def test_a_duty_cycle_names_its_worst_case_and_its_time(answered):
 
 def test_every_panel_of_the_envelope_has_its_points_to_point_at(answered):
     """Panels, axes and values are those of the figure; a case has its number, its values and its margin."""
-    data = load(answered / "sweep.nc")
+    data = separatrix.load(answered / "sweep.json")
     plots, figure = envelope_plots(data), dict(draw("sweep", data))["envelope"]
     assert [one.y_label for one in plots] == [axes.get_ylabel() for axes in figure.axes]
     threshold = next(one for one in plots[0].series if one.name.startswith("threshold"))
@@ -98,7 +101,7 @@ def test_every_panel_of_the_envelope_has_its_points_to_point_at(answered):
 
 def test_the_report_marks_the_cases_in_its_picture(answered):
     """A mark lies where the picture has its point: higher values higher, and all inside."""
-    (found,) = picture(Kept({"verb": "sweep"}, load(answered / "sweep.nc")), "envelope", "", "")
+    (found,) = picture(Kept(json.loads((answered / "sweep.json").read_text())), "envelope", "", "")
     marks = [one for one in found.hover if "% of the time" in one.text]
     assert [one.text.partition(",")[0] for one in marks] == [f"case {number}" for number in range(4)]
     assert marks[1].y < marks[0].y < marks[2].y == marks[3].y
@@ -111,7 +114,8 @@ def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
     grid = [(n, t) for n in (600.0, 900.0) for t in np.linspace(0.5e-6, 1e-6, 31)]
     cases = [{SPEED: n, "film.thickness": t, "cage.mass": 0.003} for n, t in grid]
     cases[3]["cage.mass"] = -1.0
-    data = dataset("sweep", sweep(STUDY, cases), STUDY, [])
+    found = present.document("sweep", sweep(STUDY, cases), STUDY, [])
+    data = present.dataset(found)
     assert not has_envelope(data)
     plots, figure = sweep_plots(data), dict(draw("sweep", data))["sweep"]
     assert [axes.get_xlabel() for axes in figure.axes] == [plot.x_label for plot in plots]
@@ -122,13 +126,13 @@ def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
     layout = spec(*plots)["layout"]
     assert [layout[name]["anchor"] for name in ("yaxis", "yaxis2", "yaxis3")] == ["x", "x2", "x3"]
     assert layout["xaxis2"]["title"]["text"] == plots[1].x_label
-    (found,) = picture(Kept({"verb": "sweep"}, data), "sweep", "", "")
+    (found,) = picture(Kept(found), "sweep", "", "")
     assert len(found.hover) == 3 * 31  # of 61 every second
 
 
 def test_start_up_from_zero_is_a_row_with_its_reason(answered):
     """At rest nothing rolls; the cases after it are answered."""
-    reason = load(answered / "sweep.nc")["reason"].values.astype(str)
+    reason = separatrix.load(answered / "sweep.json")["reason"].values.astype(str)
     assert "must differ from outer_speed" in reason[0]
     assert not any("refused" in one for one in reason[1:])
 
@@ -245,8 +249,7 @@ def test_alike_and_refused_cases_have_their_pictures():
     """No worst case where all are alike; no envelope where no case has an answer."""
 
     def pictures(cases):
-        data = dataset("sweep", sweep(STUDY, cases), STUDY, [])
-        return dict(draw("sweep", data))
+        return dict(draw("sweep", to_xarray(sweep(STUDY, cases))))
 
     alike = pictures([{"operation.temperature": t} for t in (280.0, 290.0, 300.0)])["envelope"]
     assert alike.axes[0].get_title(loc="left").startswith("No worst case: all 3 have the highest")
@@ -255,7 +258,7 @@ def test_alike_and_refused_cases_have_their_pictures():
 
 def test_a_refused_case_is_a_gap_in_every_line():
     """In the picture and under the pointer: nothing is known between its neighbours."""
-    data = dataset("sweep", sweep(STUDY, [{SPEED: n} for n in (-300.0, 0.0, 300.0)]), STUDY, [])
+    data = to_xarray(sweep(STUDY, [{SPEED: n} for n in (-300.0, 0.0, 300.0)]))
     lines = [one for plot in envelope_plots(data) for one in plot.series if one.kind == "line"]
     assert len(lines) > 4
     assert all([value is None for value in one.y] == [False, True, False] for one in lines)

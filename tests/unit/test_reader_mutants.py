@@ -1,7 +1,8 @@
-"""Every value of a library and of a friction file wrong in nine ways: decided as by the readers before.
+"""Every value of a library, a friction file and a study wrong in nine ways: decided as by the readers before.
 
 The decisions are in reader_mutants.json: the lines that are refused, or "read". Those of the hand-written
-readers were the same, but that a wrong row of a friction table had the line of its header.
+readers were the same, but that a wrong row of a friction table had the line of its header, and that a study
+lost the line of `title`, a fault beside a refused one, and the lines of a wrong distribution's neighbours.
 Written anew, after a look at each difference, by `python tests/unit/test_reader_mutants.py`.
 """
 
@@ -15,9 +16,11 @@ import pytest
 from separatrix.friction.file import read_friction
 from separatrix.ground.errors import InputError
 from separatrix.study.library.reading import read_library
+from separatrix.study.reading import read_study
 
+pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 FROZEN = Path(__file__).with_name("reader_mutants.json")
-READERS = {"library": read_library, "friction": read_friction}
+READERS = {"library": read_library, "friction": read_friction, "study": read_study}
 FILES = {
     "library": """\
 title = "Ours"
@@ -63,6 +66,78 @@ flags = ["drift", "too short"]
 source = "a.csv"
 checksum = "ab"
 reduced_by = "separatrix"
+""",
+    "study": """\
+[bearing]
+ball_diameter = "7.144 mm"
+pitch_diameter = "36 mm"
+ball_count = 12
+radial_clearance = "12 um +- 10 %"
+inner_conformity = 0.53
+outer_conformity = 0.54
+ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.285, density = "7650 kg/m3", name = "ours" }
+ring_material = "440C"
+
+[operation]
+inner_speed = "6000 rpm"
+axial_load = "40 N"
+radial_load = "5 N"
+moment = "0 N m"
+temperature = "20 degC"
+fluid = "vacuum"
+ramp_time = "50 ms"
+ramp_start = 0.2
+
+[film]
+race_friction = { between = [0.05, 0.1] }
+elastic_modulus = "4 GPa"
+poisson_ratio = 0.38
+thickness = ["0.4 um", "0.5 um", "0.7 um"]
+wear = { width = "0.05 mm", friction = 0.3, thickness = "0.1 um", races = "inner" }
+
+[traction]
+model = "exact"
+pressure_slip = "included"
+
+[cage]
+mass = "3.5 g"
+motion = "space"
+ball = "traction"
+inner_diameter = "33 mm"
+outer_diameter = "39 mm"
+width = "10 mm"
+material = "Vespel SP-3"
+pocket_clearance = "0.3 mm"
+pocket_shape = "elongated"
+pocket_axial_clearance = "0.2 mm"
+pocket_axial_offset = "0.02 mm"
+guidance = "outer"
+land_clearance = "0.3 mm"
+land_friction = 0.15
+land_count = 2
+land_spacing = "8 mm"
+land_width = "1 mm"
+transverse_inertia = "0.6 kg mm2"
+dynamic_unbalance = "0.1 mrad"
+gravity = "1 g0"
+added_mass = "0.1 g"
+
+[stability]
+kicks = ["2 m/s", "0.1 m/s"]
+reference_kick = "0.5 m/s"
+runs = 32
+axial_kick = 0.1
+restitution_factors = [0.1, 0.5, 0.9]
+
+[[ranking.candidates]]
+name = "Vespel SP-3"
+friction = { "vacuum" = { mean = 0.08, standard_deviation = "20 %", count = 4 }, "air, 440C" = "0.2 +- 30 %" }
+material = { elastic_modulus = "3.3 GPa", poisson_ratio = 0.4, density = "1.4 g/cm3" }
+
+[[ranking.candidates]]
+name = "Phenolic, dry"
+friction = { "vacuum" = 0.30 }
+material = { elastic_modulus = "7 GPa", poisson_ratio = 0.35 }
 """,
 }
 PAIR = re.compile(r'("[^"\n]*"|[a-z_]+)( = )("[^"\n]*"|\[[^]\n{}]*\]|[0-9.]+|false)(, )?')

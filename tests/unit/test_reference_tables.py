@@ -13,7 +13,7 @@ import separatrix
 from separatrix.ranking.records import Ranked
 from separatrix.study.template import sections, study_keys
 
-BY_NAME = {"study", "provenance", "metadata", "slopes", "tested"}
+BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
 
 FULL = separatrix.read_study("momentum-wheel")
@@ -52,7 +52,7 @@ def names_in(value):
             yield from names_in(inside)
 
 
-COMMON = {"separatrix_version", "verb", "name", "title", "study", "seed", "warnings", "provenance"}
+COMMON = {"separatrix_version", "verb", "name", "title", "study", "seed", "warnings", "provenance", "units"}
 
 
 def missing(verb, found):

@@ -36,11 +36,11 @@ def folder(tmp_path, monkeypatch):
     """A folder to stand in, with a log, and pipes without a writer."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text(LOG)
-    for name in ("p.toml", "p.xlsx", "p.nc"):
+    for name in ("p.toml", "p.xlsx", "p.json"):
         os.mkfifo(name)
     (tmp_path / "link.toml").symlink_to("p.toml")
     (tmp_path / "saved").mkdir()
-    os.mkfifo("saved/simulate.nc")
+    os.mkfifo("saved/simulate.json")
     return tmp_path
 
 
@@ -61,7 +61,7 @@ def test_no_verb_waits_for_a_pipe(capsys, call, path):
         ["tribometer", "p.xlsx"],
         ["tribometer", "a.csv", "p.xlsx"],
         ["check", "p.xlsx"],
-        ["compare", "p.nc", "p.nc"],
+        ["compare", "p.json", "p.json"],
         ["compare", "saved", "saved"],
         ["tribometer", "/dev/zero"],
         ["tribometer", "a.csv", "--map", "/dev/zero"],
@@ -82,7 +82,7 @@ def test_neither_an_ending_nor_a_folder_nor_a_device_makes_a_difference(capsys, 
 def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder, read):
     """Those that the verbs reach only after a check of their own."""
     with pytest.raises(InputError, match="is not a regular file"):
-        read(folder / "p.nc")
+        read(folder / "p.json")
 
 
 def test_the_size_of_a_regular_file_is_told_and_all_else_refused(folder):

@@ -13,9 +13,8 @@ import pytest
 from separatrix import answers
 from separatrix.chain.solution import solve
 from separatrix.explore import sweep
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import Newton, Ratio, Rows
-from separatrix.present import NotFiniteError, dataset, document, load, plain, save, to_dataframe, to_xarray
+from separatrix.present import NotFiniteError, dataset, document, plain, to_dataframe, to_xarray
 from separatrix.present.nodes import field_units
 from separatrix.ranking.records import NotMeasured, Ranked
 from separatrix.study.reading import read_study
@@ -151,29 +150,18 @@ ROWS = (Row("A", 0.1, ("too fast", "too hot"), (0.25, 0.75)), Row("B", None))
 
 
 @pytest.mark.parametrize("rows", [ROWS, ROWS[::-1]])
-def test_materials_are_aligned_by_name(rows, tmp_path):
+def test_materials_are_aligned_by_name(rows):
     """In a dataset a material has one place whatever its rank; what a row lacks is missing, texts are one."""
     answer = Places(0.3, (Place("x", rows), Place("y", rows[::-1])))
-    data = dataset("rank", answer, STUDY, ["one"])
+    data = dataset(document("rank", answer, STUDY, ["one"]))
     assert data["material"].values.tolist() == ["A", "B"]
     np.testing.assert_array_equal(data["material_friction"], [[0.1, np.nan]] * 2)
     assert data["material_extrapolation"].values.tolist() == [["too fast; too hot", ""]] * 2
     assert data["material_shares"].dims == ("environment", "material", "ball")
     np.testing.assert_array_equal(data["material_shares"][0], [[0.25, 0.75], [np.nan] * 2])
     assert float(data["chain_restitution_factor"]) == 0.3
-    save(data, tmp_path / "a.nc")
-    back = load(tmp_path / "a.nc")
-    assert back.equals(data)
-    assert json.loads(back.attrs["warnings"]) == ["one"]
-    assert json.loads(back.attrs["study"])["bearing"]["ball_count"]["value"] == 13
-
-
-def test_what_is_not_a_result_is_refused(tmp_path):
-    """A missing file, and one that is something else."""
-    (tmp_path / "b.nc").write_text("no")
-    for name, rule in (("a.nc", "cannot be read: no such file"), ("b.nc", "is not a readable netCDF result")):
-        with pytest.raises(InputError, match=rule):
-            load(tmp_path / name)
+    assert json.loads(data.attrs["warnings"]) == ["one"]
+    assert json.loads(data.attrs["study"])["bearing"]["ball_count"]["value"] == 13
 
 
 def test_an_answer_is_a_table():

@@ -172,25 +172,10 @@ def test_drawn_chains_are_in_the_estimate(tmp_path, monkeypatch):
     assert expected._of_chains(read_study(written(tmp_path, BAND)), 7) == 0.0
 
 
-def test_the_answers_name_models_and_wear(tmp_path, capsys, monkeypatch):
-    """Both models in `traction`, the band in `restitution`, as a stranger runs them."""
+def test_the_answers_name_the_wear(tmp_path, capsys, monkeypatch):
+    """Where strips leave their range in `traction`, the band in `restitution`, as a stranger runs them."""
     monkeypatch.chdir(tmp_path)
     path = str(written(tmp_path, BAND))
-    found = document(capsys, "traction", path)
-    assert [(one["model"], one["pressure"]) for one in found["models"]] == [
-        ("strips", "hertz"),
-        ("exact", "hertz"),
-    ]
-    for row in found["models"]:
-        assert row["restitution_factor"] > 0.3
-        assert row["race_damping"] > 0.0
-    for race in ("inner", "outer"):
-        one = found[race]
-        assert len(one["strips_traction_coefficient"]) == len(one["exact_traction_coefficient"])
-        assert {"lateral_force", "spin_moment", "film_strain"} <= one["free_rolling"].keys()
-    found = document(capsys, "restitution", path)
-    assert len(found["wear"]["share"]) == len(found["wear"]["restitution_factor"])
-    assert main(["restitution", path, "--out", "out"]) == 0
-    text = capsys.readouterr().out
-    assert "film worn over 200 um, bare, friction 0.3" in " ".join(text.split())
-    assert (tmp_path / "out" / "restitution-wear.png").is_file()
+    assert any("across the groove" in one for one in document(capsys, "traction", path)["outside"])
+    assert main(["restitution", path]) == 0
+    assert "film worn over 200 um, bare, friction 0.3" in " ".join(capsys.readouterr().out.split())

@@ -6,12 +6,10 @@ import pickle
 
 import numpy as np
 import pytest
-from cages import BEARING
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.traction import (
-    bonded_layer,
     film_compliance,
     shear_field,
     solve_strip,
@@ -45,7 +43,7 @@ def test_film_compliance_is_thickness_over_shear_modulus():
 
 
 def test_a_thick_film_in_series_is_warned_of():
-    """Above 0.03 of the semi-minor axis; the number is returned. A layer needs no warning."""
+    """Above 0.03 of the semi-minor axis; the number is returned."""
     thick = 0.031 * ELLIPSE.semi_minor
     with pytest.warns(ValidityWarning, match=r"0\.031 of the semi-minor axis.*is valid up to 0\.03 \(docs"):
         slope, _ = traction_slope(ELLIPSE, CREEP, film_thickness=thick, **GOOD)
@@ -84,14 +82,6 @@ def test_traction_without_slip_knows_no_friction():
     stuck = fields[2].slip == 0.0
     assert stuck.sum() > 50
     assert fields[2].shear[stuck] == pytest.approx(fields[2].shear_without_slip[stuck], rel=1e-2)
-
-
-def test_a_layer_needs_a_film():
-    """Bare races have no layer."""
-    with pytest.raises(InputError, match="needs a material and a thickness"):
-        bonded_layer(BEARING, Film(race_friction=0.1))
-    layer = bonded_layer(BEARING, Film(race_friction=0.1, material=PTFE, thickness=1e-6))
-    assert (layer.film_modulus, layer.ring_modulus, layer.thickness) == (2e9, 205e9, 1e-6)
 
 
 def test_an_unsettled_strip_says_so(monkeypatch):

@@ -14,7 +14,6 @@ from separatrix.friction.file import place
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log, reduction, steady
 from separatrix.friction.reduction.cycles import oscillation
-from separatrix.present import load, save
 from separatrix.present.tribometer import page_data
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}
@@ -336,12 +335,10 @@ def test_an_interval_is_students():
     assert test.interval == (test.friction - test.half_width, test.friction + test.half_width)
 
 
-def test_a_page_is_drawn_from_a_saved_dataset(tmp_path):
-    """The dataset goes through a file, and every panel has labels with units."""
+def test_a_page_is_drawn_from_a_dataset():
+    """Every panel has labels with units."""
     one = log(replace(QUIET, run_in=0.1), temperature=lambda t: 77.0 + 0.0 * t)
-    data = page_data(reduction(one))
-    save(data, tmp_path / "test.nc")
-    figure = page(load(tmp_path / "test.nc"))
+    figure = page(page_data(reduction(one)))
     assert len(figure.axes) == 5
     for axes in figure.axes:
         assert "[" in axes.get_xlabel()

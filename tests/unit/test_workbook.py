@@ -12,12 +12,12 @@ import pytest
 from minimal_xlsx import Formula, Shown, workbook
 from rich_studies import PLANE, SPACE
 
+import separatrix
 from separatrix.cli import main
 from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.sheet import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
 from separatrix.ground.units import parse
 from separatrix.ground.workbook import COLUMNS, sheets_of
-from separatrix.present import load as load_dataset
 from separatrix.saving import write_ranking
 from separatrix.study.reading import read_study
 from separatrix.study.study import ORDER, shipped_studies
@@ -54,20 +54,20 @@ material = "Armalon"
 
 
 @pytest.fixture(scope="module")
-def answer(tmp_path_factory):
-    """The document of a small ranking, as it is saved, and its folder."""
-    folder = tmp_path_factory.mktemp("workbooks")
-    (folder / "small.toml").write_text(STUDY)
+def folder(tmp_path_factory):
+    """A folder with the study above."""
+    place = tmp_path_factory.mktemp("workbooks")
+    (place / "small.toml").write_text(STUDY)
+    return place
+
+
+@pytest.fixture(scope="module")
+def answer(folder):
+    """The document of a small ranking, as it is saved."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("separatrix.figures.save_all", lambda *_: None)  # they take long
         assert main(["rank", str(folder / "small.toml"), "--out", str(folder / "out"), "--quiet"]) == 0
     return json.loads((folder / "out" / "rank.json").read_text())
-
-
-@pytest.fixture(scope="module")
-def folder(answer, tmp_path_factory):
-    """The folder of the small ranking."""
-    return tmp_path_factory.getbasetemp() / "workbooks0"
 
 
 def typed(key, value):
@@ -288,7 +288,7 @@ def cells(path):
 @pytest.fixture(scope="module")
 def data(folder, answer):
     """The dataset of the small ranking, for its units."""
-    return load_dataset(folder / "out" / "rank.nc")
+    return separatrix.load(folder / "out" / "rank.json")
 
 
 def test_numbers_are_those_of_the_document(folder, answer):

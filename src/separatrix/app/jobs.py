@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -58,14 +58,10 @@ class Job:
 
 
 class Jobs:
-    """The queue and its process, which is started with the first job and again if it was killed.
-
-    `after` is called with each task that has ended, in a thread of its own.
-    """
+    """The queue and its process, which is started with the first job and again if it was killed."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
-        self.after: Callable[[Task], None] = lambda _: None
         self._lock, self._last, self._is_closed = threading.Lock(), 0, False
         self._jobs: dict[int, Job] = {}
         self._process: BaseProcess | None = None
@@ -177,8 +173,6 @@ class Jobs:
             with self._lock:
                 if changes.get("state", RUNNING) not in ACTIVE:
                     changes["ended"] = time.monotonic()
-                    if (job := self._jobs.get(number)) is not None:
-                        threading.Thread(target=self.after, args=(job.task,)).start()
                 self._change(number, **changes)
                 self._feed()
 

@@ -9,7 +9,7 @@ import tomllib
 import zipfile
 import zlib
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -21,6 +21,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
 from separatrix.app.jobs import Jobs
+from separatrix.comparing.saved import arrays
 from separatrix.ground.errors import InputError
 from separatrix.ground.input_files import is_inside
 from separatrix.ground.toml import read_text
@@ -203,11 +204,10 @@ class Page:
 
         return (self._known(path, load) if path.suffix == ".toml" else None) or ""
 
-    def dataset(self, path: Path) -> xr.Dataset | None:
-        """Return a saved dataset; None if there is none."""
-        from separatrix import present
-
-        return self._known(path, lambda: present.load(path))
+    def dataset(self, place: Path, verb: str) -> xr.Dataset | None:
+        """Return the labelled arrays of an answer; None if there is none, or it was interrupted."""
+        found = self.document(place, verb)
+        return None if found is None else arrays(found, self.folder.name(place / f"{verb}.json"))
 
     def _known(self, path: Path, load: Callable[[], Content]) -> Content | None:
         """Return the content of a file, read once for each state of the file; None if it is damaged."""
@@ -228,12 +228,6 @@ class Page:
                 known.stamp = stamp
             found: Content | None = known.content
             return found
-
-    def newest(self, verbs: Collection[str]) -> list[Path]:
-        """Return the saved datasets of these verbs in the folder, the newest first."""
-        names = [(self.folder.answers(name), verb) for name in self.folder.studies() for verb in verbs]
-        found = [path for place, verb in names if self.folder.has(path := place / f"{verb}.nc")]
-        return sorted(found, key=lambda path: -path.stat().st_mtime_ns)
 
     def answered(self, study: str) -> list[str]:
         """Return the verbs that a study has saved answers of, in the order of the chain."""

@@ -30,9 +30,6 @@ PLOTS: dict[str, dict[str, Callable[[xr.Dataset], Plot | tuple[Plot, ...]]]] = {
 }
 """Verb -> its figures to hover over, each one plot or several panels."""
 
-READ = (*PLOTS, "simulate")
-"""Verbs whose datasets the page reads."""
-
 FIGURES_OF = {
     "stability": ("stability-curve",),
     "rank": ("rank-", "stability-curve"),
@@ -63,7 +60,7 @@ def routes(page: Page) -> APIRouter:
             verb=verb,
             found=found,
             text=text.read_text(encoding="utf-8") if page.folder.has(text) else "",
-            plots=_plots(page.dataset(place / f"{verb}.nc") if verb == "sweep" else None, verb),
+            plots=_plots(page.dataset(place, verb) if verb == "sweep" else None, verb),
             pictures=_files(page.folder, place, verb, (".png",)),
             files=_files(page.folder, place, verb, ANSWER_SUFFIXES),
             folder=page.folder.name(place),
@@ -75,7 +72,7 @@ def routes(page: Page) -> APIRouter:
     @router.get("/plot/{verb}/{figure}/{name:path}")
     def plot(verb: str, figure: str, name: str, environment: int | None = None) -> Response:
         draw = PLOTS.get(verb, {}).get(figure)
-        data = page.dataset(page.folder.answers(name) / f"{verb_named(verb).name}.nc")
+        data = page.dataset(page.folder.answers(name), verb_named(verb).name)
         if draw is None or data is None:
             raise InputError(f"{name}: {verb}", "has no such figure")
         if environment is not None and "environment" in data.dims and figure == "curve":
@@ -93,7 +90,7 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/cage/{name:path}", response_class=HTMLResponse)
     def cage(name: str) -> Response:
-        data = page.dataset(page.folder.answers(name) / "simulate.nc")
+        data = page.dataset(page.folder.answers(name), "simulate")
         if data is None:
             raise InputError(f"{name}: simulate", "has no answer yet", cure="Run the verb.")
         found = {key: float(data[key]) for key in ("kick", "cage_ball_cage_friction") if key in data}

@@ -6,7 +6,6 @@ import contextlib
 import hmac
 import secrets
 import socket
-import threading
 from collections.abc import AsyncIterator, Awaitable, Callable, MutableMapping
 from http import HTTPStatus
 from importlib.util import find_spec
@@ -23,8 +22,7 @@ from starlette.exceptions import HTTPException
 
 from separatrix.app import editing, results
 from separatrix.app.jobs import Jobs
-from separatrix.app.page import TEMPLATES, Folder, Page
-from separatrix.app.worker import Task
+from separatrix.app.page import Folder, Page
 from separatrix.figures.view import PARTS
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import printable, shown
@@ -33,9 +31,6 @@ HOST = "127.0.0.1"
 MOST_CONNECTIONS = 200
 IDLE = 10
 """Time after which an idle connection is closed [s]."""
-
-MOST_READY = 12
-"""Answers that are read before they are looked at; reading one takes up to a second."""
 
 STATIC = Path(__file__).with_name("static")
 A_DAY = {"cache-control": "max-age=86400"}
@@ -81,19 +76,10 @@ def application(root: Path) -> FastAPI:
     """Return the page of a folder, unguarded."""
     page, drawing = Page(folder=Folder(root=root), jobs=Jobs(root)), plotly_file()
 
-    def read(task: Task) -> None:
-        if task.verb in results.READ:
-            page.dataset(task.folder / f"{task.verb}.nc")
-
-    page.jobs.after = read
-
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
-        reading = threading.Thread(target=made_ready, args=(page,))
-        reading.start()
         yield
         page.jobs.close()
-        reading.join()  # ended while it reads a dataset it would keep HDF5's lock, and the exit hang
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
@@ -128,14 +114,6 @@ def application(root: Path) -> FastAPI:
     app.mount("/static/cage", StaticFiles(directory=PARTS))
     app.mount("/static", StaticFiles(directory=STATIC))
     return app
-
-
-def made_ready(page: Page) -> None:
-    """Load what the first views need, while the page answers already: templates, and the newest answers."""
-    for name in TEMPLATES.list_templates():
-        TEMPLATES.get_template(name)
-    for path in page.newest(results.READ)[:MOST_READY]:
-        page.dataset(path)
 
 
 class TooLarge(Exception):  # noqa: N818 - a reply, not a fault

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from separatrix.ground import bounds as _check
 from separatrix.ground.errors import InputError
+from separatrix.ground.schema import Fault, Faults, check, key, positive, record
 from separatrix.ground.units import (
     Array,
     Kilogram,
@@ -23,7 +22,7 @@ from separatrix.ground.units import (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class BallTraction:
     r"""A ball of one state: :math:`m_e \dot u = N - F(u)`, :math:`F(u) = C u / (1 + (u/v)^4)^{1/4}`.
 
@@ -43,15 +42,9 @@ class BallTraction:
         A number is not above zero.
     """
 
-    mass: Kilogram
-    slope: NewtonSecondPerMetre
+    mass: Kilogram = key(positive(1e-12, 1e3))
+    slope: NewtonSecondPerMetre = key(positive(1e-12, 1e12))
     speed: MetrePerSecond
-
-    def __post_init__(self) -> None:
-        limits = (("mass", 1e-12, 1e3), ("slope", 1e-12, 1e12))
-        _check.settle(
-            *(_check.positive(self, name, low, high) for name, low, high in limits), _refused_speed(self)
-        )
 
     @property
     def capacity(self) -> Newton:
@@ -68,10 +61,11 @@ class BallTraction:
         return np.asarray(self.slope * u / (1.0 + (u / self.speed) ** 4) ** 0.25)
 
 
-def _refused_speed(law: BallTraction) -> Iterator[InputError]:
+@check(BallTraction)
+def _knee_above_rest(speed: MetrePerSecond) -> Faults:
     """The knee is at a speed above zero; it may be infinite."""
-    if not law.speed > 0.0:
-        yield InputError("BallTraction.speed", "must be > 0 [m/s]", str(law.speed))
+    if not speed > 0.0:
+        yield Fault("speed", "must be > 0 [m/s]")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

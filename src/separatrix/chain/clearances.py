@@ -323,11 +323,7 @@ def _ring_growth(
         if is_outer:
             guesses.append("outside diameter of the bearing: as far from the pitch diameter as the bore")
     return _Turning(
-        inner=min(far, land),
-        outer=max(far, land),
-        material=material,
-        density=material.density,
-        speed=speed,
+        inner=min(far, land), outer=max(far, land), material=material, density=material.density, speed=speed
     ).growth(land)
 
 

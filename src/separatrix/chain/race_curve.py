@@ -6,6 +6,7 @@ in series.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -16,10 +17,11 @@ from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction import exact
 from separatrix.chain.traction.curve import TractionCurve, traction_curve
-from separatrix.chain.traction.exact.normal import pressed_contact
+from separatrix.chain.traction.exact.pressure import pressed_contact
 from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
 from separatrix.chain.traction.film import track_of
-from separatrix.ground.errors import ConvergenceError
+from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.units import Pascal, Ratio
 from separatrix.study.study import (
     ContactPressure,
     Film,
@@ -32,6 +34,21 @@ from separatrix.study.study import (
 
 REMEMBERED = 512
 """Exact contacts that are kept, by the records they are made of."""
+
+STRAINED: Ratio = 0.1
+"""Film strain p0/M_c from which a film is no longer linearly elastic."""
+
+SQUEEZED: Ratio = 0.01
+"""Film strain times thickness over the approach from which a film may change the pressure."""
+
+NOTICED: Ratio = 0.2
+"""Slip by the pressure over the saturation creep that is named: it moves free rolling by that."""
+
+CLOSE: Ratio = 0.03
+"""Difference of slopes that is named: a bearing's contacts without a soft film are closer."""
+
+LATERAL: Ratio = 0.05
+"""Lateral force over mu N from which it is named: strips have none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,3 +189,82 @@ def exact_curve(track: RaceTrack, settings: TractionSettings, plain: TractionCur
         free_rolling_offset=found.free_rolling_offset,
         nodes=COLUMNS[1],
     )
+
+
+def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) -> Iterator[str]:
+    """Where the strips leave their range: a sentence each, from the exact contact in free rolling."""
+    strips_by, exact_by, coated_by = (
+        asked.by(TractionModel.STRIPS, ContactPressure.HERTZ),
+        asked.by(TractionModel.EXACT, ContactPressure.HERTZ),
+        asked.by(TractionModel.EXACT, ContactPressure.COATED),
+    )
+    try:
+        found = [exact_slope(track, asked.by(TractionModel.EXACT)).solution for track in tracks]
+    except (InputError, ConvergenceError) as error:
+        yield f"The exact contact has no answer to compare the strips with: {error}"
+        return
+    off = _apart(tracks, strips_by, exact_by)
+    if off > CLOSE:
+        yield f"The slopes by strips are up to {off:.0%} off those of the exact contact."
+    is_soft = all(track.film.wear is None for track in tracks) and any(
+        _squeeze(one) > SQUEEZED for one in tracks
+    )
+    is_pressed = is_soft or asked.pressure is ContactPressure.COATED
+    pressed = _apart(tracks, coated_by, exact_by) if is_pressed else 0.0
+    if pressed > CLOSE:
+        yield (
+            f"The film changes the pressure, and with it the slopes by up to {pressed:.0%}: "
+            'consider [traction] pressure = "coated".'
+        )
+    strain = max(film_strain(track, one.max_pressure) for track, one in zip(tracks, found, strict=True))
+    if strain > STRAINED:
+        yield (
+            f"The pressure compresses the film by {strain:.0%} of its thickness: above {STRAINED:.0%} it is "
+            "not linearly elastic, as every model here takes it to be."
+        )
+    slip = max(map(pressure_slip, tracks))
+    if slip > NOTICED and asked.pressure_slip is PressureSlip.NEGLECTED:
+        yield (
+            f"The pressure alone makes the surfaces slip by up to {slip:.2g} of the saturation creep: "
+            'consider [traction] model = "exact" with pressure_slip = "included".'
+        )
+    lateral = max(
+        abs(one.lateral_force / (track.film.race_friction * track.ellipse.load))
+        for track, one in zip(tracks, found, strict=True)
+    )
+    if lateral > LATERAL:
+        yield (
+            f"Spin pushes the ball across the groove with up to {lateral:.0%} of friction times load; strips "
+            "have no such force."
+        )
+
+
+def _apart(tracks: tuple[RaceTrack, RaceTrack], one: TractionSettings, other: TractionSettings) -> Ratio:
+    """Largest relative difference of the slopes by two models; 0 where one of them has no answer."""
+    try:
+        pairs = [(race_slope(track, one).slope, race_slope(track, other).slope) for track in tracks]
+    except (InputError, ConvergenceError):
+        return 0.0
+    return max(abs(x / y - 1.0) for x, y in pairs)
+
+
+def film_strain(track: RaceTrack, pressure: Pascal) -> Ratio:
+    """Compression of the film by a pressure over its thickness; 0 without a film."""
+    material = track.film.body
+    if material is None:
+        return 0.0
+    return pressure / exact.solid(material.elastic_modulus, material.poisson_ratio).compression_modulus
+
+
+def _squeeze(track: RaceTrack) -> Ratio:
+    """Compression of the film by the largest pressure over the approach of the bodies."""
+    ellipse = track.ellipse
+    return film_strain(track, ellipse.max_pressure) * (track.film.thickness or 0.0) / ellipse.approach
+
+
+def pressure_slip(track: RaceTrack) -> Ratio:
+    """Largest slip by the pressure, between unlike or coated bodies, over the saturation creep 2 mu p0/E*."""
+    settings = TractionSettings(model=TractionModel.EXACT, pressure_slip=PressureSlip.INCLUDED)
+    contact = exact.rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
+    saturation = 2.0 * track.film.race_friction * track.ellipse.max_pressure / track.ellipse.contact_modulus
+    return float(np.abs(contact.coupling).max()) / saturation

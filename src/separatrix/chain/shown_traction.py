@@ -1,16 +1,15 @@
-"""Traction of a contact as figures show it: by both models, at several spins, and its shear."""
+"""Traction of a contact as figures show it: its curve, those at other spins, and its shear."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from separatrix.chain.race_curve import RaceTrack, exact_curve, exact_slope, strips
-from separatrix.chain.traction import ShearField, TractionCurve, exact, shear_field, track_of
-from separatrix.ground.errors import ConvergenceError, InputError
-from separatrix.ground.units import Array, Ratio
+from separatrix.chain.race_curve import RaceTrack, exact_curve, strips
+from separatrix.chain.traction import ShearField, TractionCurve, shear_field, track_of
+from separatrix.ground.units import Ratio
 from separatrix.study.study import ContactPressure, TractionModel, TractionSettings
 
 SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
@@ -26,54 +25,12 @@ INCREMENTS = 101
 """Creep increments of a curve."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExactArea:
-    """The exact contact in free rolling, and where the stick of strips ends in its rows, shape (row,) [m].
-
-    NaN where a strip slips throughout; None where the strips have another ellipse.
-    """
-
-    solution: exact.ContactSolution  # tractions and slip of every cell
-    stick_line: Array | None  # where the stick of strips ends in each row
-
-
-def exact_area(track: RaceTrack, settings: TractionSettings) -> ExactArea | None:
-    """Fields of one race in free rolling; None if the exact contact has no answer."""
-    if track.is_idle:
-        return None
-    try:
-        found = exact_slope(track, settings.by(TractionModel.EXACT)).solution
-    except (InputError, ConvergenceError):
-        return None
-    rows = found.across.size
-    whole = found.across[-1] - found.across[0] + found.across[1] - found.across[0]
-    if abs(whole - 2.0 * track.ellipse.semi_major) > 1e-9 * whole:  # not the ellipse of Hertz
-        return ExactArea(solution=found, stick_line=None)
-    field = _shear(track, rows)
-    ends = [
-        np.nan if slip[0] else x[slip.argmax()] if slip.any() else x[-1]
-        for x, slip in zip(field.along, field.slip != 0, strict=True)
-    ]
-    return ExactArea(solution=found, stick_line=np.array(ends))
-
-
-def curves_by_model(
-    track: RaceTrack, settings: TractionSettings
-) -> tuple[TractionCurve, TractionCurve | None]:
-    """Curves of one contact by strips and by the exact contact; None if that has no answer.
-
-    The creep increments go a quarter beyond those at which the contact's own curve is saturated.
-    """
-    increments = np.linspace(-1.0, 1.0, INCREMENTS) * _saturation(track)
-    plain = strips(track, settings.pressure, increments)
-    if track.is_idle:
-        return plain, None
-    try:
-        return plain, exact_curve(track, settings.by(TractionModel.EXACT), plain)
-    except (InputError, ConvergenceError):
-        if settings.model is TractionModel.EXACT:
-            raise
-        return plain, None
+def shown_curve(track: RaceTrack, settings: TractionSettings) -> TractionCurve:
+    """Curve of one contact, at increments up to a quarter beyond those at which it is saturated."""
+    plain = strips(track, settings.pressure, np.linspace(-1.0, 1.0, INCREMENTS) * _saturation(track))
+    if settings.model is TractionModel.STRIPS or track.is_idle:
+        return plain
+    return exact_curve(track, settings, plain)
 
 
 def curves_by_ratio(track: RaceTrack, curve: TractionCurve) -> tuple[TractionCurve, ...]:
@@ -104,11 +61,7 @@ def _saturation(track: RaceTrack) -> Ratio:
 
 def shear(track: RaceTrack) -> ShearField:
     """Shear in a few strips of a contact in free rolling (the paper's Fig. 6)."""
-    return _shear(track, STRIPS)
-
-
-def _shear(track: RaceTrack, strips: int) -> ShearField:
     friction, compliance = track_of(track.film, track.race, track.ellipse.semi_major)
     return shear_field(
-        track.ellipse, track.creep, race_friction=friction, film_compliance=compliance, strips=strips
+        track.ellipse, track.creep, race_friction=friction, film_compliance=compliance, strips=STRIPS
     )

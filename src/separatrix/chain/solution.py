@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from separatrix.chain.ball_mobility import Mobility, free_ball, mobility
 from separatrix.chain.ball_traction import FreeBall
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
@@ -25,7 +26,6 @@ from separatrix.chain.contacts import (
     require_rolling,
 )
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
-from separatrix.chain.mobility import Impacts, Mobility, SlipLaw, free_ball, held_ball, impacts, mobility
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
 from separatrix.chain.pocket import (
     REFERENCE,
@@ -35,29 +35,13 @@ from separatrix.chain.pocket import (
     pocket_conditions,
     pocket_speed,
 )
-from separatrix.chain.restitution import (
-    Restitution,
-    ball_pocket_stiffness,
-    restitution,
-)
+from separatrix.chain.restitution import Restitution, ball_pocket_stiffness, restitution
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.units import (
-    Kilogram,
-    MetrePerSecond,
-    NewtonPerMetre,
-    Ratio,
-)
+from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import cage_candidate, environment_of
-from separatrix.study.study import (
-    CageDesign,
-    Candidate,
-    ClearanceState,
-    Friction,
-    Material,
-    Study,
-)
+from separatrix.study.study import CageDesign, Candidate, ClearanceState, Friction, Material, Study
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 WORN_MOBILITY = (
@@ -106,7 +90,7 @@ class Solution:
         Warns
         -----
         ValidityWarning
-            A contact leaves what races bear or what the model holds: `contact_limits`.
+            A contact leaves what races bear or what the model holds.
         """
         asked = self.study
         state = bearing_state(
@@ -210,12 +194,6 @@ class Solution:
         inner, outer = self.bearing.dampings(self.slopes.inner.slope, self.slopes.outer.slope)
         return restitution(inner, outer, ball_cage_stiffness=self.ball_cage_stiffness, cage_mass=mass)
 
-    @property
-    def impact_mass(self) -> Kilogram:
-        """Mass that an impact feels, 1/(1/M + R^2/J): that of a cage that may turn, M/2 for a thin ring."""
-        body, radius = self.inertia, self.study.bearing.pitch_diameter / 2.0
-        return 1.0 / (1.0 / body.mass + radius**2 / body.moment_of_inertia)
-
     @cached_property
     def inertia(self) -> CageInertia:
         """Mass and moments of inertia of the cage: as stated, of its shape, or of a thin ring.
@@ -249,20 +227,6 @@ class Solution:
         asked, rates = self.study, self.mobility.linear.rates
         records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
         return free_ball(*records, float(np.abs(rates).max()))
-
-    @cached_property
-    def impacts(self) -> Impacts:
-        """Restitution of impacts of the cage on the most loaded ball against their speed."""
-        asked, found, law = self.study, self.restitution, self.mobility.traction
-        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
-        return impacts(
-            held_ball(*records, SlipLaw.ELASTIC),
-            law,
-            felt_mass=self.impact_mass,
-            cage_mass=found.cage_mass,
-            ball_cage_stiffness=found.ball_cage_stiffness,
-            race_damping=found.race_damping,
-        )
 
     @cached_property
     def lubrication(self) -> LubricationCurve | None:

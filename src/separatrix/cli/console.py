@@ -5,18 +5,17 @@ from __future__ import annotations
 import _thread
 import contextlib
 import functools
-import json
 import math
 import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, ParamSpec, TextIO
 
 from separatrix.ground.errors import InputError
-from separatrix.ground.messages import harmless, one_line
+from separatrix.ground.messages import harmless, json_text, one_line
 
 if TYPE_CHECKING:
     from separatrix.ground.units import Second
@@ -121,9 +120,9 @@ def answer(text: str) -> None:
             raise InputError("Standard output", f"cannot be written ({error.strerror or error})") from error
 
 
-def answer_json(document: Mapping[str, object]) -> None:
+def answer_json(document: dict[str, object]) -> None:
     """Write a document to standard output."""
-    answer(json.dumps(document, indent=1, allow_nan=False) + "\n")
+    answer(json_text(document) + "\n")
 
 
 class Life:

@@ -12,6 +12,7 @@ import typer
 
 from separatrix.cli.console import answer, answer_json, interrupted, interruptible
 from separatrix.cli.verbs import ANSWERED, Jobs, Json, Quiet, computed_with_progress, folder, threads
+from separatrix.comparing.saved import DAMAGE
 from separatrix.ground.errors import InputError
 from separatrix.ground.messages import harmless, noted_warnings
 from separatrix.ground.staged import writable_folder
@@ -38,9 +39,6 @@ OUT_HELP = "Folder of the report [default: that of the answers; report for two; 
 PDF_HELP = "Also write report.pdf; needs the extra pdf."
 CHAIN = ("bearing", "traction", "restitution")
 """Verbs that take seconds: computed for the report of a folder that lacks them."""
-
-DAMAGE = (KeyError, IndexError, TypeError, AttributeError, ValueError)
-"""What a document lacks that was edited, or is of another version."""
 
 UNFINISHED = "no report was written. Run the same command to resume."
 
@@ -191,9 +189,7 @@ def _answers_of_side(
     with contextlib.nullcontext() if folder is None else writable_folder(folder):
         kept, _, is_complete = _answers(*side, folder, compute)
     return {
-        verb: Saved(path=asked, verb=verb, document=one.document, data=one.data)
-        for verb, one in kept.items()
-        if is_complete
+        verb: Saved(path=asked, verb=verb, document=one.document) for verb, one in kept.items() if is_complete
     }
 
 

@@ -21,7 +21,7 @@ from separatrix.ground.units import printable, shown
 from separatrix.questions import Verb, computed, verb_named
 
 COMPARE = "Two answers of one verb side by side: what differs, and by more than counting noise?"
-COMPARE_EPILOG = "A and B are folders of answers, their .json, .nc or .html files, of any verb with a study."
+COMPARE_EPILOG = "A and B are folders of answers, their .json or .html files, of any verb with a study."
 
 
 def compare(
@@ -110,7 +110,7 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     from separatrix.study.reading import require, study_again
     from separatrix.verdict.long_jobs import Interrupted
 
-    stored, kept = saved.document or {}, kept_by(saved)
+    stored, kept = saved.document, kept_by(saved)
     if stored.get("complete") is False:
         raise InputError(saved.path, "was interrupted", cure="Resume it: run its command again.")
     verb = verb_named(saved.verb)
@@ -131,7 +131,7 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
 
 def kept_by(saved: Saved) -> Document:
     """Provenance of an answer, with what must be there."""
-    kept = (saved.document or {}).get("provenance")
+    kept = saved.document.get("provenance")
     if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
         raise InputError(saved.path, "has no provenance", cure="Answer its question again.")
     study = kept.get("study")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 
 from separatrix.comparing.records import (
@@ -17,8 +16,8 @@ from separatrix.comparing.records import (
     is_number,
     names_verdict,
 )
-from separatrix.comparing.results import Nodes, differing, of_dataset, of_document, order
-from separatrix.comparing.saved import VERBS, Saved
+from separatrix.comparing.results import Nodes, differing, of_document, order
+from separatrix.comparing.saved import DAMAGE, VERBS, Saved
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 
@@ -37,7 +36,7 @@ ROUNDING = 1e-9
 """Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
 
 MOST_SHOWN = 20
-IGNORED = ("separatrix_version", "provenance", "warnings")
+IGNORED = ("separatrix_version", "provenance", "warnings", "units")
 """Keys of a document that are not the answer: warnings name the lines of files."""
 
 
@@ -57,20 +56,13 @@ def compared(first: Saved, second: Saved, also: tuple[str, ...] = ()) -> Compari
     Raises
     ------
     InputError
-        They are of different verbs, or one has only its document and the other only its dataset.
+        They are of different verbs, or not as separatrix writes them.
     """
     verb = first.verb
     if verb != second.verb:
         raise InputError(second.path, f"must be an answer of {verb}, as {first.path} is", got=second.verb)
     studies = [_study(one) for one in (first, second)]
-    if first.document is not None and second.document is not None:
-        nodes = [of_document(one) for one in (first.document, second.document)]
-    elif first.data is not None and second.data is not None:
-        nodes = [of_dataset(one) for one in (first.data, second.data)]
-    else:
-        kind = ".json" if first.document else ".nc"
-        rule = f"must be a {kind} file or a folder, as {first.path} is a {kind} file"
-        raise InputError(second.path, rule, cure="Name the folders, or two files of one kind.")
+    nodes = [of_document(one.document) for one in (first, second)]
     found = list(differing(verb, *nodes))
     rows = sorted((row for row in found if row is not None), key=order)
     verdicts = tuple(row for row in rows if row.is_verdict)
@@ -135,29 +127,20 @@ def _of_candidate(candidate: Mapping[str, object]) -> Iterator[tuple[str, Input]
 
 def _study(saved: Saved) -> Mapping[str, object]:
     try:
-        study = _part(saved, "study")
+        study = saved.document["study"]
         if isinstance(study, dict) and dict(of_study(study)):
             return study
-    except (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError):
+    except DAMAGE:
         pass
     raise InputError(saved.path, "contains a study that separatrix did not write")
 
 
-def _part(saved: Saved, name: str) -> object:
-    """Return a key of an answer; that of a dataset is text in JSON."""
-    if saved.document is not None:
-        return saved.document.get(name)
-    return json.loads(saved.data.attrs.get(name, "null")) if saved.data is not None else None
-
-
 def _named(saved: Saved) -> Named:
-    data: Mapping[str, object] = {} if saved.data is None else saved.data.attrs
-    head = data if saved.document is None else saved.document
     try:
-        seed = int(str(head["seed"]))
+        seed = int(str(saved.document["seed"]))
     except (KeyError, ValueError):
         raise InputError(saved.path, "lacks its seed") from None
-    title = head.get("title")
+    title = saved.document.get("title")
     if not isinstance(title, str) or not title.strip():
         raise InputError(saved.path, "lacks its title")
     return Named(path=saved.path, title=printable(title, 200), seed=seed)
@@ -167,29 +150,19 @@ def _inputs(saved: Saved, study: Mapping[str, object]) -> dict[str, Input]:
     """Inputs of an answer; of a simulation also kick and run, and the friction that it took."""
     found = dict(sorted(of_study(study), key=lambda pair: pair[0]))
     if saved.verb == "simulate":
+        cage = saved.document.get("cage")
+        friction = cage.get("ball_cage_friction") if isinstance(cage, dict) else None
         taken: dict[str, Input] = {
-            "--kick": (_single(saved, "kick"), "m/s"),
-            "--run": (_single(saved, "run"), None),
-            FRICTION: (_single(saved, "ball_cage_friction", "cage"), "-"),
+            "--kick": (saved.document.get("kick"), "m/s"),
+            "--run": (saved.document.get("run"), None),
+            FRICTION: (friction, "-"),
         }
         return found | {key: value for key, value in taken.items() if value[0] is not None}
-    try:
-        kept = _part(saved, "provenance")
-    except ValueError:
-        kept = None
+    kept = saved.document.get("provenance")
     command = kept.get("command") if isinstance(kept, dict) else None
     options = command.get("question") if isinstance(command, dict) else None
     given = options.items() if isinstance(options, dict) else ()
     return found | {f"--{name}": (value, None) for name, value in given}
-
-
-def _single(saved: Saved, name: str, section: str = "") -> object:
-    """Return one number of an answer; None if it lacks it."""
-    if saved.document is not None:
-        node = saved.document.get(section) if section else saved.document
-        return node.get(name) if isinstance(node, Mapping) else None
-    found = None if saved.data is None else saved.data.get(f"{section}_{name}" if section else name)
-    return found.item() if found is not None and found.size == 1 else None
 
 
 def agreement(stored: Mapping[str, object], computed: Mapping[str, object]) -> Agreement:

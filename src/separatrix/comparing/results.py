@@ -13,9 +13,7 @@ import types
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, get_args, get_type_hints
-
-import numpy as np
+from typing import get_args, get_type_hints
 
 from separatrix import answers
 from separatrix.comparing.records import Noise, Plain, Row, Value, is_number
@@ -24,16 +22,24 @@ from separatrix.ground.units import printable
 from separatrix.present.nodes import field_units
 from separatrix.verdict.judgement import NORMAL_95, Judgement, KickCount
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 Place = tuple[str, ...]
 Nodes = dict[Place, dict[str, Plain]]
 """Single numbers and texts of an answer by place and name."""
 
 NOT_RESULTS = frozenset(
-    {"study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"}
-    | {"complete", "reason", "static_reason", "impacts_reason", "outcome_sentence", "paper_statement"}
+    {
+        "study",
+        "cage",
+        "provenance",
+        "separatrix_version",
+        "verb",
+        "name",
+        "title",
+        "seed",
+        "warnings",
+        "units",
+    }
+    | {"complete", "reason", "static_reason", "outcome_sentence", "paper_statement"}
     | {"words", "ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"}
 )
 """Inputs, sentences that follow from numbers, and single drawn bearings."""
@@ -63,8 +69,6 @@ BY_LABEL = ("ball", "case", "kick", "restitution_factor")
 BARE = ("environments", "materials")
 GRIDS = ("curve", "linear_limit", "by_kick")
 """Lists whose rows need not be at the same values in two answers."""
-
-MOST_ON_AXIS, MOST_VALUES = 200, 200_000
 
 
 def difference_interval(
@@ -106,38 +110,6 @@ def _label(key: str, row: Mapping[str, object], number: int) -> str:
         return f"x {x:.6g}, y {y:.6g}"
     known = next((value for one in BY_LABEL if is_number(value := row.get(one))), None)
     return f"{key} {number + 1}" if known is None else f"{key} {known:.6g}"
-
-
-def of_dataset(data: xr.Dataset) -> Nodes:
-    """Results of a dataset; variables with long axes, such as time, are left out."""
-    found: Nodes = {}
-    for key in data.data_vars:
-        name, values, place = str(key), data[key], Place()
-        if name in NOT_RESULTS or name.startswith("cage_") or values.size > MOST_VALUES:
-            continue
-        if any(size > MOST_ON_AXIS for size in values.shape):
-            continue
-        for head in ("material", "overall", "here", "chain", "pocket"):
-            if name.startswith(f"{head}_"):
-                name, place = name.removeprefix(f"{head}_"), () if head == "material" else (head,)
-                break
-        if name in NOT_RESULTS:
-            continue
-        for at in np.ndindex(*values.shape):
-            labels = [_axis(data, str(dim), i) for dim, i in zip(values.dims, at, strict=True)]
-            value: Plain = values.values.item(at)
-            absent = value == "" or (isinstance(value, float) and not math.isfinite(value))
-            found.setdefault((*place, *labels), {})[name] = None if absent else value
-    return found
-
-
-def _axis(data: xr.Dataset, dim: str, number: int) -> str:
-    if dim not in data.variables or data[dim].ndim != 1:
-        return f"{dim} {number}"
-    value = data[dim].values[number]
-    if isinstance(value, str):
-        return value
-    return f"{dim} {value:.6g}"
 
 
 def differing(verb: str, first: Nodes, second: Nodes) -> Iterator[Row | None]:

@@ -1,11 +1,11 @@
-"""Answers from files that may come from anybody: folders, documents, datasets, reports."""
+"""Answers from files that may come from anybody: folders, documents, reports."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -23,8 +23,9 @@ VERBS = (
 )
 """Verbs of a study whose answers are read; of a folder with several, two are compared in this order."""
 
-ENDINGS = (".json", ".nc", ".html", ".htm")
-"""Endings of files with answers: documents, datasets, reports."""
+REPORTS = (".html", ".htm")
+ENDINGS = (".json", *REPORTS, ".nc")
+"""Endings of files of answers: documents, reports, and the arrays, which are not read back."""
 
 MOST_BYTES = 256 * 1024**2
 REPORT = re.compile(
@@ -35,21 +36,24 @@ REPORT = re.compile(
 Document = Mapping[str, Any]
 """An answer as JSON has it; what comes from a file is checked where it is used."""
 
+DAMAGE = (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError)
+"""What a document raises whose parts are not those of an answer."""
+
+_AGAIN = "Compute this answer again, with this version."
 _MAKE = "Make one with: separatrix rank STUDY --out DIR."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Saved:
-    """An answer of one verb: its document, its arrays, or both; `path` is as it was named."""
+    """An answer of one verb; `path` is as it was named."""
 
     path: str
     verb: str
-    document: Document | None = None
-    data: xr.Dataset | None = None
+    document: Document
 
 
 def read_answers(path: Path) -> dict[str, Saved]:
-    """Answers of a folder, a document (.json), a dataset (.nc) or a report (.html), by verb.
+    """Answers of a folder, a document (.json) or a report (.html), by verb.
 
     Raises
     ------
@@ -60,16 +64,15 @@ def read_answers(path: Path) -> dict[str, Saved]:
     if path.is_dir():
         found: dict[str, Saved] = {}
         for verb in VERBS:
-            files = [path / f"{verb}.{end}" for end in ("json", "nc")]
-            parts = [read_file(file) for file in files if file.exists()]
-            if any(one.verb != verb for one in parts):
-                raise InputError(path_text(path / verb), "must be an answer of that verb", parts[0].verb)
-            if parts:
-                found[verb] = Saved(path=where, verb=verb, document=parts[0].document, data=parts[-1].data)
+            if (file := path / f"{verb}.json").exists():
+                one = read_file(file)
+                if one.verb != verb:
+                    raise InputError(path_text(file), "must be an answer of that verb", one.verb)
+                found[verb] = replace(one, path=where)
         if not found:
             raise InputError(where, "does not contain an answer", cure=_MAKE)
         return found
-    if path.suffix.casefold() in ENDINGS[2:]:
+    if path.suffix.casefold() in REPORTS:
         match = REPORT.search(_bytes(path))
         if match is None:
             raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
@@ -80,14 +83,45 @@ def read_answers(path: Path) -> dict[str, Saved]:
 
 
 def read_file(path: Path) -> Saved:
-    """Answer of a document (.json) or of a dataset (.nc); refused as by `read_answers`."""
+    """Answer of a document (.json); refused as by `read_answers`."""
     where = path_text(path)
-    if path.suffix.casefold() != ".nc":
-        return _document(_parsed(_bytes(path), where), where)
-    from separatrix.present import load
+    if path.suffix.casefold() == ".nc":
+        cure = f"Name the {path.stem}.json that was written beside it."
+        raise InputError(where, "cannot be read back: answers are read from their .json", cure=cure)
+    return _document(_parsed(_bytes(path), where), where)
 
-    data = load(path)
-    return Saved(path=where, verb=_verb(data.attrs.get("verb"), where), data=data)
+
+def load(path: Path | str) -> xr.Dataset:
+    """Return a saved answer, the .json of a verb, as labelled arrays: those of `Answer.to_xarray`.
+
+    Raises
+    ------
+    InputError
+        The file is not an answer of separatrix, is damaged, or is of an interrupted one.
+    """
+    saved = read_file(Path(path))
+    data = arrays(saved.document, saved.path)
+    if data is None:
+        raise InputError(saved.path, "is not a complete answer of this version", cure=_AGAIN)
+    return data
+
+
+def arrays(found: Document, where: str) -> xr.Dataset | None:
+    """Return the labelled arrays of a document; None of an interrupted answer, or one without units.
+
+    Raises
+    ------
+    InputError
+        It was changed, so that it has none.
+    """
+    if found.get("complete") is False or "units" not in found:
+        return None
+    from separatrix.present import dataset
+
+    try:
+        return dataset(found)
+    except DAMAGE as error:
+        raise InputError(where, "is damaged", printable(repr(error), 200), _AGAIN) from error
 
 
 def _document(found: object, where: str, verb: str | None = None) -> Saved:

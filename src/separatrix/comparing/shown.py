@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,9 +9,9 @@ from typing import TYPE_CHECKING
 from separatrix import figures
 from separatrix.comparing.records import Comparison, Noise, Row, Value, is_number
 from separatrix.comparing.results import UNCOUNTED_VERBS
-from separatrix.comparing.saved import Saved
+from separatrix.comparing.saved import Saved, arrays
 from separatrix.ground.errors import InputError
-from separatrix.ground.messages import harmless
+from separatrix.ground.messages import harmless, json_text
 from separatrix.ground.units import printable
 from separatrix.present import plain
 from separatrix.present.text.tables import (
@@ -194,8 +193,10 @@ def input_words(value: object, unit: str | None) -> str:
 
 def pictures(first: Saved, second: Saved) -> Iterator[tuple[str, Figure]]:
     """Yield name and figure of each picture of two answers; none for a verb or an answer without arrays."""
-    pair = [one.data for one in (first, second) if one.data is not None]
-    if len(pair) < 2 or first.verb not in NEEDED:
+    if first.verb not in NEEDED:
+        return
+    pair = [data for one in (first, second) if (data := arrays(one.document, one.path)) is not None]
+    if len(pair) < 2:
         return
     has_curves = all("restitution_factor" in one.sizes for one in pair)  # an interrupted one has none
     if first.verb != "simulate" and not has_curves:
@@ -230,7 +231,7 @@ def comparison_document(found: Comparison) -> dict[str, object]:
 
 def save_comparison(folder: Path, found: Comparison, first: Saved, second: Saved) -> None:
     """Write compare.json, compare.txt with every row, and the figures, where both have their arrays."""
-    text = json.dumps(comparison_document(found), indent=1, allow_nan=False) + "\n"
+    text = json_text(comparison_document(found)) + "\n"
     (folder / "compare.json").write_text(text, encoding="utf-8")
     (folder / "compare.txt").write_text(harmless(in_words(found, full=True)), encoding="utf-8")
     figures.save_all(pictures(first, second), folder)

@@ -52,7 +52,7 @@ def draw(
     verb : str
         The question; `compare` draws two simulations, stability curves or rankings together.
     data, other : Dataset
-        From `present.dataset` or `present.load`; only `compare` takes a second one.
+        From `Answer.to_xarray` or `separatrix.load`; only `compare` takes a second one.
     names : tuple of str
         What `compare` writes above the two columns; by default the titles of the studies.
     only : str, optional

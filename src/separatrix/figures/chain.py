@@ -10,7 +10,6 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from separatrix.figures.contact import Area, saved_area, slip_and_power, tractions
 from separatrix.figures.style import (
     BLACK,
     BLUE,
@@ -21,7 +20,6 @@ from separatrix.figures.style import (
     Look,
     canvas,
     label_lines,
-    legend_below,
     stated,
     study_of,
 )
@@ -100,13 +98,6 @@ def contacts(data: xr.Dataset) -> Figure:
 def traction(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the pictures of `traction`."""
     yield "traction-curves", curves(data)
-    if "exact_traction_coefficient" in data:
-        yield "traction-models", models(data)
-    if "area_along" in data:
-        for race, *_ in RACES:
-            area, line = _area(data.sel(race=race))
-            yield f"traction-contact-{race}", tractions(area, stick_line=line)
-            yield f"traction-slip-{race}", slip_and_power(area)
     yield "traction-shear", shear(data)
 
 
@@ -138,25 +129,6 @@ def _by_race(panels: Sequence[Axes], data: xr.Dataset) -> Iterator[tuple[Axes, x
         axes.set(title=f"{letter}  Ball on {race} race", xlabel="creep increment [%]")
         of = data.sel(race=race)
         yield axes, of, 100 * of["creep_increment"].values
-
-
-def _area(data: xr.Dataset) -> tuple[Area, Array | None]:
-    names = {str(name): str(name).removeprefix("area_") for name in data if str(name).startswith("area_")}
-    case = data[[*names]].rename(names)
-    line = case["stick_line"].values[np.isfinite(case["across"].values)]
-    return saved_area(case), line if np.isfinite(line).any() else None
-
-
-def models(data: xr.Dataset) -> Figure:
-    """Traction coefficient by strips and by the exact contact, and by how much they differ."""
-    figure, panels = canvas(PAGE, 3.2, ncols=2)
-    for axes, of, increment in _by_race(panels, data):
-        strips, exact = (of[f"{model}_traction_coefficient"].values for model in ("strips", "exact"))
-        axes.plot(increment, strips, color=BLUE, lw=1.2, label="strips")
-        axes.plot(increment, exact, "o", color=VERMILION, ms=2.6, mfc="none", mew=0.8, label="exact contact")
-        axes.plot(increment, 10 * (strips - exact), color=BLACK, lw=0.8, ls=DASHED, label="10 x difference")
-        axes.legend(loc="upper left", handlelength=1.8)
-    return figure
 
 
 def shear(data: xr.Dataset) -> Figure:
@@ -194,35 +166,9 @@ def signed(value: float, digits: int) -> str:
 
 
 def restitution(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the pictures of `restitution`: of a film, and of a worn band; bare races have none."""
+    """Yield the picture of `restitution`: of a film; bare races have none."""
     if "film_thickness" in data.sizes:
         yield "restitution-film", lubrication(data)
-    if "worn" in data.sizes:
-        yield "restitution-wear", wear(data)
-
-
-def wear(data: xr.Dataset) -> Figure:
-    """Restitution factor against the width of the worn band, by strips and by exact contacts."""
-    figure, panels = canvas(PAGE, 3.3, ncols=2, sharey=True)
-    widest = 1e3 * float(data["wear_width"][-1])
-    names = ("restitution_factor", "restitution_factor_free_spin")
-    own = float(data["chain_restitution_factor"]), float(data[names[1]])
-    for axes, name, eta in zip(panels, names, own, strict=True):
-        axes.plot(data["wear_share"], data[f"wear_{name}"], color=BLUE, label="strips")
-        if "wear_exact_share" in data:
-            exact = data["wear_exact_share"], data[f"wear_exact_{name}"]
-            axes.plot(*exact, "o", color=VERMILION, mfc="none", label="exact contact")
-        look: Look = {"color": BLACK, "ms": 9, "mfc": "white", "zorder": 5, "ls": "none"}
-        label = rf"this bearing: $\eta$ = {eta:.2f}"
-        axes.plot(float(data["wear_here"]), eta, marker="*", label=label, **look)
-        top = axes.secondary_xaxis("top", functions=(lambda x: x * widest, lambda x: x / widest))
-        top.set_xlabel("width of the band [mm]")
-        axes.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.0))
-        axes.legend(loc="upper left")
-    panels[0].set(title="a  Race dampings summed (Eq. 18)", ylabel=r"restitution factor $\eta$ [-]")
-    panels[1].set(title="b  Ball free to spin in the impact")
-    figure.supxlabel("width of the worn band over that of the wider contact [-]", fontsize=8)
-    return figure
 
 
 LEGEND_LINE = 11.0
@@ -237,11 +183,6 @@ def lubrication(data: xr.Dataset) -> Figure:
         _panel(axes[0], data, "lubrication_restitution_factor", float(data["chain_restitution_factor"])),
         _panel(axes[1], data, f"lubrication_{free}", float(data[free])),
     )
-    if "film_exact" in data.sizes:
-        thickness = 1e6 * data["exact_films_thickness"].values
-        bare = 0.2 * 1e6 * float(data["film_thickness"].values[1])
-        points = np.where(thickness > 0.0, thickness, bare), data["exact_films_restitution_factor"].values
-        axes[0].plot(*points, "D", color=VERMILION, mfc="none", ms=4, label="exact contact, this friction")
     axes[0].set_title("a  Race dampings summed (Eq. 18)", pad=6.0 + LEGEND_LINE * lines)
     axes[0].set_ylabel(r"restitution factor $\eta$ [-]")
     axes[1].set_title("b  Ball free to spin in the impact", pad=6.0 + LEGEND_LINE * lines)
@@ -282,50 +223,13 @@ def _panel(axes: Axes, data: xr.Dataset, name: str, own: float) -> int:
 
 
 def mobility(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the pictures of `mobility`: of the ball, and with a cage of its impacts."""
-    yield "mobility", small_motion(data)
-    if "impact" in data.sizes:
-        yield "mobility-impacts", impacts(data)
+    """Yield the picture of `mobility`."""
+    yield "mobility", push(data)
 
 
-def small_motion(data: xr.Dataset) -> Figure:
-    """Step response, size of the mobility against frequency, F(u) with the linear law and the capacity."""
-    figure, (step, size, push) = canvas(PAGE, 2.7, ncols=3)
-    step.plot(data["instant"], data["step_damping"], color=BLUE)
-    lines = (
-        ("damping_locked", "spin held", (0, (1, 1.5))),
-        ("damping", "attitude held, $C_f$", DASHED),
-        ("damping_relaxed", "all relaxed, $C_{eff}$", "-"),
-    )
-    for name, words, dashes in lines:
-        value = float(data[name])
-        step.axhline(value, color=GREY, lw=0.8, ls=dashes, label=f"{words}: {format_number(value)}")
-    top = 2.0 * float(data["damping_locked"])
-    step.set(xscale="log", ylim=(0, top), title="a  Response to a step of force")
-    step.set(xlabel="time after the step [s]", ylabel="force over speed [N s/m]")
-    step.legend(loc="upper right", fontsize=6.5, handlelength=2.2)
-    _size(size, data)
-    _push(push, data)
-    return figure
-
-
-def _size(axes: Axes, data: xr.Dataset) -> None:
-    """|Y| against frequency with the rates of the modes."""
-    frequency, size = data["frequency"], 1e3 * data["mobility"]
-    axes.plot(frequency, size, color=BLUE, label=r"$|Y(i\omega)|$")
-    real = 1e3 / data["damping_at_frequency"]
-    axes.plot(frequency, real, color=BLUE, lw=0.9, ls=DASHED, label=r"Re $Y(i\omega)$")
-    for rate in data["rates"].values:
-        axes.axvline(rate / (2.0 * np.pi), color=GREY, lw=0.6, ls=(0, (1, 1.5)))
-    low = float(size.min())
-    axes.set(xscale="log", yscale="log", ylim=(0.5 * low, 2.0 * float(size.max())))
-    axes.set(title="b  Mobility; dotted: rates", xlabel="frequency [Hz]", ylabel="speed over force [mm/s/N]")
-    look: Look = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 0.9}
-    axes.legend(loc="lower left", handlelength=2.2, **look)
-
-
-def _push(axes: Axes, data: xr.Dataset) -> None:
+def push(data: xr.Dataset) -> Figure:
     """F(u) of the slip fields both ways, the law, the linear law and the capacity."""
+    figure, axes = canvas(3.9, 3.3)
     u, capacity = np.append(0.0, data["speed"].values), float(data["capacity"])
     axes.axhline(capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity {format_number(capacity, 3)} N")
     linear = np.array((0.0, 1.15 * capacity / float(data["damping"])))
@@ -333,36 +237,7 @@ def _push(axes: Axes, data: xr.Dataset) -> None:
     for way, colour in (("forward", BLUE), ("backward", VERMILION)):
         axes.plot(u, np.append(0.0, data[f"force_{way}"].values), color=colour, label=way)
     axes.plot(u, np.append(0.0, data["force_law"].values), color=GREEN, ls=DASHED, label="law")
-    axes.set(xlim=(0, u[-1]), ylim=(0, 1.25 * capacity), title="c  Ball pushed along its orbit")
+    axes.set(xlim=(0, u[-1]), ylim=(0, 1.25 * capacity), title="Ball pushed along its orbit")
     axes.set(xlabel="speed beyond free orbit [m/s]", ylabel="force [N]")
     axes.legend(loc="lower right", fontsize=6.5, handlelength=2.2)
-
-
-def impacts(data: xr.Dataset) -> Figure:
-    """Restitution against the speed of the impact, beside the paper's; largest force beside the capacity."""
-    figure, (returned, force) = canvas(PAGE, 2.9, ncols=2)
-    v = data["impacts_speed"].values
-    lines: tuple[tuple[str, str, Look], ...] = (
-        ("restitution_forward", "slip fields, cage from behind", {"color": BLUE}),
-        ("restitution_backward", "slip fields, cage from the front", {"color": VERMILION}),
-        ("restitution_law", "law of traction $F(u)$", {"color": GREEN, "ls": DASHED}),
-    )
-    for name, words, look in lines:
-        returned.plot(v, data[f"impacts_{name}"], label=words, **look)
-    returned.axhline(0.0, color=GREY, lw=0.5)
-    eta = float(data["impacts_restitution_summed"])
-    nominal = float(data["impacts_nominal_restitution_factor"])
-    returned.axhline(eta, color=BLACK, lw=0.9, ls=(0, (1, 1.5)), label=f"Eq. 18, mass felt: {eta:.2f}")
-    words = rf"paper's $\eta$, whole cage: {nominal:.2f}"
-    returned.axhline(nominal, color=BLACK, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=words)
-    returned.set(xscale="log", title="a  Share of the speed that returns", xlabel="speed of the impact [m/s]")
-    returned.set(ylabel="restitution [-]", ylim=(None, 1.0))
-    capacity = float(data["capacity"])
-    force.plot(v, data["impacts_peak_force"], color=BLUE, label="largest force of the pocket")
-    force.axhline(
-        capacity, color=GREY, lw=0.8, ls=DASHED, label=f"capacity of the races {format_number(capacity, 3)} N"
-    )
-    force.set(xscale="log", yscale="log", title="b  Largest force", xlabel="speed of the impact [m/s]")
-    force.set(ylabel="force [N]")
-    legend_below(figure, columns=3)
     return figure

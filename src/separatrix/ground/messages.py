@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import threading
 import unicodedata
@@ -33,6 +34,17 @@ def _spelled(found: re.Match[str]) -> str:
 def one_line(text: str) -> str:
     """Return the harmless text on one line."""
     return harmless(" ".join(text.split()))
+
+
+def json_text(value: object, line: str = "\n") -> str:
+    """Return plain data as JSON: a line a key and a row of a table, all numbers of an array on one."""
+    inside = f"{line} "
+    if isinstance(value, dict) and value:
+        rows = (f"{json.dumps(key)}: {json_text(one, inside)}" for key, one in value.items())
+        return f"{{{inside}{f',{inside}'.join(rows)}{line}}}"
+    if isinstance(value, list) and any(isinstance(one, dict) for one in value):
+        return f"[{inside}{f',{inside}'.join(json_text(one, inside) for one in value)}{line}]"
+    return json.dumps(value, allow_nan=False)
 
 
 def grouped(notes: Iterable[str]) -> list[str]:

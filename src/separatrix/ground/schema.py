@@ -422,9 +422,10 @@ def _of_type(hint: Any, one: Described, value: Any, path: KeyPath) -> Faults:
     elif origin is tuple:
         yield from _of_list(arguments, one, value, path)
     elif isinstance(hint, type) and known.read is None and not isinstance(value, hint):
-        is_choice = issubclass(hint, Enum)
-        names = ", ".join(f"{hint.__name__}.{option.name}" for option in hint) if is_choice else hint.__name__
-        yield Fault(path, f"must be one of {names}" if is_choice else f"must be of {names}", known.hint)
+        rule = f"must be of {hint.__name__}"
+        if issubclass(hint, Enum):
+            rule = f"must be one of {', '.join(f'{hint.__name__}.{option.name}' for option in hint)}"
+        yield Fault(path, rule, known.hint)
 
 
 def _of_list(arguments: tuple[Any, ...], one: Described, value: Any, path: KeyPath) -> Faults:

@@ -6,13 +6,13 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from separatrix.present.arrays import dataset, load, save, to_dataframe, to_xarray
+    from separatrix.present.arrays import dataset, save, to_dataframe, to_xarray
     from separatrix.present.nodes import NotFiniteError, document, plain
     from separatrix.present.text.answer import in_words, whereabouts
 
 _HOME = {
     "nodes": "NotFiniteError document plain",
-    "arrays": "dataset load save to_dataframe to_xarray",
+    "arrays": "dataset save to_dataframe to_xarray",
     "text.answer": "in_words whereabouts",
 }
 """Module -> its public names."""
@@ -22,7 +22,6 @@ __all__ = [
     "dataset",
     "document",
     "in_words",
-    "load",
     "plain",
     "save",
     "to_dataframe",

@@ -1,60 +1,59 @@
-"""Records as labelled arrays with units, as tables of pandas, and back from a netCDF file."""
+"""Records and documents as labelled arrays with units, and as tables of pandas."""
 
 from __future__ import annotations
 
-import functools
+import contextlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import xarray as xr
 
-from separatrix.answers import MapAnswer, SensitivityAnswer, TractionAnswer
-from separatrix.explore.records import AllowedFilm, Share, UncertainStudy
-from separatrix.explore.sweep import Sweep
-from separatrix.ground.units import Array, Rows
-from separatrix.present.container import DAMAGE, check_container, damaged
-from separatrix.present.nodes import Group, Leaf, Node, Table, plain
-from separatrix.present.shapes import all_notes, shape
+from separatrix.ground.units import Rows
+from separatrix.present.nodes import Group, Item, Leaf, Node, Table, node_of, plain, units_of
+from separatrix.present.shapes import shape
 
 if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
-
-    from separatrix.study.study import Study
 
 RACES = ("inner", "outer")
 Columns = dict[str, Leaf]
 """Variables by name; every leaf has its axes."""
 
 
-def dataset(verb: str, answer: object, study: Study, notes: Sequence[str]) -> xr.Dataset:
-    """Return the labelled arrays of an answer, with units and provenance in their attributes.
+HEAD = ("separatrix_version", "verb", "name", "title", "study", "seed", "warnings", "provenance", "units")
+"""Keys of a document that are not results."""
+
+
+def dataset(found: Mapping[str, Any]) -> xr.Dataset:
+    """Return the labelled arrays of a document, with units and provenance in their attributes.
 
     A missing number is the netCDF missing value, a missing text is empty; its reason is in the variable
     `reason` beside it.
     """
-    from separatrix import __version__
-    from separatrix.study.sources import resolved
-
-    data = to_xarray(answer)
-    data.attrs |= {
-        "separatrix_version": __version__,
-        "verb": verb,
-        "title": study.title,
-        "name": study.name,
-        "study": json.dumps(plain(resolved(study), "study")),
-        "seed": study.stability.seed,
-        "warnings": json.dumps(all_notes(answer, notes)),
-    }
+    body = {key: value for key, value in found.items() if key not in HEAD}
+    data = _arrays(node_of(body, found["units"]))
+    for key in HEAD:
+        if key in found and key != "units":
+            data.attrs[key] = found[key] if isinstance(found[key], str | int) else json.dumps(found[key])
     return data
 
 
 def to_xarray(answer: object) -> xr.Dataset:
     """Return the labelled arrays of an answer, with their units, without the study behind it."""
-    node = arranged(answer)
+    node = Group(shape(answer))
+    return _arrays(node_of(plain(node, left_out=[]), units_of(node)))
+
+
+def _arrays(item: Item) -> xr.Dataset:
+    """Return the node of a document as labelled arrays."""
+    node = item.fields if isinstance(item, Group) else {}
+    for key, arranged in ARRANGED.items():
+        if key in node:
+            node = arranged(node)
     complete = {"complete": json.dumps(plain(node.pop("complete")))} if "complete" in node else {}
     eta = node.get("restitution_factor")
     if isinstance(eta, Leaf) and eta.axes is None:  # a single number with the name of a dimension
@@ -99,19 +98,8 @@ MAIN = (
 
 
 def save(data: xr.Dataset, path: Path) -> None:
-    """Write the dataset as netCDF; `load` reads it."""
+    """Write the dataset as netCDF, for other programs."""
     data.to_netcdf(path, engine="h5netcdf")
-
-
-def load(path: Path | str) -> xr.Dataset:
-    """Return a saved dataset, in memory; a file that is not one of ours is refused: see `container`."""
-    path = Path(path)
-    check_container(path)
-    try:
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
-            return data.load()
-    except DAMAGE as error:
-        raise damaged(str(path), error) from error
 
 
 def _flat(node: Node) -> Columns:
@@ -136,9 +124,9 @@ def _flat(node: Node) -> Columns:
 def _with_axes(name: str, leaf: Leaf) -> Leaf:
     """Return a leaf with its axes: its own name if the type states none. Texts are joined to one."""
     value = leaf.value
-    if not isinstance(value, list | tuple | np.ndarray):
+    if not isinstance(value, list):
         return leaf._replace(axes=())
-    if isinstance(value, tuple) and leaf.axes is None and all(isinstance(one, str) for one in value):
+    if leaf.axes is None and leaf.unit is None and all(isinstance(one, str) for one in value):
         return leaf._replace(value="; ".join(value), axes=())
     return leaf if leaf.axes is not None else leaf._replace(axes=(name,))
 
@@ -164,10 +152,10 @@ def _stacked(table: Table) -> Columns:
         if (name,) == like.axes:  # the places on a dimension inside
             columns[name] = like
             continue
-        blank = _blank(plain(like.value, left_out=[])) if like.axes else None
-        found = [one[name] if name in one else Leaf(None, None, ()) for one in flat]
-        values = [one.value if one.axes == like.axes else blank for one in found]
-        columns[name] = like._replace(value=values, axes=(dimension, *(like.axes or ())))
+        axes = like.axes or ()
+        values = [one[name].value if name in one and one[name].axes == axes else None for one in flat]
+        sizes = _sizes([one for one in values if one is not None], len(axes))
+        columns[name] = like._replace(value=[_filled(one, sizes) for one in values], axes=(dimension, *axes))
     if label and records:
         places = [one[label] for one in records]
         unit = next((one.unit for one in places if isinstance(one, Leaf)), None)
@@ -187,15 +175,15 @@ def _array(value: object, *, is_text: bool) -> NDArray[np.generic]:
 
     If nothing but None is there, `is_text` decides which of them it would have been.
     """
-    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
-        return np.where(np.isfinite(value), value, np.nan) if value.dtype.kind == "f" else value
-    values = plain(value, left_out=[])
-    found = list(_leaves(values))
+    with contextlib.suppress(ValueError):  # some rows are shorter than others
+        if (array := np.array(value)).dtype.kind in "biuf":
+            return np.where(np.isfinite(array), array, np.nan) if array.dtype.kind == "f" else array
+    found = list(_leaves(value))
     if any(isinstance(one, str) for one in found) or (is_text and all(one is None for one in found)):
-        return np.array(_filled(values, ""), dtype=object)
+        return np.array(_without_none(value, ""), dtype=object)
     if any(one is None for one in found):
-        return np.array(_filled(values, np.nan), dtype=float)
-    return np.array(values)
+        return np.array(_without_none(value, np.nan), dtype=float)
+    return np.array(value)
 
 
 def _leaves(values: object) -> Iterator[object]:
@@ -206,89 +194,55 @@ def _leaves(values: object) -> Iterator[object]:
         yield from _leaves(value)
 
 
-def _filled(values: object, missing: object) -> object:
+def _without_none(values: object, missing: object) -> object:
     if isinstance(values, list):
-        return [_filled(value, missing) for value in values]
+        return [_without_none(value, missing) for value in values]
     return missing if values is None else values
 
 
-def _blank(like: object) -> object:
-    return [_blank(one) for one in like] if isinstance(like, list) else None
+def _sizes(values: list[Any], axes: int) -> list[int]:
+    """Return the sizes of the array that has room for each of these."""
+    sizes = []
+    for _ in range(axes):
+        sizes.append(max(map(len, values), default=0))
+        values = [inside for one in values for inside in one]
+    return sizes
+
+
+def _filled(value: Any, sizes: Sequence[int]) -> Any:
+    """Return an array of these sizes, None where it has no value."""
+    if not sizes:
+        return value
+    rows = value or ()
+    return [_filled(rows[i] if i < len(rows) else None, sizes[1:]) for i in range(sizes[0])]
 
 
 Key = TypeVar("Key")
-
-AREA = {
-    "along": ("m", ("column",)),
-    "across": ("m", ("row",)),
-    "fraction": ("-", ("row", "column")),
-    "pressure": ("Pa", ("row", "column")),
-    "traction": ("Pa", ("direction", "row", "column")),
-    "slip": ("-", ("direction", "row", "column")),
-    "stick": ("-", ("row", "column")),
-    "stick_line": ("m", ("row",)),
-}
-"""Fields of an exact contact with their units and axes."""
+Record = Mapping[str, Any]
 
 
-@functools.singledispatch
-def arranged(answer: object) -> Node:
-    """Return the node of an answer as its dataset has it."""
-    return shape(answer)
+def _swept(node: Node) -> Node:
+    names = [one["name"] for one in plain(node["parameters"])]
+    return node | {"parameters": Group({"parameter": Leaf(names, None, ("parameter",))}, "")}
 
 
-@arranged.register
-def _(found: TractionAnswer) -> Node:
-    """With the fields of the exact contacts; where their grids differ the smaller one ends in NaN."""
-    node, areas = shape(found), (found.inner_area, found.outer_area)
-    solutions = [area.solution for area in areas if area is not None]
-    if len(solutions) < len(areas):
-        return node
-    size = {"row": max(x.across.size for x in solutions), "column": max(x.along.size for x in solutions)}
-    for race, area in zip(("inner", "outer"), areas, strict=True):
-        group = node[race]
-        if area is None or not isinstance(group, Group):
-            continue
-        for name, (unit, axes) in AREA.items():
-            value = area.stick_line if name == "stick_line" else getattr(area.solution, name)
-            shown = _padded(value, tuple(size.get(axis, 2) for axis in axes))
-            group.fields[f"area_{name}"] = Leaf(shown, unit, axes)
-    return node
-
-
-def _padded(values: Array | NDArray[np.bool_] | None, shape: tuple[int, ...]) -> Array:
-    """Return values in the first places of an array of this shape, NaN in the others."""
-    full = np.full(shape, np.nan)
-    if values is not None:
-        full[tuple(slice(n) for n in values.shape)] = values
-    return full
-
-
-@arranged.register
-def _(found: Sweep) -> Node:
-    node = shape(found)
-    return node | {"parameters": Group({"parameter": Leaf([one.name for one in found.parameters])}, "")}
-
-
-@arranged.register
-def _(found: MapAnswer) -> Node:
+def _mapped(node: Node) -> Node:
     """Points on the dimensions (y, x); bands along `change`."""
-    node, record = shape(found), found.map
-    size = len(record.x.values), len(record.y.values)
-    for name, axis in (("x", record.x), ("y", record.y)):
-        node[name] = Leaf(axis.values, axis.unit, (name,), axis.parameter)
-        node[f"{name}_here"] = Leaf(axis.here, axis.unit)
-        node[f"{name}_parameter"] = Leaf(axis.parameter)
-    points, changes = node.pop("points"), node["changes"]
-    rows = (points.records if isinstance(points, Table) else None) or [{}]
-    for name in [key for key in rows[0] if key not in ("x", "y")]:
+    x, y = plain(node["x"]), plain(node["y"])
+    for name, axis in (("x", x), ("y", y)):
+        node[name] = Leaf(axis["values"], axis["unit"], (name,), axis["parameter"])
+        node[f"{name}_here"] = Leaf(axis["here"], axis["unit"])
+        node[f"{name}_parameter"] = Leaf(axis["parameter"])
+    tables = (node.pop("points"), node["changes"])
+    rows, bands = ((one.records if isinstance(one, Table) else None) or [] for one in tables)
+    size = len(x["values"]), len(y["values"])
+    for name in [key for key in (rows or [{}])[0] if key not in ("x", "y")]:
         column = [row[name] for row in rows]
         values = [one.value if isinstance(one, Leaf) else None for one in column]
         unit = next((one.unit for one in column if isinstance(one, Leaf)), None)
         table = [[values[i * size[1] + j] for i in range(size[0])] for j in range(size[1])]
-        node[name] = Leaf(table, record.y.unit if name == "margin" else unit, ("y", "x"))
-    units = {"x": record.x.unit, "y_low": record.y.unit, "y_high": record.y.unit}
-    bands: list[Node] = (changes.records if isinstance(changes, Table) else None) or []
+        node[name] = Leaf(table, y["unit"] if name == "margin" else unit, ("y", "x"))
+    units = {"x": x["unit"], "y_low": y["unit"], "y_high": y["unit"]}
     for band in bands:
         band |= {name: Leaf(getattr(band[name], "value", None), unit) for name, unit in units.items()}
     return node
@@ -298,28 +252,31 @@ DOCUMENT_ONLY = ("undecided", "next_tests", "notes", "allowed_friction", "allowe
 CASES = ("environment", "material")
 
 
-@arranged.register
-def _(found: SensitivityAnswer) -> Node:
+def _uncertain(node: Node) -> Node:
     """Convergence, clouds, drivers and films as arrays over environments and materials."""
-    node, record = shape(found), found.uncertain
-    for name in (*DOCUMENT_ONLY, "convergence", "clouds", "drivers", "shares"):
-        del node[name]
-    places = [one.name for one in record.environments]
-    materials = sorted(row.name for row in record.overall)
-    sizes = sorted({size for one in record.convergence for size in one.size})
+    found = {name: plain(node.pop(name)) for name in (*DOCUMENT_ONLY, *BY_CASE, "shares")}
+    places = [one["name"] for one in plain(node["environments"])]
+    materials = sorted(row["name"] for row in plain(node["overall"]))
+    sizes = sorted({size for one in found["convergence"] for size in one["size"]})
     node |= {"size": Leaf(sizes, None, ("size",)), "place": Leaf([*places, ""], None, ("place",))}
     for key in ("probability_stable", "probability_low", "probability_high"):
         values = {
-            (one.environment, one.name): dict(zip(one.size, getattr(one, key), strict=True))
-            for one in record.convergence
+            (one["environment"], one["name"]): dict(zip(one["size"], one[key], strict=True))
+            for one in found["convergence"]
         }
         grid = _grid(values, [*places, ""], materials, sizes)
         node[f"convergence_{key}"] = Leaf(grid, "-", ("place", "material", "size"))
-    samples = range(max((len(one.friction) for one in record.clouds), default=0))
+    samples = range(max((len(one["friction"]) for one in found["clouds"]), default=0))
     for key in ("restitution_factor", "friction", "settles"):
-        clouds = {(one.environment, one.name): dict(enumerate(getattr(one, key))) for one in record.clouds}
+        clouds = {(one["environment"], one["name"]): dict(enumerate(one[key])) for one in found["clouds"]}
         node[f"cloud_{key}"] = Leaf(_grid(clouds, places, materials, samples), "-", (*CASES, "sample"))
-    return node | _drivers(record, places, materials) | _smooth(record) | _films(found, materials)
+    node |= _drivers(found["drivers"], places, materials) | _smooth(found["shares"])
+    return node | _films(found["allowed_films"], materials)
+
+
+BY_CASE = ("convergence", "clouds", "drivers")
+ARRANGED = {"cases": _swept, "points": _mapped, "clouds": _uncertain}
+"""Key that the document of one verb has -> how its arrays are arranged otherwise."""
 
 
 def _grid(
@@ -332,68 +289,64 @@ def _grid(
     return [[[values.get((p, m), {}).get(one) for one in labels] for m in materials] for p in places]
 
 
-def _shares(shares: Iterable[Share], end: str) -> dict[str, float]:
-    return {one.name: getattr(one, f"share{end}") for one in shares}
+def _shares(shares: Iterable[Record], end: str) -> dict[str, float]:
+    return {one["name"]: one[f"share{end}"] for one in shares}
 
 
-def _drivers(record: UncertainStudy, places: Sequence[str], materials: Sequence[str]) -> Node:
+def _drivers(found: Sequence[Record], places: Sequence[str], materials: Sequence[str]) -> Node:
     """Shares by input, chance last, and the calibration; nothing where no case has any."""
-    known = {(one.environment, one.name): one for one in record.drivers if one.shares}
+    known = {(one["environment"], one["name"]): one for one in found if one["shares"]}
     if not known:
         return {}
-    chance = next(iter(known.values())).shares[-1].name
-    names = dict.fromkeys(one.name for case in known.values() for one in case.shares if one.name != chance)
-    drivers = [*names, chance]
+    chance = next(iter(known.values()))["shares"][-1]["name"]
+    names = dict.fromkeys(one["name"] for case in known.values() for one in case["shares"])
+    drivers = [*(name for name in names if name != chance), chance]
     node: Node = {"driver": Leaf(drivers, None, ("driver",))}
     for end in ("", "_low", "_high"):
-        grid = _grid({c: _shares(one.shares, end) for c, one in known.items()}, places, materials, drivers)
+        grid = _grid({c: _shares(one["shares"], end) for c, one in known.items()}, places, materials, drivers)
         node[f"driver_share{end}"] = Leaf(grid, "-", (*CASES, "driver"))
-    bins = range(max(len(one.predicted) for one in known.values()))
+    bins = range(max(len(one["predicted"]) for one in known.values()))
     for key in ("predicted", "counted"):
-        values = {case: dict(enumerate(getattr(one, key))) for case, one in known.items()}
+        values = {case: dict(enumerate(one[key])) for case, one in known.items()}
         node[f"calibration_{key}"] = Leaf(_grid(values, places, materials, bins), "-", (*CASES, "bin"))
     return node
 
 
-def _smooth(record: UncertainStudy) -> Node:
-    if not record.shares:
+def _smooth(found: Sequence[Record]) -> Node:
+    if not found:
         return {}
-    names = [one.name for one in record.shares[0].total]
+    names = [one["name"] for one in found[0]["total"]]
     node: Node = {
-        "quantity": Leaf([one.quantity for one in record.shares], None, ("quantity",)),
+        "quantity": Leaf([one["quantity"] for one in found], None, ("quantity",)),
         "chain_input": Leaf(names, None, ("chain_input",)),
     }
     for kind in ("first", "total"):
         for end in ("", "_low", "_high"):
-            rows = [_shares(getattr(one, kind), end) for one in record.shares]
+            rows = [_shares(one[kind], end) for one in found]
             table = [[row[name] for name in names] for row in rows]
             node[f"sobol_{kind}{end}"] = Leaf(table, "-", ("quantity", "chain_input"))
     return node
 
 
-def _films(found: SensitivityAnswer, materials: Sequence[str]) -> Node:
-    films = {one.name: one for one in found.uncertain.allowed_films}
+def _films(found: Sequence[Record], materials: Sequence[str]) -> Node:
+    films = {one["name"]: one for one in found}
     first = next(iter(films.values()), None)
-    if first is None or not first.film_thickness.size:
+    if first is None or not first["film_thickness"]:
         return {}
-    none = np.full_like(first.film_restitution_factor, np.nan)
-    factors = [films[name].film_restitution_factor if name in films else none for name in materials]
+    none = [[None for _ in row] for row in first["film_restitution_factor"]]
+    factors = [films[name]["film_restitution_factor"] if name in films else none for name in materials]
     limits = [_limit(films[name]) if name in films else None for name in materials]
     return {
-        "race_friction": Leaf(first.race_friction, "-", ("race_friction",)),
-        "film_thickness": Leaf(first.film_thickness, "m", ("film_thickness",)),
-        "film_restitution_factor": Leaf(
-            np.array(factors), "-", ("material", "race_friction", "film_thickness")
-        ),
+        "race_friction": Leaf(first["race_friction"], "-", ("race_friction",)),
+        "film_thickness": Leaf(first["film_thickness"], "m", ("film_thickness",)),
+        "film_restitution_factor": Leaf(factors, "-", ("material", "race_friction", "film_thickness")),
         "film_limit": Leaf(limits, "-", ("material",)),
-        "film_probability": Leaf(first.probability, "-"),
-        "film_thickness_here": Leaf(found.film_thickness, "m"),
-        "race_friction_here": Leaf(found.race_friction, "-"),
+        "film_probability": Leaf(first["probability"], "-"),
     }
 
 
-def _limit(film: AllowedFilm) -> float:
+def _limit(film: Record) -> float:
     """Return the largest restitution factor allowed: 1 where every one is, -1 where none is."""
-    if film.restitution_factor is not None:
-        return film.restitution_factor
-    return 1.0 if film.reason.startswith("more") else -1.0
+    if film["restitution_factor"] is not None:
+        return float(film["restitution_factor"])
+    return 1.0 if film["reason"].startswith("more") else -1.0

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from separatrix.chain.mobility import SlipLaw
+from separatrix.chain.ball_mobility import SlipLaw
 from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.units import Rows
 from separatrix.study import study
@@ -76,6 +76,49 @@ def field_units(record: type) -> dict[str, str]:
 def field_axes(record: type) -> dict[str, tuple[str, ...]]:
     """Return the names of the dimensions of each field of a record class that states them."""
     return {name: kind.axes for name, kind in _kinds(record).items() if kind.axes}
+
+
+def units_of(item: Item) -> Any:
+    """Return units and axes of an item as plain data, from which `node_of` makes it again from its values.
+
+    A number has its unit, an array a list of its unit and its axes; a record, or the rows of a list of them,
+    has those of its keys, and under "" the prefix of its names or the dimension, prefix and label of the rows
+    in a dataset. What has none of these is left out.
+    """
+    if isinstance(item, Leaf):
+        return [item.unit, *item.axes] if item.axes else item.unit
+    found: dict[str, Any] = {}
+    for one in [item.fields] if isinstance(item, Group) else item.records or ():
+        _add(found, {key: known for key, inside in one.items() if (known := units_of(inside))})
+    if isinstance(item, Group):
+        return found if item.prefix is None else found | {"": item.prefix}
+    return found if item.rows == Rows() else found | {"": list(item.rows)}
+
+
+def _add(found: dict[str, Any], more: Mapping[str, Any]) -> None:
+    """Add the units of another row; a record may be missing in the first."""
+    for key, known in more.items():
+        if isinstance(known, dict) and isinstance(found.get(key), dict):
+            _add(found[key], known)
+        else:
+            found.setdefault(key, known)
+
+
+def node_of(value: Any, units: Any) -> Item:
+    """Return a part of a document as a node, by the units and axes that `units_of` wrote."""
+    known: Mapping[str, Any] = units if isinstance(units, Mapping) else {}
+    rows = known.get("")
+    if isinstance(value, Mapping):
+        return Group(_known_fields(value, known), rows)
+    if isinstance(rows, list) or (isinstance(value, list) and value and isinstance(value[0], Mapping)):
+        records = None if value is None else [_known_fields(one, known) for one in value]
+        return Table(records, Rows(*rows or ()))
+    unit, *axes = units if isinstance(units, list) else (None if isinstance(units, Mapping) else units,)
+    return Leaf(value, unit, tuple(axes) or None)
+
+
+def _known_fields(record: Mapping[str, Any], units: Mapping[str, Any]) -> Node:
+    return {key: node_of(one, units.get(key)) for key, one in record.items()}
 
 
 class _Kind(NamedTuple):
@@ -150,7 +193,8 @@ def document(
     from separatrix.study.sources import provenance_of, resolved
 
     left_out: list[str] = []
-    body = plain(Group(shape(answer)), verb, left_out)
+    node = Group(shape(answer))
+    body = plain(node, verb, left_out)
     warnings = all_notes(answer, notes)
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
@@ -166,6 +210,7 @@ def document(
         "study": plain(resolved(asked), "study"),
         "seed": asked.stability.seed,
         **body,
+        "units": units_of(node),
         "warnings": warnings,
         "provenance": plain(provenance_of(asked, verb, question or {}), "provenance"),
     }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import inf
-from typing import TypeVar
 
 import numpy as np
 
@@ -22,10 +21,10 @@ from separatrix.answers import (
 )
 from separatrix.cage import Cause, MovingCage, RunOutcome
 from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
+from separatrix.chain.ball_mobility import Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.mobility import Mobility
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction import ShearField, TractionCurve
 from separatrix.explore.records import NotDrawn, UncertainMaterial
@@ -38,10 +37,6 @@ from separatrix.present.text.tables import quantity
 from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, Ranking
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
-
-Key = TypeVar("Key")
-Record = TypeVar("Record")
-
 
 # The chain.
 
@@ -90,18 +85,11 @@ def _(found: CheckAnswer) -> Node:
 
 @shape.register
 def _(found: TractionAnswer) -> Node:
-    at, models = found.bearing, shape(found.comparison)
     races: Node = {}
     for race in ("inner", "outer"):
         curve, others, shear = (getattr(found, f"{race}{part}") for part in ("", "_others", "_shear"))
-        node = _curve(getattr(at, race), curve, others, shear)
-        for model in ("strips", "exact"):
-            own: TractionCurve | None = getattr(found, f"{race}_{model}")
-            coefficient = None if own is None else own.traction_coefficient
-            node[f"{model}_traction_coefficient"] = Leaf(coefficient, "-", ("increment",))
-        races[race] = Group(node | {"free_rolling": models[race]})
-    ranges = {"models": models["models"], "outside": models["outside"]}
-    return {"race_friction": Leaf(found.race_friction, "-"), **races, **ranges}
+        races[race] = Group(_curve(getattr(found.bearing, race), curve, others, shear))
+    return {"race_friction": Leaf(found.race_friction, "-"), **races, "outside": Leaf(found.outside)}
 
 
 def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve], shear: ShearField) -> Node:
@@ -127,24 +115,12 @@ def _chain(found: Solution) -> Node:
 @shape.register
 def _(found: RestitutionAnswer) -> Node:
     node = _chain(found.solution) | {"film_thickness_here": Leaf(found.film_thickness, "m")}
-    if found.wear is not None:
-        node["wear"] = Group(shape(found.wear) | {"here": Leaf(_worn_share(found.solution), "-")})
-    if found.exact_films is not None:
-        node["exact_films"] = Group(shape(found.exact_films))
     if found.lubrication is not None:
         return node | {"lubrication": Group(shape(found.lubrication))}
     return node | {
         "lubrication": Leaf(None),
         "lubrication_reason": Leaf("The study names no film material."),
     }
-
-
-def _worn_share(found: Solution) -> float:
-    """Width of the study's worn band over that of the wider contact."""
-    wear, contacts = found.study.film.wear, (found.bearing.inner, found.bearing.outer)
-    if wear is None or wear.width is None:
-        return 0.0 if wear is None else wear.share or 0.0
-    return min(1.0, 0.5 * wear.width / max(at.ellipse.semi_major for at in contacts))
 
 
 @shape.register
@@ -158,10 +134,7 @@ def _(found: Mobility) -> Node:
 
 @shape.register
 def _(found: MobilityAnswer) -> Node:
-    rigid = shape(found.rigid)
-    node = shape(found.mobility) | {"rigid": Group(rigid)}
-    impacts = Leaf(None) if found.impacts is None else Group(shape(found.impacts))
-    return node | {"impacts": impacts, "impacts_reason": Leaf(found.impacts_reason)}
+    return shape(found.mobility) | {"rigid": Group(shape(found.rigid))}
 
 
 # The cage.
@@ -280,7 +253,11 @@ def _(found: RankingAnswer) -> Node:
 
 @shape.register
 def _(found: SensitivityAnswer) -> Node:
-    return shape(found.uncertain) | _cage(found)
+    here = {
+        "film_thickness_here": Leaf(found.film_thickness, "m"),
+        "race_friction_here": Leaf(found.race_friction, "-"),
+    }
+    return shape(found.uncertain) | here | _cage(found)
 
 
 @shape.register

@@ -22,7 +22,6 @@ from separatrix.comparing.shown import (
 )
 from separatrix.ground.errors import InputError
 from separatrix.ground.messages import grouped, noted_warnings
-from separatrix.present import load
 from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.questions import Computed, Verb, verb_named
 from separatrix.reporting.evidence import evidence, inputs, outside, provenance, uncertainty
@@ -50,7 +49,7 @@ MOST_ROWS = 40
 
 NEEDED = {
     "bearing": ("balls", "contacts"),
-    "traction": ("inner", "outer", "models", "outside"),
+    "traction": ("inner", "outer", "outside"),
     "restitution": ("restitution_factor", "race_damping", "inner", "outer"),
     "stability": ("curve", "here", "chain", "cage"),
     "rank": ("environment", "environments", "stability", "chain", "pocket"),
@@ -245,8 +244,7 @@ def read_folder(folder: Path, *, needed: bool = True) -> dict[str, Kept]:
     for verb in NEEDED:
         path = folder / f"{verb}.json"
         if path.exists():
-            data = folder / f"{verb}.nc"
-            found[verb] = Kept(read_document(path, verb), load(data) if data.exists() else None)
+            found[verb] = Kept(read_document(path, verb))
     if needed and not found:
         names = ", ".join(f"{verb}.json" for verb in NEEDED)
         cure = "Name the folder of an answer, or a study: separatrix report cryogenic-turbopump."
@@ -258,7 +256,7 @@ def read_document(path: Path, verb: str) -> Row:
     """Return a saved document; one that is not of this verb, or lacks what a report needs, is refused."""
     where, cure = str(path), "Compute this answer again, or remove the file."
     saved = read_file(path)
-    if saved.verb != verb or saved.document is None:
+    if saved.verb != verb:
         raise InputError(where, f"is not a document of `{verb}`", cure=cure)
     found = saved.document
     missing = [key for key in (*ALWAYS, *NEEDED[verb]) if key not in found]
@@ -299,7 +297,7 @@ def keeping(
     compute: Callable[[Verb], Computed], notes: list[str], folder: Path | None
 ) -> Callable[[str], Kept]:
     """Return what computes an answer; its files are written if there is a folder, without figures."""
-    from separatrix.present import dataset, document
+    from separatrix.present import document
     from separatrix.saving import save_answer
 
     def kept(verb: str) -> Kept:
@@ -308,7 +306,7 @@ def keeping(
         found = document(verb, made.record, made.study, [*notes, *grouped(own)], made.question)
         if folder is not None:
             save_answer(folder, made.record, made.study, found, pictures=False)
-        return Kept(found, dataset(verb, made.record, made.study, list(found["warnings"])))
+        return Kept(found)
 
     return kept
 

@@ -223,8 +223,6 @@ def outside(kept: Mapping[str, Kept]) -> Section:
     pairs = [(one, verb) for verb, kept_one in kept.items() for one in kept_one.document["warnings"]]
     if "traction" in kept:
         pairs += [(one, "traction") for one in kept["traction"].document["outside"]]
-        models = kept["traction"].document["models"]
-        pairs += [(f"{one['model']}: {one['reason']}", "traction") for one in models if one["reason"]]
     each = grouped(pairs)
     blocks: list[Block] = [
         Paragraph(f"{text} ({', '.join(dict.fromkeys(verbs))})", "caveat") for text, verbs in each.items()

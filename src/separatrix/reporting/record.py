@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
+from separatrix.comparing.saved import arrays
 from separatrix.present.text import tables
 from separatrix.present.text.sentences import Row as Row
 from separatrix.present.text.tables import ABSENT
@@ -17,12 +19,16 @@ MICRO = ("um", "uJ", "uW", "us", "uN")
 """Units that the program writes in ASCII."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Kept:
-    """One answer: its document, and its dataset if that was kept, too."""
+    """One answer."""
 
     document: Row
-    data: xr.Dataset | None = None
+
+    @cached_property
+    def data(self) -> xr.Dataset | None:
+        """Its labelled arrays; None of an interrupted one."""
+        return arrays(self.document, f"{self.document.get('verb')}.json")
 
 
 @dataclass(frozen=True, slots=True)

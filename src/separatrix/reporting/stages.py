@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import degrees
 
 from separatrix.present.text.sentences import strain_facts
-from separatrix.present.text.tables import ABSENT, interval, kick_list, number, significant
+from separatrix.present.text.tables import ABSENT, interval, kick_list, number
 from separatrix.reporting.pictures import drawing, equation, picture
 from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, entry, facts, quantity
 
@@ -23,6 +23,7 @@ CREEP = {
     "creep_spin": ("Creep by spin s", "1/m"),
     "creep_curvature": ("Creep by curvature q", "1/m2"),
 }
+SLOPES = {"slope": ("Slope \u03b1", "-"), "slope_error": ("Error of the slope", "-")}
 MISSING = "Not in this folder: run `separatrix {verb} {name}` into it, then the report again."
 
 
@@ -216,18 +217,7 @@ def _traction(kept: Kept) -> Iterator[Block]:
         r"\alpha = \left.\dfrac{\partial C_T}{\partial\,\delta\xi}\right|_{\delta\xi = 0}",
         "Slope of the traction coefficient against the creep increment.",
     )
-    rows = tuple(
-        (
-            f"{one['model']}{', used' if one['is_used'] else ''}",
-            str(one["pressure"]),
-            *(significant(one[f"{race}_slope"]) for race in ("inner", "outer")),
-            quantity(one["race_damping"], "N s/m", 4),
-            number(one["restitution_factor"]),
-        )
-        for one in found["models"]
-    )
-    head = ("model", "pressure", "slope inner", "slope outer", "race damping", "restitution factor")
-    yield Table(head, rows, "Slopes by each model of the contact, and what follows from them.", left=2)
+    yield _both_races(found, SLOPES, "Slopes of the traction curves in free rolling.")
     yield from picture(
         kept,
         "traction-curves",
@@ -267,19 +257,13 @@ def _restitution(kept: Kept) -> Iterator[Block]:
         ),
         ("Restitution factor of a Hertzian pocket", number(found["restitution_factor_hertz"])),
     )
-    for name, what in (
-        ("restitution-film", "film thickness and race friction"),
-        ("restitution-wear", "wear"),
-    ):
-        caption = f"Restitution factor against {what} (the paper's Fig. 8); the star is this bearing."
-        if name == "restitution-wear":
-            caption = "Restitution factor against the width of the worn band; the star is this bearing."
-        yield from picture(
-            kept,
-            name,
-            caption,
-            f"Two panels: restitution factor against {what}, dampings summed and with the ball free to spin.",
-        )
+    what = "film thickness and race friction"
+    yield from picture(
+        kept,
+        "restitution-film",
+        f"Restitution factor against {what} (the paper's Fig. 8); the star is this bearing.",
+        f"Two panels: restitution factor against {what}, dampings summed and with the ball free to spin.",
+    )
 
 
 def _pocket(kept: Kept) -> Iterator[Block]:

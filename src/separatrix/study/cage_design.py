@@ -126,6 +126,12 @@ def _read_material(raw: Any, path: KeyPath, reading: Reading) -> Material | None
     candidate = known.get(folded(text(raw, "")))
     if candidate is not None and (candidate.material or not helper.library.named("cage material", raw)):
         return cast("Material | None", candidate.material)
+    if (
+        ranking is None
+        and "ranking" in reading.document.data
+        and not helper.library.named("cage material", raw)
+    ):
+        return None  # it may be that of a candidate which was refused
     more = f" Candidates are {', '.join(c.name for c in known.values())}." if known else ""
     name = helper.known(raw, "cage material", more)
     return helper.library.material("cage material", name, temperature_of(reading))

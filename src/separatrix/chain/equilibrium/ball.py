@@ -30,13 +30,7 @@ TOLERANCE = 1e-11
 
 @unfolded
 def evaluate(
-    p: Problem,
-    A: Array,
-    state: Array,
-    smoothing: float,
-    method: Method,
-    residual: Array,
-    out: Work,
+    p: Problem, A: Array, state: Array, smoothing: float, method: Method, residual: Array, out: Work
 ) -> None:
     """Balance of one ball by the model that the length of its state implies: 2 race control, 6 free."""
     if state.shape[0] == 2:

@@ -45,14 +45,7 @@ class Equilibrium:
     orbital_speed: Annotated[Array, "rad/s", ("ball",)]
     pitch_angle: Annotated[Array, "rad", ("ball",)]
     yaw_angle: Annotated[Array, "rad", ("ball",)]
-    ball_spin: Annotated[
-        Array,
-        "rad/s",
-        (
-            "ball",
-            "axis",
-        ),
-    ]
+    ball_spin: Annotated[Array, "rad/s", ("ball", "axis")]
     spin_roll_ratio_inner: Annotated[Array, "-", ("ball",)]
     spin_roll_ratio_outer: Annotated[Array, "-", ("ball",)]
     rolling_speed_inner: Annotated[Array, "m/s", ("ball",)]

@@ -2,19 +2,16 @@
 
 from separatrix.chain.traction.curve import TractionCurve, traction_curve, traction_slope
 from separatrix.chain.traction.film import Track, film_compliance, track_of
-from separatrix.chain.traction.layer import BondedLayer, bonded_layer
 from separatrix.chain.traction.profile import Profile, worn_band
 from separatrix.chain.traction.shear import ShearField, shear_field
 from separatrix.chain.traction.strip import StripSolution, solve_strip
 
 __all__ = [
-    "BondedLayer",
     "Profile",
     "ShearField",
     "StripSolution",
     "Track",
     "TractionCurve",
-    "bonded_layer",
     "film_compliance",
     "shear_field",
     "solve_strip",

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -27,7 +26,6 @@ from separatrix.chain.traction.ellipse import (
     free_rolling,
     resultant,
 )
-from separatrix.chain.traction.layer import BondedLayer, layer_tables
 from separatrix.chain.traction.master import MasterTable, film_tables, master_traction
 from separatrix.chain.traction.profile import Profile, edges_of, ends_of
 from separatrix.ground.compiled import kernel
@@ -40,16 +38,14 @@ INTERPOLATION = (
 )
 RIGID = 1e-9  # saturation creep over the largest creep that stands for the limit of no friction
 
-Tables = Callable[[int], tuple[MasterTable, MasterTable]]
-
 
 @dataclass(frozen=True, slots=True)
 class ScaledContact:
     """Spin sigma = s a/xi_s, Heathcote eta = q a^2/xi_s; xi_s = 2 mu p0/E*, mu being the largest friction.
 
-    `pieces` have the film lam0 = L E*/b, or h/b under a bonded layer, and the friction over mu, shape
-    (piece, 6): see chain/traction/ellipse.py. `steepness` is mu/xi_s; `idle` says that nothing is
-    transmitted: no friction or no load.
+    `pieces` have the film lam0 = L E*/b and the friction over mu, shape (piece, 6): see
+    chain/traction/ellipse.py. `steepness` is mu/xi_s; `idle` says that nothing is transmitted: no friction or
+    no load.
     """
 
     sigma: Ratio
@@ -59,7 +55,6 @@ class ScaledContact:
     saturation: Ratio
     steepness: Ratio
     idle: bool
-    tables: Tables
 
     def local(self, y: Array) -> tuple[Array, Array]:
         """Film lam0 and friction over mu at y/a, shape of y each [-]."""
@@ -99,7 +94,7 @@ class ScaledContact:
         """
         slope, error, nodes = 0.0, math.inf, 0
         for nodes in NODES:
-            best, fine = self.tables(nodes)
+            best, fine = film_tables(nodes)
             offset = self.offset(best)
             slope = self.slope(best, offset, splits=2)
             error = abs(slope - self.slope(best, offset)) + INTERPOLATION * slope
@@ -121,23 +116,16 @@ def reach(table: MasterTable, lam: Ratio) -> Ratio:
 
 
 def scaled_contact(
-    ellipse: ContactEllipse,
-    creep: Creep,
-    friction: Ratio | Profile,
-    compliance: float | Profile,
-    layer: BondedLayer | None,
+    ellipse: ContactEllipse, creep: Creep, friction: Ratio | Profile, compliance: float | Profile
 ) -> ScaledContact:
-    """Dimensionless form of one contact; a layer takes the place of the compliance."""
+    """Dimensionless form of one contact."""
     a, b, p0, E = ellipse.semi_major, ellipse.semi_minor, ellipse.max_pressure, ellipse.contact_modulus
     spread = max(abs(creep.spin) * a, abs(creep.curvature) * a * a)
     mu = max(friction.values) if isinstance(friction, Profile) else friction
     idle = mu == 0.0 or p0 == 0.0
     saturation = (RIGID * spread or RIGID) if idle else 2.0 * mu * p0 / E
-    tables: Tables = film_tables
     pieces = np.array([[-1.0, 1.0, 0.0, 0.0, 1.0, 1.0]])
-    if layer is not None and not idle:
-        pieces[0, LAM_LOW : LAM_HIGH + 1], tables = _layered(layer, b)
-    elif not idle:
+    if not idle:
         edges = edges_of(a, friction, compliance)
         films, shares = ends_of(compliance, edges) * E / b, ends_of(friction, edges) / mu
         pieces = np.column_stack([edges[:-1] / a, edges[1:] / a, films, shares])
@@ -149,17 +137,7 @@ def scaled_contact(
         saturation=saturation,
         steepness=0.0 if idle else 0.5 * E / p0,
         idle=idle,
-        tables=tables,
     )
-
-
-def _layered(layer: BondedLayer, semi_minor: Metre) -> tuple[Ratio, Tables]:
-    ratio = layer.thickness / semi_minor
-
-    def tables(nodes: int) -> tuple[MasterTable, MasterTable]:
-        return layer_tables(layer, ratio, nodes)
-
-    return ratio, tables
 
 
 @kernel
@@ -209,7 +187,6 @@ def traction_curve(
     film_compliance: float | Profile,
     creep_increments: Array | None = None,
     film_thickness: Metre = 0.0,
-    layer: BondedLayer | None = None,
     tolerance: Ratio = TOLERANCE,
 ) -> TractionCurve:
     r"""Traction coefficient against the creep increment of one ball/race contact.
@@ -226,13 +203,11 @@ def traction_curve(
     race_friction : float or Profile
         Friction f_BT of ball on track, >= 0; a profile across the groove of a worn track is > 0 [-].
     film_compliance : float or Profile
-        Shear compliance L = h/G of the film in series, >= 0 [m/Pa]; not used with a layer.
+        Shear compliance L = h/G of the film in series, >= 0 [m/Pa].
     creep_increments : array or None
         Where to compute, shape (case,) [-]; None takes 41 points that span saturation both ways.
     film_thickness : float
         Total thickness of the film [m]; only to warn where the film in series is out of its range.
-    layer : BondedLayer or None
-        The exact elastic layer instead of the film in series, see `bonded_layer`.
     tolerance : float
         Relative error of the slope above which strips are refined, from 400 to at most 1600 elements [-].
 
@@ -256,9 +231,9 @@ def traction_curve(
     Paper, Eqs 2, 12-15 and Fig. 7, with the rolling entry condition (docs/theory/traction.md). Odd in the
     increment if the creep is pure spin or none, and the track symmetric; bounded by race_friction.
     """
-    case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness, layer)
+    case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness)
     slope, error, nodes = (0.0, 0.0, 200) if case.idle else case.refined_slope(tolerance)
-    table = case.tables(nodes)[0]
+    table = film_tables(nodes)[0]
     offset = case.offset(table)
     increments = (
         case.increments(table) if creep_increments is None else np.asarray(creep_increments, dtype=np.float64)
@@ -286,11 +261,10 @@ def traction_slope(
     race_friction: Ratio | Profile,
     film_compliance: float | Profile,
     film_thickness: Metre = 0.0,
-    layer: BondedLayer | None = None,
     tolerance: Ratio = TOLERANCE,
 ) -> tuple[Ratio, Ratio]:
     """Slope alpha of the curve at the origin and a bound of its numerical error [-]; see `traction_curve`."""
-    case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness, layer)
+    case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness)
     return (0.0, 0.0) if case.idle else case.refined_slope(tolerance)[:2]
 
 
@@ -300,10 +274,9 @@ def _checked_case(
     friction: Ratio | Profile,
     compliance: float | Profile,
     thickness: Metre,
-    layer: BondedLayer | None,
 ) -> ScaledContact:
     check_film(race_friction=friction, film_compliance=compliance, film_thickness=thickness)
-    if layer is None and thickness > THIN * ellipse.semi_minor > 0.0:
+    if thickness > THIN * ellipse.semi_minor > 0.0:
         warnings.warn(
             f"film of {format_quantity(thickness, 'm', 3)} is {thickness / ellipse.semi_minor:.3g} of the "
             f"semi-minor axis: a film in series with the half-planes is valid up to {THIN:g} "
@@ -311,7 +284,7 @@ def _checked_case(
             ValidityWarning,
             stacklevel=3,
         )
-    return scaled_contact(ellipse, creep, friction, compliance, layer)
+    return scaled_contact(ellipse, creep, friction, compliance)
 
 
 def check_film(**values: float | Profile) -> None:

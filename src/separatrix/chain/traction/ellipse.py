@@ -105,28 +105,8 @@ def _split(edges: Array, splits: int) -> Array:
 
 
 @kernel
-def strip_places(edges: Array, nodes: Array, weights: Array) -> tuple[Array, Array]:
-    """Strips of all panels: theta and their share of mu N, shape (strip,) [rad, -]."""
-    count = nodes.size
-    theta, share = np.empty((edges.size - 1) * count), np.empty((edges.size - 1) * count)
-    for k in range(edges.size - 1):
-        half = 0.5 * (edges[k + 1] - edges[k])
-        for i in range(count):
-            place = edges[k] + half * (1.0 + nodes[i])
-            theta[k * count + i] = place
-            share[k * count + i] = 0.75 * math.cos(place) ** 3 * half * weights[i]
-    return theta, share
-
-
-@kernel
 def resultant(
-    d: float,
-    sigma: float,
-    eta: float,
-    pieces: Array,
-    splits: int,
-    gauss: tuple[Array, Array],
-    table: Table,
+    d: float, sigma: float, eta: float, pieces: Array, splits: int, gauss: tuple[Array, Array], table: Table
 ) -> tuple[float, float]:
     """Traction over mu N and its derivative with d, of the ellipse of strips [-]."""
     values, log_scale, axis = table
@@ -168,12 +148,7 @@ def highest(sigma: float, eta: float) -> float:
 
 @kernel
 def free_rolling(
-    sigma: float,
-    eta: float,
-    pieces: Array,
-    splits: int,
-    gauss: tuple[Array, Array],
-    table: Table,
+    sigma: float, eta: float, pieces: Array, splits: int, gauss: tuple[Array, Array], table: Table
 ) -> float:
     """Offset d without net traction: Newton's steps inside a shrinking bracket [-]."""
     if eta == 0.0:

@@ -162,16 +162,13 @@ def _hermite(knots: Knots, at: Array) -> tuple[Array, Array]:
     ) * 3.0
 
 
-def master_tables(
-    influences: list[tuple[Array, Array]], norms: Array, axis: tuple[float, float, float, float, float]
-) -> tuple[MasterTable, MasterTable]:
-    """Tables of the strips with these coarse and fine influences: the extrapolated one, and the fine one.
-
-    norms : shape (film,), the part 1 + gamma lam of the scale that is divided out before interpolation [-].
-    """
-    knots = [matched_knots(*pair) for pair in influences]
+@lru_cache(maxsize=4)
+def film_tables(nodes: int) -> tuple[MasterTable, MasterTable]:
+    """Tables of the film in series: extrapolated from `nodes` and 2 `nodes` elements, and the latter."""
+    axis, lams = film_axis()
+    knots = [matched_knots(strip_influence(nodes, lam), strip_influence(2 * nodes, lam)) for lam in lams]
     scales = [0.5 * best[2][0] for best, _ in knots]
-    log_scale = np.log(np.array(scales) * norms)
+    log_scale = np.log(np.array(scales) * (1.0 + axis[4] * lams))
     best, fine = (
         MasterTable(
             values=np.array([_row(pair[i], s) for pair, s in zip(knots, scales, strict=True)]),
@@ -181,14 +178,6 @@ def master_tables(
         for i in (0, 1)
     )
     return best, fine
-
-
-@lru_cache(maxsize=4)
-def film_tables(nodes: int) -> tuple[MasterTable, MasterTable]:
-    """Tables of the film in series: extrapolated from `nodes` and 2 `nodes` elements, and the latter."""
-    axis, lams = film_axis()
-    influences = [(strip_influence(nodes, lam), strip_influence(2 * nodes, lam)) for lam in lams]
-    return master_tables(influences, 1.0 + axis[4] * lams, axis)
 
 
 def film_axis() -> tuple[tuple[float, float, float, float, float], Array]:

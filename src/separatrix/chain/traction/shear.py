@@ -10,7 +10,7 @@ import numpy as np
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction.curve import scaled_contact
-from separatrix.chain.traction.layer import BondedLayer, strip_layer
+from separatrix.chain.traction.master import film_tables
 from separatrix.chain.traction.profile import Profile
 from separatrix.chain.traction.strip import solve_strip, stick_solution, strip_influence
 from separatrix.ground.units import Array, Ratio
@@ -46,13 +46,12 @@ def shear_field(
     creep_increment: Ratio = 0.0,
     strips: int = 41,
     nodes: int = 100,
-    layer: BondedLayer | None = None,
 ) -> ShearField:
     """Shear over the ellipse at one creep increment; with ``strips=1`` the middle strip.
 
     Parameters
     ----------
-    ellipse, creep, race_friction, film_compliance, layer
+    ellipse, creep, race_friction, film_compliance
         As for `traction_curve`; race_friction must exceed 0.
     creep_increment : float
         Increment from free rolling, positive where the ball is faster [-].
@@ -64,17 +63,15 @@ def shear_field(
     ShearField
         Traction with slip and without, pressure, stick and slip.
     """
-    case = scaled_contact(ellipse, creep, race_friction, film_compliance, layer)
+    case = scaled_contact(ellipse, creep, race_friction, film_compliance)
     y = 2.0 * (np.arange(strips) + 0.5) / strips - 1.0
-    xi = creep.ratio(
-        y * ellipse.semi_major, case.offset(case.tables(200)[0]) * case.saturation + creep_increment
-    )
+    offset = case.offset(film_tables(200)[0]) * case.saturation
+    xi = creep.ratio(y * ellipse.semi_major, offset + creep_increment)
     half = np.sqrt(1.0 - y * y)  # b(y)/b, and p0(y)/p0
     films, shares = case.local(y)
     ratios = np.zeros(strips) if case.idle else xi / (case.saturation * shares * half)
-    influences = [strip_toeplitz(lam / c, nodes, layer) for lam, c in zip(films, half, strict=True)]
-    solved = [solve_strip(c, influence=t) for c, t in zip(ratios, influences, strict=True)]
-    stuck = [_stuck(c, t, nodes) for c, t in zip(ratios, influences, strict=True)]
+    solved = [solve_strip(c, lam, nodes=nodes) for c, lam in zip(ratios, films / half, strict=True)]
+    stuck = [_stuck(c, lam, nodes) for c, lam in zip(ratios, films / half, strict=True)]
     pressure = ellipse.max_pressure * half[:, None]
     bound = case.friction * shares[:, None] * pressure
     return ShearField(
@@ -90,11 +87,7 @@ def shear_field(
     )
 
 
-def _stuck(creep: Ratio, influence: Array, nodes: int) -> Array:
+def _stuck(creep: Ratio, lam: Ratio, nodes: int) -> Array:
     """Traction of a strip that sticks throughout, in units of mu p0(y), shape (node,) [-]."""
+    influence = strip_influence(nodes, lam)
     return stick_solution(influence, np.zeros(nodes), np.full(nodes, 4.0 * creep / nodes), np.zeros(nodes))
-
-
-def strip_toeplitz(film: Ratio, nodes: int, layer: BondedLayer | None) -> Array:
-    """Influences of a strip, shape (2 node - 1,) [-]; `film` is L E* or h over its half length."""
-    return strip_influence(nodes, film) if layer is None else strip_layer(layer, film, nodes)

@@ -109,9 +109,7 @@ class StripSolution:
         return float(self.tangent.sum() / self.pressure.sum())
 
 
-def solve_strip(
-    creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200, influence: Array | None = None
-) -> StripSolution:
+def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> StripSolution:
     """Traction along one strip in steady rolling.
 
     Parameters
@@ -124,9 +122,6 @@ def solve_strip(
     nodes : int
         Elements; the error is of first order in 1/nodes (Carter at T/(mu P) = 0.64: 0.7 % with 50, 0.04 %
         with 800).
-    influence : array or None
-        Toeplitz coefficients of another layering, shape (2 node - 1,); None takes half-plane and film in
-        series.
 
     Returns
     -------
@@ -138,8 +133,7 @@ def solve_strip(
     ConvergenceError
         The stick zone did not settle.
     """
-    t = strip_influence(nodes, lam) if influence is None else influence
-    nodes = (t.size + 1) // 2
+    t = strip_influence(nodes, lam)
     strain = np.ascontiguousarray(
         np.broadcast_to(4.0 * np.asarray(creep, dtype=np.float64) / nodes, (nodes,))
     )

@@ -8,11 +8,10 @@ from math import degrees
 import numpy as np
 
 from separatrix.answers import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
+from separatrix.chain.ball_mobility import Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.mobility import Impacts, Mobility
-from separatrix.chain.models import ModelSlopes
 from separatrix.present.nodes import Leaf, Node, field_units, fields_of, plain
 from separatrix.present.shapes import shape
 from separatrix.present.text.sentences import strain_facts
@@ -48,16 +47,6 @@ TRACTION = {
     "slope": "Slope alpha at the origin",
     "slope_error": "Error of the slope",
     "free_rolling_offset": "Free-rolling offset of the creep",
-}
-ROLLING = {
-    "lateral_force": "Lateral force",
-    "lateral_share": "The same over friction times load",
-    "spin_moment": "Spin moment",
-    "stick_share": "Share of the area that sticks",
-    "max_pressure": "Maximum pressure",
-    "film_strain": "Strain of the film",
-    "pressure_slip": "Slip by the pressure over saturation creep",
-    "dissipation": "Power of the slip",
 }
 DAMPING = {"load": "Load", "slope": "Slope alpha", "rolling_speed": "Rolling speed"}
 FACTORS = {
@@ -127,35 +116,18 @@ def _by_race(inner: Node, outer: Node, words: Mapping[str, str]) -> str:
 
 
 def traction(found: TractionAnswer, study: Study) -> list[str]:  # noqa: ARG001
-    """Slopes of the traction curves, how they change with the spin, and what the models differ by."""
-    at, models = found.bearing, found.comparison
+    """Slopes of the traction curves, how they change with the spin, and where strips leave their range."""
+    at = found.bearing
     nodes = shape(at.inner) | fields_of(found.inner), shape(at.outer) | fields_of(found.outer)
     others = zip(found.inner_others, found.outer_others, strict=True)
     ratios = [[f"{i.spin_roll_ratio:.2g}", significant(i.slope), significant(o.slope)] for i, o in others]
     slopes = table(("ratio", "inner race", "outer race"), ratios)
-    rolling = models.inner and models.outer and _by_race(shape(models.inner), shape(models.outer), ROLLING)
-    notes = [one.reason for one in models.models if one.reason]
+    range_of_strips = [section("Range of the strips", *map(paragraph, found.outside))]
     return [
         section("Contacts of the most loaded ball", _by_race(*nodes, TRACTION)),
         section("Slope at other pivoting-to-rolling ratios, by strips", slopes),
-        section("Models of the contact", _models(models.models), *map(paragraph, (*notes, *models.outside))),
-        *([section("Exact contact in free rolling, on the ball", rolling)] if rolling else []),
+        *(range_of_strips if found.outside else []),
     ]
-
-
-def _models(rows: Sequence[ModelSlopes]) -> str:
-    """Return a table of the models' slopes and what they make of the damping; * marks the study's own."""
-    cells = [
-        [
-            f"{one.model.value}{'*' if one.is_used else ''}",
-            one.pressure.value,
-            *(significant(slope) for slope in (one.inner_slope, one.outer_slope)),
-            quantity(one.race_damping, "N s/m", 4),
-            number(one.restitution_factor),
-        ]
-        for one in rows
-    ]
-    return table(("model", "pressure", "slope in", "slope out", "C_mu", "eta"), cells, left=2)
 
 
 def restitution(answer: RestitutionAnswer, study: Study) -> list[str]:
@@ -274,15 +246,11 @@ SMALL = {
 }
 MODE_HEADERS = ("mode", "rate\n1/s", "time", "share of 1/C_eff\n%", "rate, rigid\n1/s")
 PUSH_HEADERS = ("speed\nm/s", "F forward\nN", "F backward\nN", "law\nN")
-IMPACT_HEADERS = (
-    *("speed\nm/s", "from behind\n-", "from front\n-", "by the law\n-"),
-    *("peak force\nN", "time\nus"),
-)
 SHOWN_PUSHES = 8
 
 
 def mobility(answer: MobilityAnswer, study: Study) -> list[str]:  # noqa: ARG001
-    """Small motion by both slip laws, the law of traction, and the restitution of impacts."""
+    """Small motion by both slip laws, and the law of traction."""
     found, rigid = answer.mobility, answer.rigid
     linear, units = found.linear, field_units(type(found.linear))
     cells = [
@@ -304,14 +272,11 @@ def mobility(answer: MobilityAnswer, study: Study) -> list[str]:  # noqa: ARG001
     step = max(1, found.speed.size // SHOWN_PUSHES)
     shown = np.column_stack([found.speed, *forces])[::-step][::-1].tolist()
     pushes = [[significant(speed, 3), *map(significant, each)] for speed, *each in shown]
-    blocks = [
+    return [
         section("Small motion of the most loaded ball", table(("", "elastic creep", "rigid"), cells)),
         section("Modes", table(MODE_HEADERS, modes)),
         section("Push along the orbit", facts(_law(found)), table(PUSH_HEADERS, pushes, left=0)),
     ]
-    if answer.impacts is None:
-        return [*blocks, section("Impacts of the cage", paragraph(f"Not computed: {answer.impacts_reason}"))]
-    return [*blocks, section("Impacts of the cage on the ball", *_impacts(answer.impacts))]
 
 
 def _law(found: Mobility) -> Sequence[tuple[str, str]]:
@@ -325,26 +290,4 @@ def _law(found: Mobility) -> Sequence[tuple[str, str]]:
         ("Law of traction: slope C, knee v", both),
         ("Largest error of the law", f"{100 * found.law_error:.2g} % of the capacity"),
         ("Forward and backward differ by", f"+-{100 * found.asymmetry:.2g} % of the capacity at most"),
-    ]
-
-
-def _impacts(found: Impacts) -> list[str]:
-    """Return a table of restitution against the speed of the impact, and what it is to be compared with."""
-    restitutions = found.restitution_forward, found.restitution_backward, found.restitution_law
-    rows = [
-        [significant(speed, 3), *map(number, each), significant(force), significant(1e6 * time)]
-        for speed, *each, force, time in np.column_stack(
-            [found.speed, *restitutions, found.peak_force, found.duration]
-        ).tolist()
-    ]
-    beside = [
-        ("Mass that the impact feels", stated(found, "felt_mass")),
-        ("Limit of gentle impacts", number(found.restitution_linear)),
-        ("Eq. 18 with this mass", number(found.restitution_summed)),
-        ("eta of the paper, all of the mass", number(found.nominal_restitution_factor)),
-    ]
-    return [
-        table(IMPACT_HEADERS, rows, left=0),
-        facts(beside),
-        paragraph("Share of its speed with which the cage returns; below 0 it goes on behind the ball."),
     ]

@@ -1,6 +1,5 @@
 """Rolling contact of two layered half-spaces in three dimensions, with partial slip."""
 
-from separatrix.chain.traction.exact.bound import FrictionLaw
 from separatrix.chain.traction.exact.contact import (
     ContactProblem,
     ContactSolution,
@@ -11,7 +10,8 @@ from separatrix.chain.traction.exact.contact import (
     solve,
     solve_each,
 )
-from separatrix.chain.traction.exact.flexibility import Body, Layer, Solid, solid
+from separatrix.chain.traction.exact.influence import Body, Layer, Solid, solid
+from separatrix.chain.traction.exact.slip import FrictionLaw
 from separatrix.chain.traction.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.traction.exact.transient import shift, transient
 from separatrix.chain.traction.exact.two_way import solve_two_way

@@ -21,9 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.bound import FrictionLaw, over_cells, rough_compliance
-from separatrix.chain.traction.exact.coupling import pressure_slip
-from separatrix.chain.traction.exact.flexibility import Body
 from separatrix.chain.traction.exact.grid import (
     Grid,
     cell_counts,
@@ -31,11 +28,18 @@ from separatrix.chain.traction.exact.grid import (
     elliptic_pressure,
     pressed_grid,
 )
-from separatrix.chain.traction.exact.images import pair_images
-from separatrix.chain.traction.exact.newton import TOLERANCE, Settled, settle
-from separatrix.chain.traction.exact.normal import film_strain, press, pressed_contact
+from separatrix.chain.traction.exact.influence import Body, pair_images
 from separatrix.chain.traction.exact.operator import Operator, rolling_operator
 from separatrix.chain.traction.exact.precondition import SLIP
+from separatrix.chain.traction.exact.pressure import film_strain, press, pressed_contact, pressure_slip
+from separatrix.chain.traction.exact.slip import (
+    TOLERANCE,
+    FrictionLaw,
+    Settled,
+    over_cells,
+    rough_compliance,
+    settle,
+)
 from separatrix.chain.traction.profile import Profile
 from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
 from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio

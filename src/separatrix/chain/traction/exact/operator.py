@@ -26,9 +26,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from separatrix.chain.traction.exact.flexibility import Body, flexibility, half_space_flexibility
 from separatrix.chain.traction.exact.grid import Grid, end_normals
-from separatrix.chain.traction.exact.images import influence, pair_images
+from separatrix.chain.traction.exact.influence import (
+    Body,
+    flexibility,
+    half_space_flexibility,
+    influence,
+    pair_images,
+)
 from separatrix.chain.traction.exact.precondition import leading_inverses
 from separatrix.ground.compiled import kernel
 from separatrix.ground.units import Array, Metre, Ratio

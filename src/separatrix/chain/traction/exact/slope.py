@@ -26,8 +26,8 @@ from separatrix.chain.traction.exact.contact import (
     solution_of,
 )
 from separatrix.chain.traction.exact.krylov import right_side, solve_step
-from separatrix.chain.traction.exact.newton import Settled
 from separatrix.chain.traction.exact.operator import unresolved_film
+from separatrix.chain.traction.exact.slip import Settled
 from separatrix.chain.traction.profile import Profile
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Newton, Ratio

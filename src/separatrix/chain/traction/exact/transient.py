@@ -21,8 +21,7 @@ from separatrix.chain.traction.exact.contact import (
     check_fields,
     solution_of,
 )
-from separatrix.chain.traction.exact.images import influence, pair_images
-from separatrix.chain.traction.exact.newton import TOLERANCE, settle
+from separatrix.chain.traction.exact.influence import influence, pair_images
 from separatrix.chain.traction.exact.operator import (
     Operator,
     displacement,
@@ -31,6 +30,7 @@ from separatrix.chain.traction.exact.operator import (
     shift_operator,
     spectrum,
 )
+from separatrix.chain.traction.exact.slip import TOLERANCE, settle
 from separatrix.ground.units import Array, Ratio
 
 

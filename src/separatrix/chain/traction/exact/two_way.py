@@ -23,9 +23,9 @@ from separatrix.chain.traction.exact.contact import (
     solve,
 )
 from separatrix.chain.traction.exact.grid import Grid, cell_counts, pressed_grid
-from separatrix.chain.traction.exact.images import Images, influence, pair_images
-from separatrix.chain.traction.exact.normal import REFINED, press_in_box, pressed_box, touches_edge
+from separatrix.chain.traction.exact.influence import Images, influence, pair_images
 from separatrix.chain.traction.exact.operator import SHIFT, Complex, spectrum
+from separatrix.chain.traction.exact.pressure import REFINED, press_in_box, pressed_box, touches_edge
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, PerMetre, PerMetre2, Ratio
 
