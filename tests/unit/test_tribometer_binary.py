@@ -10,7 +10,7 @@ import pytest
 from minimal_xlsx import STYLES, Fault, Formula, Shown, sheet, workbook, zipped
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.binary import tdms_tables
+from separatrix.friction.logs.binary import tdms_groups
 from separatrix.friction.logs.column_map import column_map
 from separatrix.ground.errors import InputError
 
@@ -268,7 +268,7 @@ def measured(tmp_path, *objects):
     path = tmp_path / "log.tdms"
     with nptdms.TdmsWriter(str(path)) as writer:
         writer.write_segment(list(objects))
-    return tdms_tables(path)
+    return tdms_groups(path)
 
 
 def channel(name, values, **properties):
@@ -366,7 +366,7 @@ def test_without_the_extra_the_message_says_which(tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "nptdms", raising=False)
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(InputError, match=r"needs the package npTDMS\. pip install 'separatrix\[tdms\]'"):
-        tdms_tables(path)
+        tdms_groups(path)
 
 
 def test_a_damaged_measurement_file_is_refused_whatever_is_wrong(tmp_path):
@@ -382,7 +382,7 @@ def test_a_damaged_measurement_file_is_refused_whatever_is_wrong(tmp_path):
             changed[place] = random.integers(256)
         (tmp_path / "case.tdms").write_bytes(changed)
         try:
-            tdms_tables(tmp_path / "case.tdms")
+            tdms_groups(tmp_path / "case.tdms")
         except InputError as refusal:
             refusals.append(str(refusal))
     assert len(refusals) > 100

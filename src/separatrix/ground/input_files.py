@@ -25,7 +25,7 @@ MOST_BYTES = 64 * 1024**2
 
 MOST_FILES, LONGEST_NAME = 500, 400
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 """What the package ships may be read from everywhere."""
 
 

@@ -240,7 +240,7 @@ def keep(study: Study, path: Path, reading: Reading) -> Study:
 
 def _kept(path: Path, reading: Reading, study: Study) -> Kept:
     own: dict[Path, bytes] = {}
-    shipped = {name: {"sha256": checksum} for name, checksum in _checksums("library/data").items()}
+    shipped = {name: {"sha256": checksum} for name, checksum in _checksums("study/library/data").items()}
     for file, content in reading.files.items():
         if name := _shipped_name(file):
             shipped[name] = {"sha256": _sha256(content)}
@@ -317,7 +317,7 @@ _PACKAGE = Path(separatrix.__file__).resolve().parent
 
 
 def _shipped_name(path: Path) -> str | None:
-    is_shipped = path.resolve().parent in (_PACKAGE / "examples", _PACKAGE / "library/data")
+    is_shipped = path.resolve().parent in (_PACKAGE / "examples", _PACKAGE / "study/library/data")
     return f"{SHIPPED}{path.name}" if is_shipped else None
 
 
@@ -329,7 +329,7 @@ def _checksums(folder: str) -> dict[str, str]:
 
 def shipped_checksums() -> dict[str, str]:
     """Checksum of every shipped file of this version by its name in an answer."""
-    return _checksums("library/data") | _checksums("examples")
+    return _checksums("study/library/data") | _checksums("examples")
 
 
 def asked_by(
