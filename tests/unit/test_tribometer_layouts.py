@@ -12,7 +12,7 @@ import pytest
 from separatrix.cli import main
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
-from separatrix.friction.logs.dialect import is_clock, seconds
+from separatrix.friction.logs.log_tables import is_clock
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 from separatrix.ground.errors import InputError
 
@@ -300,7 +300,7 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
 
 def test_a_number_of_many_digits_takes_no_time():
     """Digits and a letter: a pattern that tried every split of them took the square of their number."""
-    from separatrix.friction.logs.dialect import is_number
+    from separatrix.friction.logs.log_tables import is_number
 
     assert not is_number("1" * 1_000_000 + "x")  # with the square, hours
 

@@ -117,11 +117,13 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
         rule = "has no table with the columns that the column map needs"
         raise Unfit(content.name, rule, cure=f"They are {listed or 'given by number'}; under them, two rows of numbers.")
     if len({(part.source, part.name) for part in parts}) < len(parts):
-        parts = [replace(part, name=f"table {i}") for i, part in enumerate(parts, 1)]
+        sheets = {part.source: part.name for part in parts if content.parts and content.parts[0].sheet}
+        named = [f"{name}, " if (name := sheets.get(part.source)) else "" for part in parts]
+        parts = [replace(part, name=f"{named[i]}table {i + 1}") for i, part in enumerate(parts)]
     found: list[tuple[str, RawLog]] = []
     wrong: InputError | None = None
     for part in _named(parts, content, columns):
-        source = f"{part.source}, {part.name}" if part.name else part.source
+        source = f"{content.name}, {printable(part.name)}" if part.name else content.name
         try:
             log = raw_log(part, source, content.checksum, content.words, columns, columns.conditions(content.path))
             found.append((part.name, replace(log, series=_series(part, content, columns))))

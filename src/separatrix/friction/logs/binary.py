@@ -37,7 +37,7 @@ MOST_ROWS = 1_048_576  # that a sheet can have
 _LITERAL = re.compile(r'"[^"]*"|\\.')
 """Part of a number format that is shown as it is: a % in it does not make a percentage."""
 
-_BLANKS = str.maketrans("\t\r\n\x1c\x1d\x1e\x1f", "       ")
+_BLANKS = str.maketrans("\t\r\n\x01\x02\x03\x04", "       ")
 # what openpyxl raises for a workbook that is damaged or makes no sense
 _DAMAGED_BOOK = (
     *(ValueError, TypeError, LookupError, AttributeError, ArithmeticError, SyntaxError, OSError, EOFError),
@@ -53,9 +53,9 @@ def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     refuse_unsafe(path, label)
     found = {}
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), path.open("rb") as file:
             warnings.simplefilter("ignore")
-            book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
+            book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
             for sheet in book.worksheets:
                 lines = _lines_of_sheet(sheet, _percent_styles(book), label)
                 if any(re.search(r"\d", line) for line in lines):
@@ -112,7 +112,7 @@ def _lines_of_sheet(sheet: Any, percent: set[int], label: str) -> list[str]:
                 width = max(width, *used)
     lines = [""] * max(rows, default=0)
     for number, used in rows.items():
-        has_numbers = any(text[:1] in "0123456789-.\x1d\x1e" for text in used.values())
+        has_numbers = any(text[:1] in f"0123456789-.{ERROR}{UNCOMPUTED}" for text in used.values())
         last = max(width, *used) if has_numbers or len(used) > 1 else max(used)
         lines[number - 1] = "\t".join(used.get(i, "") for i in range(1, last + 1))
     return lines

@@ -16,6 +16,7 @@ from separatrix.friction.logs.log_tables import (
     cells_of,
     fields_of,
     first_table,
+    heads_in,
     is_clock,
     is_number,
     is_row,
@@ -151,8 +152,13 @@ def _block(part: Part, draft: Draft) -> Block | None:
     missing = MISSING | {one.casefold() for one in form.missing}
     separator, others = (form.separator, []) if form.separator else separator_of(part.lines, missing)
     separator = "\t" if part.sheet else separator
-    heads = first_table(part.lines, separator, missing, _start(part, separator, draft.given)) if separator else None
-    if heads is None or not separator:
+    if not separator:
+        return None
+    if form.header_line is not None:
+        heads = next(heads_in(part, draft.given, separator, missing))
+    else:
+        heads = first_table(part.lines, separator, missing, _start(part, separator, draft.given))
+    if heads is None:
         return None
     own = {f.name: value for f in fields(TextFormat) if (value := getattr(form, f.name))}
     draft.form += [f"{key} = {_toml(value)}" for key, value in own.items()]
@@ -180,24 +186,36 @@ def _start(part: Part, separator: str, given: ColumnMap) -> int:
 def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None], draft: Draft) -> None:
     """Add the rows to the block, and a question on each kind of line among them that is not one."""
     width = len(fields_of(lines[first], block.separator))
-    form, odd = draft.given.format, {}
+    form, odd = draft.given.format, dict[str, int]()
     between: list[int] = []
+    is_first = True  # the first of the tables with these names
     for i in range(first, len(lines)):
         line = lines[i]
-        if not line.strip(f"{block.separator} \t") or line.strip().startswith((*form.skip, *form.ends, "\0")):
+        begin = line.strip()
+        if form.ends and begin.startswith(form.ends):
+            break
+        if not line.strip(f"{block.separator} \t") or (form.skip and begin.startswith(form.skip)):
             continue
         if line in heads:
-            between, heads = [], heads | {block.separator.join(block.below)}
+            between, is_first, heads = [], False, heads | {block.separator.join(block.below)}
             continue
         parts = fields_of(line, block.separator)
-        if len(parts) != width or (between and not is_row(parts)):
+        has_number = any(is_number(one) or is_clock(one) or one.casefold() in MISSING for one in parts)
+        if len(parts) != width or not has_number or (between and not is_row(parts)):
             between.append(i)
             continue
-        for k in between[:20]:
-            begin = re.match(r"\D{0,30}", lines[k].strip())
-            odd.setdefault((begin[0].strip() if begin else "") or lines[k].strip()[:20], k)
+        names = [k for k in between[-2:] if len(fields_of(lines[k], block.separator)) == width and block.rows]
+        if names and width > 1:
+            name = fields_of(lines[names[0]], block.separator)[0]
+            question = f"{block.word} {names[0] + 1} begins another table, which is not read: {lines[names[0]].strip()[:60]!r}"
+            draft.form.append(draft.ask(f"ends = {_toml([*form.ends, name or lines[names[0]].strip()])}", question))
+            break
+        for k in between[:20] if block.rows else ():
+            word = re.match(r"\D{0,30}", lines[k].strip())
+            odd.setdefault((word[0].strip() if word else "") or lines[k].strip()[:20], k)
         between = []
-        block.rows.append(line)
+        if is_first:
+            block.rows.append(line)
     if odd:
         skip = [*form.skip, *list(odd)[:20]]
         number = next(iter(odd.values()))
@@ -225,7 +243,7 @@ def _draft(block: Block, draft: Draft) -> Draft:
     _decide(block, draft, options, used)
     _decimal(block, draft, [cells[i] for i in used], options)
     _conditions(block, draft, cells)
-    if not any(key in draft.questions for key in ()) and not draft.given.format.tests:
+    if not draft.given.format.tests:
         _steps(block, draft, cells, used)
     return draft
 
@@ -234,7 +252,8 @@ def _options(block: Block, i: int, cells: Sequence[str]) -> list[tuple[str, Opti
     """Meanings that a column may have."""
     head, below = block.heads[i], block.below[i]
     sample = [cell for cell in cells[:SAMPLE] if cell.casefold() not in MISSING]
-    if clocks := [cell for cell in sample if is_clock(cell)]:
+    clocks = [cell for cell in sample if is_clock(cell)]
+    if 2 * len(clocks) > len(sample):
         named = "time" in ranks(header_parts(head)[0][0])
         return [("time", _clock(8 if named else 9, i, stated_units(head, below, "time", {}), cells, clocks))]
     if sum(not is_number(cell) for cell in sample) > len(sample) / 2:

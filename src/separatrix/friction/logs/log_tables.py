@@ -35,7 +35,8 @@ _SEPARATED = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", " ": "bla
 
 _STARTS = frozenset("0123456789+-.")
 
-PERCENT, ERROR, UNCOMPUTED = "\x1c", "\x1d", "\x1e"
+_BOUND = "\x04"  # in place of a separator in quotes
+PERCENT, ERROR, UNCOMPUTED = "\x01", "\x02", "\x03"
 """Signs in the text of a sheet: behind a fraction shown as a percentage, before an error, for a formula
 without a saved value."""
 
@@ -168,9 +169,9 @@ def _encoding_of(raw: bytes) -> str:
 def fields_of(line: str, separator: str) -> list[str]:
     """Fields of a line, without quotes and the blanks around them; what is in quotes is not divided."""
     if '"' in line:
-        bound = re.sub(r'"[^"]*"', lambda found: found[0].replace(separator, "\x1f"), line)
+        bound = re.sub(r'"[^"]*"', lambda found: found[0].replace(separator, _BOUND), line)
         parts = bound.split() if separator == " " else bound.split(separator)
-        return [part.replace("\x1f", separator).strip().strip('"').strip() for part in parts]
+        return [part.replace(_BOUND, separator).strip().strip('"').strip() for part in parts]
     return line.split() if separator == " " else [part.strip() for part in line.split(separator)]
 
 
@@ -339,7 +340,7 @@ def _part_blocks(part: Part, columns: ColumnMap) -> Iterator[Block]:
     separator = "\t" if part.sheet else separator
     if not separator:
         return
-    found = list(_heads(part, columns, separator, missing))
+    found = list(heads_in(part, columns, separator, missing))
     begin, numbered = 0, dict[str, str]()
     for i, heads in enumerate(found):
         stop = (found[i + 1].line if i + 1 < len(found) else None) or len(part.lines)
@@ -347,14 +348,15 @@ def _part_blocks(part: Part, columns: ColumnMap) -> Iterator[Block]:
         if part.word == "row" and not any(one.strip() for one in heads.names):
             continue
         numbered |= {match[1].casefold(): match[2] for line in above if (match := _NUMBERED.match(line))}
-        name = ", ".join(f"{word} {numbered[word]}" for word in ("run", "step") if word in numbered)
+        words = [f"{word} {numbered[word]}" for word in ("run", "step") if word in numbered]
+        name = ", ".join([*([part.sheet] if part.sheet else []), *words])
         block = Block(part.source, name, heads.names, heads.below, above, [], [], separator, part.word)
         begin = _fill(block, part.lines, heads.first, stop, columns.format, last=stop == len(part.lines))
         if block.rows:
             yield block
 
 
-def _heads(part: Part, columns: ColumnMap, separator: str, missing: Iterable[str]) -> Iterator[Heads]:
+def heads_in(part: Part, columns: ColumnMap, separator: str, missing: Iterable[str]) -> Iterator[Heads]:
     """Where tables begin: at the line that the map names, else at each line with the names that it needs."""
     lines, form, needed = part.lines, columns.format, _needed(columns)
     if form.header_line is not None:
@@ -377,7 +379,9 @@ def _heads(part: Part, columns: ColumnMap, separator: str, missing: Iterable[str
     for i, line in enumerate(lines):
         if not all(any(word in line for word in words) for words in quick):
             continue
-        names = next((one for one in names_of(line, separator) if _needed_in(one, columns)), None)
+        ways = [one for one in names_of(line, separator) if _needed_in(one, columns)]
+        width = next((len(fields_of(below, separator)) for below in lines[i + 1 : i + 9] if below.strip()), 0)
+        names = next((one for one in ways if len(one) == width), ways[0] if ways else None)
         if names is not None:
             first, below = i + 1, [""] * len(names)
             if form.units_below:
@@ -391,6 +395,7 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
     sign, width = block.separator, 0
     rows, numbers = block.rows, []
     ends, skip = form.ends, form.skip
+    is_end = False
     end, usual = stop, sign != " " and not any(one[:1] in _STARTS for one in (*ends, *skip))
     for i in range(first, stop):
         line = lines[i]
@@ -404,18 +409,24 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
         fields = fields_of(line, sign)
         while len(fields) > (width or len(block.heads)) and not fields[-1]:
             fields.pop()
+        has_value = any(is_number(one) or is_clock(one) or one.casefold() in MISSING for one in fields)
+        if not rows and not any(block.below) and is_units(fields):
+            block.below = (fields + [""] * len(block.heads))[: len(block.heads)]
+            continue
         due = (width,) if width else _widths(block.heads, sign)
-        if (ends and begin.startswith(ends)) or len(fields) not in due:
+        is_end = bool(ends) and begin.startswith(ends)
+        if is_end or len(fields) not in due or not has_value:
+            if form.header_line is not None and not rows:
+                continue
             end = i
             break
         width = width or len(fields)
-        rows.append(line if line.count(sign) == width - 1 and '"' not in line else "\x1f".join(fields))
+        rows.append(line if line.count(sign) == width - 1 and '"' not in line else _BOUND.join(fields))
         numbers.append(i + 1)
     block.lines = numbers
-    _check_rest(block, lines, end, stop, width, last=last)
-    if not rows:
-        return first
-    return end
+    if rows and not is_end:
+        _check_rest(block, lines, end, stop, width, last=last)
+    return end if rows else first
 
 
 def _widths(heads: Sequence[str], separator: str) -> tuple[int, ...]:
@@ -429,8 +440,6 @@ def _widths(heads: Sequence[str], separator: str) -> tuple[int, ...]:
 
 def _check_rest(block: Block, lines: Sequence[str], end: int, stop: int, width: int, *, last: bool) -> None:
     """Refuse lines behind the rows that are like rows: the table is broken there, or a row is damaged."""
-    if not block.rows:
-        return
     for i in range(end, stop):
         fields = fields_of(lines[i], block.separator)
         filled = [one for one in fields if one]
@@ -450,7 +459,7 @@ def cells_of(block: Block, places: Sequence[int]) -> list[list[str]]:
     found: list[list[str]] = [[] for _ in places]
     pairs = [(cells.append, place) for cells, place in zip(found, places, strict=True)]
     for row in block.rows:
-        fields = row.split("\x1f") if "\x1f" in row else fields_of(row, block.separator)
+        fields = row.split(_BOUND) if _BOUND in row else fields_of(row, block.separator)
         for append, place in pairs:
             append(fields[place] if place < len(fields) else "")
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -247,7 +247,7 @@ def in_si(block: Block, columns: ColumnMap, radius: float | None, notes: list[st
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
     timed = {i: time_form(scales[i][1]) for i in places.get("time", ())}
-    missing = MISSING | {one.casefold() for one in columns.format.missing}
+    own = frozenset(one.casefold() for one in columns.format.missing)
     absent = [float(one) for one in columns.format.missing if _FLOAT.fullmatch(one)]
     every = sorted(scales)
     cells = dict(zip(every, cells_of(block, every), strict=True)) if block.columns is None else {}
@@ -262,7 +262,7 @@ def in_si(block: Block, columns: ColumnMap, radius: float | None, notes: list[st
             if block.columns is not None:
                 values = block.columns[i]
             else:
-                values = _values(block, cells[i], i, decimal, missing, timed.get(i, ""))
+                values = _values(block, cells[i], i, decimal, own, timed.get(i, ""))
                 if not timed.get(i):
                     values = _percentages(block, cells[i], i, values, scales[i])
             values = np.where(np.isin(values, absent), np.nan, values) if absent else values
@@ -279,9 +279,10 @@ def in_si(block: Block, columns: ColumnMap, radius: float | None, notes: list[st
 
 
 def _values(
-    block: Block, cells: Sequence[str], i: int, decimal: str, missing: frozenset[str], form: str
+    block: Block, cells: Sequence[str], i: int, decimal: str, own: frozenset[str], form: str
 ) -> Array:
-    """Numbers or seconds of a column; refused with the row of what is neither."""
+    """Numbers or seconds of a column; refused with the row of what is neither. Errors may be named as missing."""
+    missing = MISSING | own | {f"{ERROR}{one}" for one in own}
     values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
     if not wrong:
         return values
@@ -292,9 +293,6 @@ def _values(
     bare = cell.lstrip(ERROR).rstrip(PERCENT)
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
     if cell.startswith(ERROR):
-        if bare.casefold() in missing - MISSING:
-            left = [ERROR if one.lstrip(ERROR).casefold() in missing - MISSING else one for one in cells]
-            return _values(block, left, i, decimal, missing | {ERROR}, form)
         raise InputError(where, "holds an error", bare, cure)
     if form:
         raise InputError(where, f'must be a time ("{form}")', f'"{printable(bare)}"', f"Forms of times: {TIMES}.")
@@ -350,7 +348,7 @@ def raw_log(
     """Log of one table, with the conditions that the column map states for its file."""
     force, radius = (one if isinstance(one := given.get(key), float) else None for key in ("normal_force", "track_radius"))
     notes: list[str] = []
-    read = in_si(replace(block, source=source), columns, radius, notes, None)
+    read = in_si(block, columns, radius, notes, None)
     arrays = dict(read.arrays)
     if "friction" in read.places and looks_extreme(head := block.heads[read.places["friction"]].strip()):
         notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
@@ -511,7 +509,7 @@ def _complete(arrays: Arrays, block: Block, source: str) -> Rows:
             here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
             cure = "Split the file there; or, if this column has another meaning, state it in a column map."
             rule = f"{meaning} must not run backwards"
-            raise InputError(replace(block, source=source).at(int(rows[i])), rule, f"{here} after {before}", cure)
+            raise InputError(block.at(int(rows[i])), rule, f"{here} after {before}", cure)
     return kept
 
 
