@@ -93,18 +93,17 @@ def read(path: Path, given: ColumnMap) -> tuple[RawLog, ...]:
         stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
         name = fitting[0].name if fitting else "plain text"
         columns = replace(columns, columns={**columns.columns, **stated}, name=name)
-        try:
-            return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
-        except Unfit as error:
-            draft.questions.append(f"{error.rule}; got {error.got}" if error.got else error.rule)
+        return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
     raise _unmapped(content, draft, text, why)
 
 
 def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> Unmapped:
-    first, more = draft.questions[0], len(draft.questions) - 1
-    rule = "does not state all that is needed" if why is None else f"is like {draft.given.name}, but not the same"
-    others = f" and {more} more question{'s' if more > 1 else ''}" if more else ""
-    error = Unmapped(content.name, rule, f"{printable(first, 250)}{others}", "Write a column map.")
+    first, more = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions) - 1
+    like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
+    rule = f"{like}has an open question: {first}"
+    if more:
+        rule = f"{like}has {more + 1} open questions, the first: {first}"
+    error = Unmapped(content.name, rule, cure="Write a column map.")
     error.draft, error.place = text, content.path.with_name(f"{content.path.name}.map.toml")
     return error
 

@@ -77,6 +77,7 @@ class Draft:
     columns: dict[str, str] = field(default_factory=dict)  # by meaning
     test: list[str] = field(default_factory=list)
     seen: list[str] = field(default_factory=list)
+    cells: list[list[str]] = field(default_factory=list)  # of each column
     questions: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -166,8 +167,6 @@ def _block(part: Part, draft: Draft) -> Block | None:
         line = f"separator = {_toml(separator)}"
         names = " or ".join(_toml(one) for one in others)
         draft.form.append(draft.ask(line, f"or {names}?") if others else line)
-    if any(heads.below) and not form.units_below:
-        draft.form.append("units_below = true")
     block = Block(part.source, part.sheet, heads.names, heads.below, part.lines[: heads.line or 0], separator=separator, word=part.word)
     known = {part.lines[heads.line] if heads.line is not None else None}
     _rows(block, part.lines, heads.first, known, draft)
@@ -194,7 +193,7 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         begin = line.strip()
         if form.ends and begin.startswith(form.ends):
             break
-        if not line.strip(f"{block.separator} \t") or (form.skip and begin.startswith(form.skip)):
+        if not line.strip(f"{block.separator} \t") or begin.startswith((*(one for one in form.skip if not one[0].isdigit()), "\0")):
             continue
         if line in heads:
             between, is_first, heads = [], False, heads | {block.separator.join(block.below)}
@@ -232,6 +231,7 @@ def _draft(block: Block, draft: Draft) -> Draft:
         cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
     else:
         cells = cells_of(block, places)
+    draft.cells = cells
     options: dict[str, list[Option]] = {}
     for i in places:
         for meaning, option in _options(block, i, cells[i]):
@@ -259,10 +259,13 @@ def _options(block: Block, i: int, cells: Sequence[str]) -> list[tuple[str, Opti
     if sum(not is_number(cell) for cell in sample) > len(sample) / 2:
         return []
     found = []
-    for name, _ in header_parts(head):
+    is_extreme = looks_extreme(header_parts(head)[0][0])
+    for name, unit in header_parts(head):
         names = {name, name.rpartition(".")[2]}
         meanings = {meaning: rank for one in names for meaning, rank in ranks(one).items()}
-        if looks_extreme(name):
+        if unit.isdigit():
+            meanings = {}  # a second station, COF_2
+        if is_extreme:
             meanings = {key: rank for key, rank in meanings.items() if "friction" not in key and "force" not in key}
         for meaning, rank in meanings.items():
             stated = stated_units(head, below, meaning, {})
@@ -271,7 +274,7 @@ def _options(block: Block, i: int, cells: Sequence[str]) -> list[tuple[str, Opti
             known = known or (not stated and meaning in ("friction", "cycles") and len(meanings) == 1)
             if meaning in ("friction", "tangential_force") and looks_like_torque(head, below):
                 known = False
-            found.append((meaning, Option(rank, i, stated[0] if stated else "", known)))
+            found.append((meaning, Option(rank, i, (stated[0] if known else ", ".join(stated)) if stated else "", known)))
         if any(plain(one) in POSITIONS for one in names):
             found.append(("position", Option(0, i, "", known=True)))
         if found:
@@ -316,12 +319,21 @@ def _given(block: Block, draft: Draft) -> set[int]:
     for meaning, one in draft.given.columns.items():
         places = matching(one.names, block.heads) if one.number is None else [one.number - 1]
         if places and max(places) < len(block.heads):
-            draft.columns[meaning] = _stated(meaning, one)
+            draft.columns[meaning] = _of_twins(draft, meaning, one, places)
             used |= set(places)
         elif not one.optional:
             name = one.names[0] if one.names else f"number {one.number}"
-            draft.questions.append(f"no column {_toml(name)} for {meaning}")
+            draft.questions.append(f"no column {_toml(name)}, which the column map names as {meaning}")
     return used
+
+
+def _of_twins(draft: Draft, meaning: str, one: ColumnChoice, places: Sequence[int]) -> str:
+    """The line of columns of one name; asked by number where their numbers differ."""
+    if all(draft.cells[i] == draft.cells[places[0]] for i in places[1:]):
+        return _stated(meaning, one)
+    line = _stated(meaning, replace(one, names=(), number=places[0] + 1))
+    others = " or ".join(str(i + 1) for i in places[1:])
+    return draft.ask(line, f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {others}?")
 
 
 def _stated(meaning: str, one: ColumnChoice) -> str:
@@ -332,14 +344,16 @@ def _stated(meaning: str, one: ColumnChoice) -> str:
     return f"{meaning} = {{ {inside} }}" if more else f"{meaning} = {_toml(name)}"
 
 
-def _line(block: Block, meaning: str, option: Option, unit: str = "") -> str:
+def _line(draft: Draft, block: Block, meaning: str, option: Option, unit: str = "") -> str:
     """One line of [columns]: the name without its unit where that is unique, else the whole, or the number."""
     head = " ".join(block.heads[option.index].split())
     bare = header_parts(head)[0][0]
     named = bare if bare and matching([bare], block.heads) == [option.index] else head
     choice = ColumnChoice(names=(named,) if named else (), number=None if named else option.index + 1)
     unit = unit or (option.unit if meaning == "time" and time_form(option.unit) else "")
-    return _stated(meaning, replace(choice, unit=unit or None))
+    choice = replace(choice, optional=meaning in ("temperature", "wear_depth"))
+    places = matching([named], block.heads) if named else [option.index]
+    return _of_twins(draft, meaning, replace(choice, unit=unit or None), places)
 
 
 def _decide(block: Block, draft: Draft, options: dict[str, list[Option]], used: set[int]) -> None:
@@ -347,7 +361,9 @@ def _decide(block: Block, draft: Draft, options: dict[str, list[Option]], used: 
     free = {key: [one for one in some if one.index not in used] for key, some in options.items()}
     sure = {key: _best([one for one in free.get(key, ()) if one.known]) for key in (*MEANINGS, "position")}
     has_load = "normal_force" in draft.columns or bool(sure["normal_force"]) or "normal_force" in draft.given.test
+    near = sure["friction"] or free.get("friction") or any(map(looks_like_friction, block.heads))
     by_forces = "tangential_force" in draft.columns or (bool(sure["tangential_force"]) and has_load)
+    by_forces = by_forces or (bool(free.get("tangential_force")) and not near)
     needed = set()
     if "friction" not in draft.columns and ("tangential_force" in draft.columns or (by_forces and not sure["friction"])):
         needed |= {"tangential_force", "normal_force"}
@@ -371,7 +387,7 @@ def _decide(block: Block, draft: Draft, options: dict[str, list[Option]], used: 
             elif meaning in ("temperature", "wear_depth", "normal_force", "distance"):
                 head = printable(block.heads[rest[0].index].strip())
                 draft.notes.append(f'column "{head}" has no known unit and is not used as {meaning.replace("_", " ")}')
-    for meaning in needed - draft.columns.keys():
+    for meaning in sorted(needed - draft.columns.keys()):
         _ask_column(block, draft, meaning)
     _shapes(block, draft, options, taken)
     used |= taken
@@ -384,9 +400,14 @@ def _best(options: Sequence[Option]) -> list[Option]:
 
 def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool) -> None:
     """The line of columns that are certain; asked where several of other names are."""
-    line = _line(block, meaning, chosen[0])
+    count = len(draft.questions)
+    line = _line(draft, block, meaning, chosen[0])
     names = list(dict.fromkeys(_toml(block.heads[one.index].strip()) for one in chosen))
     units = {scale_of(one.unit, meaning) if one.unit else None for one in chosen}
+    if len(draft.questions) > count and not is_needed:
+        del draft.questions[count:]
+        draft.notes.append(f"columns {names[0]} differ, and none is used as {meaning.replace('_', ' ')}")
+        return
     if len(names) > 1 or len(units) > 1:
         if not is_needed:
             draft.notes.append(f"columns {', '.join(names)} could all be the {meaning}, and none is used")
@@ -407,12 +428,12 @@ def _ask_unit(block: Block, draft: Draft, meaning: str, option: Option) -> None:
     usual = USUAL.get(meaning, "N")
     unit = MASSES.get(option.unit, UNKNOWN) if option.unit else ("mm:ss" if option.question else usual)
     said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
-    draft.columns[meaning] = draft.ask(_line(block, meaning, option, unit), f"column {head}: {said}")
+    draft.columns[meaning] = draft.ask(_line(draft, block, meaning, option, unit), f"column {head}: {said}")
 
 
 def _ask_torque(block: Block, draft: Draft, option: Option) -> None:
     unit = next((one for one in (block.below[option.index], header_parts(block.heads[option.index])[0][1]) if torque_scale(one)), UNKNOWN)
-    line = _line(block, "tangential_force", option, unit)
+    line = _line(draft, block, "tangential_force", option, unit)
     draft.columns["tangential_force"] = draft.ask(line, "a torque: write the radius of its track below [test]")
     if "track_radius" not in draft.given.test:
         draft.test.append('track_radius = "... mm"')
@@ -432,7 +453,7 @@ def _ask_column(block: Block, draft: Draft, meaning: str) -> None:
     elif meaning == "friction" and near:
         names = ", ".join(_toml(block.heads[i].strip()) for i in near[:4])
         option = Option(0, near[0], "", known=False)
-        draft.columns[meaning] = draft.ask(_line(block, meaning, option, "-"), f"the friction by its name? There are {names}")
+        draft.columns[meaning] = draft.ask(_line(draft, block, meaning, option, "-"), f"the friction by its name? There are {names}")
     else:
         name = f'{{ name = 1, unit = "{UNKNOWN}" }}' if not any(block.heads) else f'{{ name = "{UNKNOWN}", unit = "{UNKNOWN}" }}'
         draft.columns[meaning] = draft.ask(f"{meaning} = {name}", f"which column is the {meaning.replace('_', ' ')}?")
@@ -444,11 +465,11 @@ def _shapes(block: Block, draft: Draft, options: dict[str, list[Option]], taken:
     speeds = [one for one in speeds if one.index not in taken and one.unit.casefold() not in ("v", "a")]
     has_speed = {"slip_speed", "rotational_speed", "motion"} & draft.columns.keys()
     if speeds and not has_speed:
-        draft.columns["motion"] = _line(block, "motion", min(speeds, key=lambda one: one.index))
+        draft.columns["motion"] = _line(draft, block, "motion", min(speeds, key=lambda one: one.index))
     forces = [one for one in options.get("tangential_force", ()) if one.index not in taken]
     forces = [one for one in forces if not looks_like_torque(block.heads[one.index])]
     if forces and "stroke" not in draft.columns and "friction" in draft.columns:
-        draft.columns["stroke"] = _line(block, "stroke", forces[0])
+        draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
 
 
 def _decimal(block: Block, draft: Draft, cells: Sequence[Sequence[str]], options: dict[str, list[Option]]) -> None:

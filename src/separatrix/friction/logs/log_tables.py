@@ -395,8 +395,8 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
     sign, width = block.separator, 0
     rows, numbers = block.rows, []
     ends, skip = form.ends, form.skip
-    is_end = False
-    end, usual = stop, sign != " " and not any(one[:1] in _STARTS for one in (*ends, *skip))
+    words = tuple(one for one in skip if one[:1] not in _STARTS)  # others may be the beginning of a row, too
+    is_end, end, usual = False, stop, sign != " " and not any(one[:1] in _STARTS for one in ends)
     for i in range(first, stop):
         line = lines[i]
         if width and usual and line[:1] in _STARTS and line.count(sign) == width - 1 and '"' not in line:
@@ -404,7 +404,7 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
             numbers.append(i + 1)
             continue
         begin = line.strip()
-        if not line.strip(f"{sign} \t") or (skip and begin.startswith(skip)):
+        if not line.strip(f"{sign} \t") or (words and begin.startswith(words)):
             continue
         fields = fields_of(line, sign)
         while len(fields) > (width or len(block.heads)) and not fields[-1]:
@@ -416,7 +416,7 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
         due = (width,) if width else _widths(block.heads, sign)
         is_end = bool(ends) and begin.startswith(ends)
         if is_end or len(fields) not in due or not has_value:
-            if form.header_line is not None and not rows:
+            if (form.header_line is not None and not rows) or (skip and not is_end and begin.startswith(skip)):
                 continue
             end = i
             break
