@@ -119,7 +119,9 @@ def test_the_parts_of_a_sheet_may_have_a_prefix(tmp_path):
     rows = [["Time [s]", "COF [%]"], *([float(i), Shown(0.12, 2 * (i < 4))] for i in range(5))]
     text = re.sub(r"<(/?)(?=[a-z])", r"<\1x:", sheet(rows)).replace("xmlns=", "xmlns:x=")
     text = re.sub(r' (r="[A-Z0-9]+") (s="2")', r" \2 \1", text)
-    with pytest.raises(InputError, match=r"row 6, column .COF \[%\]. is a plain number among percentages; got 0\.12\."):
+    with pytest.raises(
+        InputError, match=r"row 6, column .COF \[%\]. is a plain number among percentages; got 0\.12\."
+    ):
         logs(tmp_path, workbook({"a": rows}, xl__worksheets__sheet1_dot_xml=text))
 
 
@@ -218,7 +220,10 @@ WRONG = {
     "text among numbers": (changed(4, 1, "high"), AT_B7 + '"high". If that means a missing value'),
     "a decimal comma as text": (changed(4, 1, "0,12"), AT_B7 + '"0,12"'),
     "a truth value": (changed(4, 1, True), AT_B7 + '"True"'),
-    "a formula never computed": (changed(0, 1, Formula("A5/10")), 'row 3, column "COF" holds a formula without a saved'),
+    "a formula never computed": (
+        changed(0, 1, Formula("A5/10")),
+        'row 3, column "COF" holds a formula without a saved',
+    ),
     "one further down": (changed(4, 1, Formula("A5/10")), IN_B7 + "holds a formula without a saved value. "),
     "an error": (changed(4, 1, Fault("#DIV/0!")), IN_B7 + "holds an error; got #DIV/0!. If that means a mis"),
     "an error of the name of a missing value": (changed(4, 1, Fault("#N/A")), IN_B7 + "holds an error"),

@@ -152,9 +152,7 @@ def test_a_force_without_unit_is_not_offered_as_the_friction(tmp_path):
     assert "FrictionForce" not in str(refusal.value)
     (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": "?"}})
     assert set(log.friction.tolist()) == {0.4}
-    with pytest.raises(
-        InputError, match=r'"FrictionForce" is a force by its name'
-    ):
+    with pytest.raises(InputError, match=r'"FrictionForce" is a force by its name'):
         read(tmp_path, FORCE_ONLY, {"columns": {"friction": "FrictionForce"}})
 
 

@@ -66,7 +66,9 @@ def with_draft_written(error: InputError) -> InputError:
         with error.place.open("x", encoding="utf-8") as file:
             file.write(error.draft)
     except FileExistsError:
-        cure = f"There is a file {name}: look at it, and add: --map {name}. Without it, a new draft is written."
+        cure = (
+            f"There is a file {name}: look at it, and add: --map {name}. Without it, a new draft is written."
+        )
     except OSError as fault:
         cure = f"A draft of a column map could not be written beside the log: {fault.strerror}."
     return error.at(error.path, cure=cure)
@@ -112,9 +114,15 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
     """The log of each table that the column map names, or of all; the same numbers again are not a test."""
     parts = [part for block in _tests(content, columns) for part in _by_step(block, columns)]
     if not parts:
-        listed = ", ".join(f'"{one.names[0]}"' for one in columns.columns.values() if one.names and not one.optional)
+        listed = ", ".join(
+            f'"{one.names[0]}"' for one in columns.columns.values() if one.names and not one.optional
+        )
         rule = "has no table with the columns that the column map needs"
-        raise Unfit(content.name, rule, cure=f"They are {listed or 'given by number'}; under them, two rows of numbers.")
+        raise Unfit(
+            content.name,
+            rule,
+            cure=f"They are {listed or 'given by number'}; under them, two rows of numbers.",
+        )
     if len({(part.source, part.name) for part in parts}) < len(parts):
         sheets = {part.source: part.name for part in parts if content.parts and content.parts[0].sheet}
         named = [f"{name}, " if (name := sheets.get(part.source)) else "" for part in parts]
@@ -124,13 +132,17 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
     for part in _named(parts, content, columns):
         source = f"{content.name}, {printable(part.name)}" if part.name else content.name
         try:
-            log = raw_log(part, source, content.checksum, content.words, columns, columns.conditions(content.path))
+            log = raw_log(
+                part, source, content.checksum, content.words, columns, columns.conditions(content.path)
+            )
             found.append((part.name, replace(log, series=_series(part, content, columns))))
         except InputError as error:
             wrong = wrong or error
     if wrong is not None and found and not isinstance(wrong, Unfit):
         names = ", ".join(shown(name) for name, _ in found)
-        raise wrong.at(wrong.path, cure=f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip())
+        raise wrong.at(
+            wrong.path, cure=f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
+        )
     if wrong is not None:
         raise wrong
     return tuple(_once(found, content, parts))
@@ -141,7 +153,9 @@ def _named(parts: Sequence[Block], content: Content, columns: ColumnMap) -> list
     sheets = {part.sheet for part in content.parts} - {""}
     for name in columns.format.tables:
         if name not in sheets and name not in {part.name for part in parts}:
-            there = ", ".join(f'"{printable(one)}"' for one in (*sheets, *(part.name for part in parts)) if one)
+            there = ", ".join(
+                f'"{printable(one)}"' for one in (*sheets, *(part.name for part in parts)) if one
+            )
             cure = f"It has {there}." if there else "It has one table, without a name."
             raise InputError(content.name, f'has no table "{printable(name)}"', cure=cure)
     wanted = set(columns.format.tables) - sheets
@@ -152,7 +166,9 @@ def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence
     """Logs without those of the same numbers, and with a note on sheets that are not read."""
     kept: dict[bytes, RawLog] = {}
     for _, log in found:
-        numbers = b"".join(one.tobytes() for one in (log.friction, *(getattr(log, name) for name in log.abscissae)))
+        numbers = b"".join(
+            one.tobytes() for one in (log.friction, *(getattr(log, name) for name in log.abscissae))
+        )
         if numbers in kept:
             note = f"{log.source} has the same numbers and is left out"
             log = replace(kept[numbers], notes=(*kept[numbers].notes, note))
@@ -178,8 +194,8 @@ def _tests(content: Content, columns: ColumnMap) -> list[Block]:
 
 def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
     """Whether a table under repeated names goes on where the one before it ends: a page of one test."""
-    same = (before.source, before.heads, before.below) == (block.source, block.heads, block.below)
-    if not same or block.name or any(line.strip() for line in block.above) or block.columns is not None:
+    parts = [(one.source, one.name, one.heads, one.below) for one in (before, block)]
+    if parts[0] != parts[1] or any(line.strip() for line in block.above) or block.columns is not None:
         return False
     abscissae = {name: one for name, one in columns.columns.items() if name in ABSCISSAE}
     rows, lines = before.rows[-1:] + block.rows[:1], [before.lines[-1], block.lines[0]]
@@ -190,7 +206,11 @@ def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
     except InputError:
         return False
     clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""
-    return all(0.0 <= np.diff(one)[0] < (43_200.0 if clock else np.inf) for one in arrays.values() if np.isfinite(one).all())
+    return all(
+        0.0 <= np.diff(one)[0] < (43_200.0 if clock else np.inf)
+        for one in arrays.values()
+        if np.isfinite(one).all()
+    )
 
 
 def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
@@ -202,6 +222,8 @@ def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
     (cells,) = cells_of(block, [place])
     bounds = [0, *(i for i in range(1, len(cells)) if cells[i] != cells[i - 1]), len(cells)]
     names: list[str] = []
+    single = [f"{block.heads[place].strip()} {cells[a]}" for a, b in pairwise(bounds) if b - a == 1]
+    note = [f"steps of a single row are left out: {printable(', '.join(single), 80)}"] if single else []
     for start, stop in pairwise(bounds):
         if len(bounds) == 2:
             yield block
@@ -211,7 +233,8 @@ def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
             again = names.count(names[-1])
             name = names[-1] if again == 1 else f"{names[-1]}, again {again}"
             name = f"{block.name}, {name}" if block.name else name
-            yield replace(block, name=name, rows=block.rows[start:stop], lines=block.lines[start:stop])
+            rows, lines = block.rows[start:stop], block.lines[start:stop]
+            yield replace(block, name=name, rows=rows, lines=lines, notes=note)
 
 
 def _series(block: Block, content: Content, columns: ColumnMap) -> str:

@@ -101,7 +101,9 @@ def _lines_of_sheet(sheet: Any, percent: set[int], label: str) -> list[str]:
             timedelta_formats=book._timedelta_formats,
         )
         for number, cells in parser.parse():
-            used = {cell["column"]: _written(cell, percent) for cell in cells if cell["column"] <= MOST_COLUMNS}
+            used = {
+                cell["column"]: _written(cell, percent) for cell in cells if cell["column"] <= MOST_COLUMNS
+            }
             used = {column: text for column, text in used.items() if text}
             count += len(used)
             if count > MOST_CELLS or number > MOST_ROWS:

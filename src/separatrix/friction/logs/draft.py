@@ -46,7 +46,14 @@ from separatrix.ground.units import printable
 
 CHECK = "# guess, check"
 UNKNOWN = "..."  # is refused until it is edited
-USUAL = {"time": "s", "distance": "m", "temperature": "degC", "wear_depth": "um", "friction": "-", "cycles": "-"}
+USUAL = {
+    "time": "s",
+    "distance": "m",
+    "temperature": "degC",
+    "wear_depth": "um",
+    "friction": "-",
+    "cycles": "-",
+}
 """Units that a draft offers where the file states none, to be checked."""
 
 SAMPLE = 50  # rows of a column that are looked at
@@ -89,7 +96,15 @@ class Draft:
     def text(self, name: str) -> str:
         """The map, ready to be looked at."""
         begin = f'# Draft of a column map for {name}: look at each line with "guess, check", then name it with --map.'
-        lines = [begin, f"name = {_toml(f'map of {name}'[:200])}", "", "[format]", *self.form, "", "[columns]"]
+        lines = [
+            begin,
+            f"name = {_toml(f'map of {name}'[:200])}",
+            "",
+            "[format]",
+            *self.form,
+            "",
+            "[columns]",
+        ]
         lines += self.columns.values()
         stated = self.given.stated
         test = [f"{key} = {_toml(value)}" for key, value in _section(stated.get("test")).items()]
@@ -97,7 +112,9 @@ class Draft:
         for pattern, section in _section(stated.get("files")).items():
             lines += ["", f"[files.{_toml(pattern)}]"]
             lines += [f"{key} = {_toml(value)}" for key, value in _section(section).items()]
-        return "\n".join([*lines, "", "# The columns, with their first, middle and last values:", *self.seen, ""])
+        return "\n".join(
+            [*lines, "", "# The columns, with their first, middle and last values:", *self.seen, ""]
+        )
 
 
 def _section(value: object) -> Mapping[str, object]:
@@ -132,14 +149,20 @@ def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draf
         listed = ", ".join(_toml(one) for one, _ in drafts)
         found.form.append(found.ask(f"tables = [{_toml(name)}]", f"one of {listed}?"))
     if why is not None:
-        found.form.insert(0, found.ask(f"# {given.name}", f"the map of this layout does not fit: {why.rule} {why.got}"))
+        found.form.insert(
+            0, found.ask(f"# {given.name}", f"the map of this layout does not fit: {why.rule} {why.got}")
+        )
     return found
 
 
 def _no_table(content: Content) -> InputError:
     cure = "It needs a line of column names above at least two rows; a column map can state where."
     for part in content.parts:
-        rows = [i for i, line in enumerate(part.lines[:500]) if is_row(fields_of(line, separator_of([line])[0] or ","))]
+        rows = [
+            i
+            for i, line in enumerate(part.lines[:500])
+            if is_row(fields_of(line, separator_of([line])[0] or ","))
+        ]
         if len(rows) == 1:
             where = f"{content.name}: {part.word} {rows[0] + 1}"
             return InputError(where, "is the only row", cure="A log has at least two.")
@@ -167,7 +190,15 @@ def _block(part: Part, draft: Draft) -> Block | None:
         line = f"separator = {_toml(separator)}"
         names = " or ".join(_toml(one) for one in others)
         draft.form.append(draft.ask(line, f"or {names}?") if others else line)
-    block = Block(part.source, part.sheet, heads.names, heads.below, part.lines[: heads.line or 0], separator=separator, word=part.word)
+    block = Block(
+        part.source,
+        part.sheet,
+        heads.names,
+        heads.below,
+        part.lines[: heads.line or 0],
+        separator=separator,
+        word=part.word,
+    )
     known = {part.lines[heads.line] if heads.line is not None else None}
     _rows(block, part.lines, heads.first, known, draft)
     if heads.line is None:
@@ -193,7 +224,9 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         begin = line.strip()
         if form.ends and begin.startswith(form.ends):
             break
-        if not line.strip(f"{block.separator} \t") or begin.startswith((*(one for one in form.skip if not one[0].isdigit()), "\0")):
+        if not line.strip(f"{block.separator} \t") or begin.startswith(
+            (*(one for one in form.skip if not one[0].isdigit()), "\0")
+        ):
             continue
         if line in heads:
             between, is_first, heads = [], False, heads | {block.separator.join(block.below)}
@@ -207,7 +240,9 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         if names and width > 1:
             name = fields_of(lines[names[0]], block.separator)[0]
             question = f"{block.word} {names[0] + 1} begins another table, which is not read: {lines[names[0]].strip()[:60]!r}"
-            draft.form.append(draft.ask(f"ends = {_toml([*form.ends, name or lines[names[0]].strip()])}", question))
+            draft.form.append(
+                draft.ask(f"ends = {_toml([*form.ends, name or lines[names[0]].strip()])}", question)
+            )
             break
         for k in between[:20] if block.rows else ():
             word = re.match(r"\D{0,30}", lines[k].strip())
@@ -219,7 +254,9 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         skip = [*form.skip, *list(odd)[:20]]
         number = next(iter(odd.values()))
         draft.form = [line for line in draft.form if not line.startswith("skip =")]
-        question = f"{block.word} {number + 1} is among the rows and is left out: {lines[number].strip()[:60]!r}"
+        question = (
+            f"{block.word} {number + 1} is among the rows and is left out: {lines[number].strip()[:60]!r}"
+        )
         draft.form.append(draft.ask(f"skip = {_toml(skip)}", question))
 
 
@@ -266,7 +303,9 @@ def _options(block: Block, i: int, cells: Sequence[str]) -> list[tuple[str, Opti
         if unit.isdigit():
             meanings = {}  # a second station, COF_2
         if is_extreme:
-            meanings = {key: rank for key, rank in meanings.items() if "friction" not in key and "force" not in key}
+            meanings = {
+                key: rank for key, rank in meanings.items() if "friction" not in key and "force" not in key
+            }
         for meaning, rank in meanings.items():
             stated = stated_units(head, below, meaning, {})
             scales = {scale_of(one, meaning) for one in stated}
@@ -274,7 +313,12 @@ def _options(block: Block, i: int, cells: Sequence[str]) -> list[tuple[str, Opti
             known = known or (not stated and meaning in ("friction", "cycles") and len(meanings) == 1)
             if meaning in ("friction", "tangential_force") and looks_like_torque(head, below):
                 known = False
-            found.append((meaning, Option(rank, i, (stated[0] if known else ", ".join(stated)) if stated else "", known)))
+            found.append(
+                (
+                    meaning,
+                    Option(rank, i, (stated[0] if known else ", ".join(stated)) if stated else "", known),
+                )
+            )
         if any(plain(one) in POSITIONS for one in names):
             found.append(("position", Option(0, i, "", known=True)))
         if found:
@@ -293,7 +337,9 @@ def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clock
         return Option(rank, i, "iso", known=True, question=question)
     if dates := [match for one in cells if (match := _DATE.fullmatch(one))]:
         form, is_certain = _date_format(dates)
-        return Option(rank, i, form, known=True, question="" if is_certain else "is the day before the month?")
+        return Option(
+            rank, i, form, known=True, question="" if is_certain else "is the day before the month?"
+        )
     if all(re.fullmatch(r"\d{1,4}:\d{1,2}(?:[.,]\d+)?", one) for one in clocks):
         return Option(rank, i, "", known=False, question="minutes and seconds, or hours and minutes (hh:mm)?")
     return Option(rank, i, UNKNOWN, known=False)
@@ -333,7 +379,10 @@ def _of_twins(draft: Draft, meaning: str, one: ColumnChoice, places: Sequence[in
         return _stated(meaning, one)
     line = _stated(meaning, replace(one, names=(), number=places[0] + 1))
     others = " or ".join(str(i + 1) for i in places[1:])
-    return draft.ask(line, f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {others}?")
+    return draft.ask(
+        line,
+        f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {others}?",
+    )
 
 
 def _stated(meaning: str, one: ColumnChoice) -> str:
@@ -360,12 +409,16 @@ def _decide(block: Block, draft: Draft, options: dict[str, list[Option]], used: 
     """One line of the map for each meaning that is there: certain, asked, or noted as not used."""
     free = {key: [one for one in some if one.index not in used] for key, some in options.items()}
     sure = {key: _best([one for one in free.get(key, ()) if one.known]) for key in (*MEANINGS, "position")}
-    has_load = "normal_force" in draft.columns or bool(sure["normal_force"]) or "normal_force" in draft.given.test
+    has_load = (
+        "normal_force" in draft.columns or bool(sure["normal_force"]) or "normal_force" in draft.given.test
+    )
     near = sure["friction"] or free.get("friction") or any(map(looks_like_friction, block.heads))
     by_forces = "tangential_force" in draft.columns or (bool(sure["tangential_force"]) and has_load)
     by_forces = by_forces or (bool(free.get("tangential_force")) and not near)
     needed = set()
-    if "friction" not in draft.columns and ("tangential_force" in draft.columns or (by_forces and not sure["friction"])):
+    if "friction" not in draft.columns and (
+        "tangential_force" in draft.columns or (by_forces and not sure["friction"])
+    ):
         needed |= {"tangential_force", "normal_force"}
         sure["friction"] = []
         free["friction"] = []
@@ -386,7 +439,9 @@ def _decide(block: Block, draft: Draft, options: dict[str, list[Option]], used: 
                 _ask_unit(block, draft, meaning, _best(rest)[0])
             elif meaning in ("temperature", "wear_depth", "normal_force", "distance"):
                 head = printable(block.heads[rest[0].index].strip())
-                draft.notes.append(f'column "{head}" has no known unit and is not used as {meaning.replace("_", " ")}')
+                draft.notes.append(
+                    f'column "{head}" has no known unit and is not used as {meaning.replace("_", " ")}'
+                )
     for meaning in sorted(needed - draft.columns.keys()):
         _ask_column(block, draft, meaning)
     _shapes(block, draft, options, taken)
@@ -412,7 +467,9 @@ def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], 
         if not is_needed:
             draft.notes.append(f"columns {', '.join(names)} could all be the {meaning}, and none is used")
             return
-        others = " or ".join(f"{name} (column {one.index + 1})" for name, one in zip(names[1:], chosen[1:], strict=False))
+        others = " or ".join(
+            f"{name} (column {one.index + 1})" for name, one in zip(names[1:], chosen[1:], strict=False)
+        )
         line = draft.ask(line, f"{names[0]}, or {others or 'its namesake'}?")
     elif chosen[0].question:
         line = draft.ask(line, f"column {names[0]}: {chosen[0].question}")
@@ -422,7 +479,9 @@ def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], 
 def _ask_unit(block: Block, draft: Draft, meaning: str, option: Option) -> None:
     """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
     head = _toml(block.heads[option.index].strip())
-    if meaning == "tangential_force" and looks_like_torque(block.heads[option.index], block.below[option.index]):
+    if meaning == "tangential_force" and looks_like_torque(
+        block.heads[option.index], block.below[option.index]
+    ):
         _ask_torque(block, draft, option)
         return
     usual = USUAL.get(meaning, "N")
@@ -432,9 +491,18 @@ def _ask_unit(block: Block, draft: Draft, meaning: str, option: Option) -> None:
 
 
 def _ask_torque(block: Block, draft: Draft, option: Option) -> None:
-    unit = next((one for one in (block.below[option.index], header_parts(block.heads[option.index])[0][1]) if torque_scale(one)), UNKNOWN)
+    unit = next(
+        (
+            one
+            for one in (block.below[option.index], header_parts(block.heads[option.index])[0][1])
+            if torque_scale(one)
+        ),
+        UNKNOWN,
+    )
     line = _line(draft, block, "tangential_force", option, unit)
-    draft.columns["tangential_force"] = draft.ask(line, "a torque: write the radius of its track below [test]")
+    draft.columns["tangential_force"] = draft.ask(
+        line, "a torque: write the radius of its track below [test]"
+    )
     if "track_radius" not in draft.given.test:
         draft.test.append('track_radius = "... mm"')
 
@@ -453,10 +521,18 @@ def _ask_column(block: Block, draft: Draft, meaning: str) -> None:
     elif meaning == "friction" and near:
         names = ", ".join(_toml(block.heads[i].strip()) for i in near[:4])
         option = Option(0, near[0], "", known=False)
-        draft.columns[meaning] = draft.ask(_line(draft, block, meaning, option, "-"), f"the friction by its name? There are {names}")
+        draft.columns[meaning] = draft.ask(
+            _line(draft, block, meaning, option, "-"), f"the friction by its name? There are {names}"
+        )
     else:
-        name = f'{{ name = 1, unit = "{UNKNOWN}" }}' if not any(block.heads) else f'{{ name = "{UNKNOWN}", unit = "{UNKNOWN}" }}'
-        draft.columns[meaning] = draft.ask(f"{meaning} = {name}", f"which column is the {meaning.replace('_', ' ')}?")
+        name = (
+            f'{{ name = 1, unit = "{UNKNOWN}" }}'
+            if not any(block.heads)
+            else f'{{ name = "{UNKNOWN}", unit = "{UNKNOWN}" }}'
+        )
+        draft.columns[meaning] = draft.ask(
+            f"{meaning} = {name}", f"which column is the {meaning.replace('_', ' ')}?"
+        )
 
 
 def _shapes(block: Block, draft: Draft, options: dict[str, list[Option]], taken: set[int]) -> None:
@@ -472,7 +548,9 @@ def _shapes(block: Block, draft: Draft, options: dict[str, list[Option]], taken:
         draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
 
 
-def _decimal(block: Block, draft: Draft, cells: Sequence[Sequence[str]], options: dict[str, list[Option]]) -> None:
+def _decimal(
+    block: Block, draft: Draft, cells: Sequence[Sequence[str]], options: dict[str, list[Option]]
+) -> None:
     """A question where marks may be decimal signs or between thousands."""
     if block.columns is not None or block.word == "row" or draft.given.format.decimal:
         return
@@ -499,7 +577,9 @@ def _steps(block: Block, draft: Draft, cells: Sequence[Sequence[str]], used: set
     times = [i for i in used if "time" in ranks(header_parts(block.heads[i])[0][0])] or place
     for i in times[:1]:
         texts = [cell.replace(",", ".") for cell in cells[i]]
-        values = [float(text) if re.fullmatch(r"[+-]?[0-9]+\.?[0-9]*", text) else float("nan") for text in texts]
+        values = [
+            float(text) if re.fullmatch(r"[+-]?[0-9]+\.?[0-9]*", text) else float("nan") for text in texts
+        ]
         falls = [k for k in range(1, len(values)) if values[k] < values[k - 1]]
         for j, head in enumerate(block.heads if falls else ()):
             few = j not in used and head.strip() and len(set(cells[j])) <= SAMPLE

@@ -233,7 +233,9 @@ def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
         return ""
     match = _VALUE.fullmatch(text.strip())
     if ways := two_ways(text, decimal):
-        return f'{printable(key)} {printable(text)} may be {" or ".join(ways)}; put {first} = "..." under [test]'
+        return (
+            f'{printable(key)} {printable(text)} may be {" or ".join(ways)}; put {first} = "..." under [test]'
+        )
     unit = (match[2] or beside).strip() if match else ""
     for condition in conditions:
         scale = scale_in(unit, QUANTITIES[condition])

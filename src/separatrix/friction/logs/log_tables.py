@@ -54,6 +54,7 @@ class Block:
     lines: Sequence[int] = field(default_factory=list)  # of the file, from 1
     separator: str = "\t"
     word: str = "line"
+    notes: list[str] = field(default_factory=list)
     columns: list[Array] | None = None  # where they are numbers already (TDMS)
 
     def at(self, row: int, column: int | None = None) -> str:
@@ -158,7 +159,13 @@ def _encoding_of(raw: bytes) -> str:
         head = raw[: min(len(raw), 65536) // 2 * 2]
         low, high = head[0::2].count(0), head[1::2].count(0)
         most = 0.4 * len(head)
-        return "utf-16-le" if low == 0 and high > most else "utf-16-be" if high == 0 and low > most else "latin-1"
+        return (
+            "utf-16-le"
+            if low == 0 and high > most
+            else "utf-16-be"
+            if high == 0 and low > most
+            else "latin-1"
+        )
     try:
         raw.decode("utf-8")
     except UnicodeDecodeError:
@@ -263,7 +270,11 @@ def first_table(
 ) -> Heads | None:
     """Where the first two rows are, one below the other, and what of the lines above them are names and units."""
     blank = separator == " "
-    rows = (i for i in range(start, min(len(lines), start + HEAD)) if is_row(fields_of(lines[i], separator), missing, blanks=blank))
+    rows = (
+        i
+        for i in range(start, min(len(lines), start + HEAD))
+        if is_row(fields_of(lines[i], separator), missing, blanks=blank)
+    )
     last = -2
     for i in rows:
         if i == last + 1 and len(fields_of(lines[i], separator)) == len(fields_of(lines[last], separator)):
@@ -416,7 +427,9 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
         due = (width,) if width else _widths(block.heads, sign)
         is_end = bool(ends) and begin.startswith(ends)
         if is_end or len(fields) not in due or not has_value:
-            if (form.header_line is not None and not rows) or (skip and not is_end and begin.startswith(skip)):
+            if (form.header_line is not None and not rows) or (
+                skip and not is_end and begin.startswith(skip)
+            ):
                 continue
             end = i
             break
@@ -468,4 +481,3 @@ def cells_of(block: Block, places: Sequence[int]) -> list[list[str]]:
 def described_form(separator: str, decimal: str) -> str:
     """How a text is written, in words."""
     return f"{_SEPARATED[separator]}, decimal {'comma' if decimal == ',' else 'point'}"
-

@@ -60,7 +60,14 @@ CLOCKS = {
 }
 """Units of times written as text, with the spellings of each; a format of a date is another: "%d.%m.%Y"."""
 
-_FORCES = ("force", "kraft", "load", "newton", "torque", "moment")  # in names of what is not a ratio of forces
+_FORCES = (
+    "force",
+    "kraft",
+    "load",
+    "newton",
+    "torque",
+    "moment",
+)  # in names of what is not a ratio of forces
 _NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
 _COUNTS = frozenset(_TABLE["words"]["counts"].split())
 UNIT_WORDS = frozenset(

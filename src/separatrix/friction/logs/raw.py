@@ -75,12 +75,19 @@ def decimal_of(cells: Iterable[Sequence[str]], separator: str, source: str) -> s
     for column in cells:
         for cell in column:
             comma, point = cell.count(","), cell.count(".")
-            if not (comma or point) or is_clock(cell) or cell.casefold() in MISSING or not cell[-1:].isdigit():
+            if (
+                not (comma or point)
+                or is_clock(cell)
+                or cell.casefold() in MISSING
+                or not cell[-1:].isdigit()
+            ):
                 continue
             found |= ({",": cell} if comma else {}) | ({".": cell} if point else {})
             certain = certain or not _GROUPED.fullmatch(cell)
             if len(found) > 1 or comma + point > 1:
-                cure = "Export the file without marks between thousands, or write below [format]: decimal = ..."
+                cure = (
+                    "Export the file without marks between thousands, or write below [format]: decimal = ..."
+                )
                 got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
                 raise Unfit(source, "has points and commas in its numbers", got, cure)
     if found and not certain:
@@ -131,7 +138,9 @@ def seconds(cells: Sequence[str], form: str, missing: frozenset[str] = MISSING) 
         if zones.any() and not zones[there].all():
             return found, np.flatnonzero(there & ~zones).tolist()
         dates = pd.Series([text.replace(",", ".") for text in texts], dtype="str")
-        moments = pd.to_datetime(dates, format="ISO8601" if form == "iso" else form, errors="coerce", utc=True)
+        moments = pd.to_datetime(
+            dates, format="ISO8601" if form == "iso" else form, errors="coerce", utc=True
+        )
         fits = moments.notna().to_numpy()
         if fits.any():
             found[fits] = (moments[fits] - moments[fits].iloc[0]).dt.total_seconds()
@@ -214,14 +223,24 @@ def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[S
     if meaning in SHAPES:
         return Scale(), (stated or [""])[0]
     where, name = f'{block.source}: column "{printable(head)}"', shown(head)
-    cure = f"Below [columns] in a column map, with the true unit: {meaning} = {{ name = {name}, unit = \"...\" }}."
+    cure = (
+        f'Below [columns] in a column map, with the true unit: {meaning} = {{ name = {name}, unit = "..." }}.'
+    )
     known = {unit: scale_of(unit, meaning) for unit in stated}
     if column.unit is not None:
-        wrong = [unit for unit, scale in known.items() if scale is not None and not _alike(unit, column.unit, meaning)]
+        wrong = [
+            unit
+            for unit, scale in known.items()
+            if scale is not None and not _alike(unit, column.unit, meaning)
+        ]
         wrong += [unit for unit, scale in known.items() if scale is None and columns.is_shipped]
         if wrong:
-            cure = f"Below [columns] of a column map: {meaning} = {{ name = {name}, unit = {shown(wrong[0])} }}."
-            raise Unfit(where, f'is in "{column.unit}" by its map', f'"{printable(wrong[0])}" in the file', cure)
+            cure = (
+                f"Below [columns] of a column map: {meaning} = {{ name = {name}, unit = {shown(wrong[0])} }}."
+            )
+            raise Unfit(
+                where, f'is in "{column.unit}" by its map', f'"{printable(wrong[0])}" in the file', cure
+            )
         return scale_of(column.unit, meaning) or Scale(), column.unit
     if meaning == "friction" and looks_like_force(head):
         rule, cure = "is a force by its name, not a friction", "Name it as tangential_force, with its unit."
@@ -242,7 +261,9 @@ def _alike(unit: str, other: str, meaning: str) -> bool:
     return scale_of(unit, meaning) == scale_of(other, meaning) and same
 
 
-def in_si(block: Block, columns: ColumnMap, radius: float | None, notes: list[str], decimal: str | None) -> Read:
+def in_si(
+    block: Block, columns: ColumnMap, radius: float | None, notes: list[str], decimal: str | None
+) -> Read:
     """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
@@ -266,7 +287,9 @@ def in_si(block: Block, columns: ColumnMap, radius: float | None, notes: list[st
                 if not timed.get(i):
                     values = _percentages(block, cells[i], i, values, scales[i])
             values = np.where(np.isin(values, absent), np.nan, values) if absent else values
-            made.append(_scaled(block, values, i, meaning, scales[i], columns.columns[meaning], radius, notes))
+            made.append(
+                _scaled(block, values, i, meaning, scales[i], columns.columns[meaning], radius, notes)
+            )
         both = np.isfinite(made).all(axis=0)
         if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
             listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
@@ -295,13 +318,17 @@ def _values(
     if cell.startswith(ERROR):
         raise InputError(where, "holds an error", bare, cure)
     if form:
-        raise InputError(where, f'must be a time ("{form}")', f'"{printable(bare)}"', f"Forms of times: {TIMES}.")
+        raise InputError(
+            where, f'must be a time ("{form}")', f'"{printable(bare)}"', f"Forms of times: {TIMES}."
+        )
     if is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
         cure = f"For a column of times, add to the column map: {TIMES}."
     raise InputError(where, "must be a number", f'"{printable(bare)}"', cure)
 
 
-def _percentages(block: Block, cells: Sequence[str], i: int, values: Array, scale: tuple[Scale, str]) -> Array:
+def _percentages(
+    block: Block, cells: Sequence[str], i: int, values: Array, scale: tuple[Scale, str]
+) -> Array:
     """Numbers of a sheet: what is shown as a percentage is saved as a fraction."""
     shown_so = np.array([PERCENT in cell for cell in cells])
     there = np.isfinite(values)
@@ -325,18 +352,27 @@ def _scaled(
     notes: list[str],
 ) -> Array:
     """A column in SI units; a torque divided by the radius of the track."""
-    where, name = f'{block.source}: column "{printable(block.heads[i].strip())}"', shown(block.heads[i].strip())
-    found = scale[0].of(values) * (1.0 if column.sign > 0 else -1.0) if meaning != "time" else scale[0].of(values)
+    where, name = (
+        f'{block.source}: column "{printable(block.heads[i].strip())}"',
+        shown(block.heads[i].strip()),
+    )
+    found = (
+        scale[0].of(values) * (1.0 if column.sign > 0 else -1.0) if meaning != "time" else scale[0].of(values)
+    )
     if meaning == "tangential_force" and torque_scale(scale[1]) is not None:
         if radius is None:
-            cure = f"In a column map: tangential_force = {{ name = {name}, unit = \"{scale[1]}\" }} below [columns], "
-            raise Unfit(where, "is a torque, not a force", cure=f'{cure}and track_radius = "... mm" below [test].')
+            cure = f'In a column map: tangential_force = {{ name = {name}, unit = "{scale[1]}" }} below [columns], '
+            raise Unfit(
+                where, "is a torque, not a force", cure=f'{cure}and track_radius = "... mm" below [test].'
+            )
         notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
         found = found / radius
     if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
         cure = f'State its true unit below [columns] in a column map: temperature = {{ name = {name}, unit = "..." }}'
         got = f"{float(values[below[0]]):g} {scale[1]}"
-        cure += f'; if this is a code for a missing value, write missing = ["{got.split()[0]}"] below [format].'
+        cure += (
+            f'; if this is a code for a missing value, write missing = ["{got.split()[0]}"] below [format].'
+        )
         raise InputError(where, "has temperatures below absolute zero", got, cure)
     return found if np.isfinite(found).all() else np.where(np.isfinite(found), found, np.nan)
 
@@ -346,8 +382,10 @@ def raw_log(
     block: Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, str | float]
 ) -> RawLog:
     """Log of one table, with the conditions that the column map states for its file."""
-    force, radius = (one if isinstance(one := given.get(key), float) else None for key in ("normal_force", "track_radius"))
-    notes: list[str] = []
+    force, radius = (
+        one if isinstance(one := given.get(key), float) else None for key in ("normal_force", "track_radius")
+    )
+    notes = list(block.notes)
     read = in_si(block, columns, radius, notes, None)
     arrays = dict(read.arrays)
     if "friction" in read.places and looks_extreme(head := block.heads[read.places["friction"]].strip()):
@@ -399,7 +437,14 @@ def _columns_read(block: Block, columns: ColumnMap, read: Read) -> tuple[ColumnR
         why = columns.columns[meaning].origin if meaning else "not needed"
         unit = read.units[meaning] if meaning else block.below[i]
         own = meaning if meaning in MEANINGS else None
-        found.append(ColumnRead(header=head.strip(), meaning=own, unit=unit, why=f"{meaning}, {why}" if meaning and not own else why))
+        found.append(
+            ColumnRead(
+                header=head.strip(),
+                meaning=own,
+                unit=unit,
+                why=f"{meaning}, {why}" if meaning and not own else why,
+            )
+        )
     return tuple(found)
 
 
@@ -420,9 +465,7 @@ def _drop_empty(arrays: Arrays, source: str, notes: list[str]) -> None:
         notes.append(f"the column of {meaning} is empty and not used")
 
 
-def _mend_sign(
-    arrays: Arrays, columns: ColumnMap, source: str, notes: list[str], *, is_given: bool
-) -> None:
+def _mend_sign(arrays: Arrays, columns: ColumnMap, source: str, notes: list[str], *, is_given: bool) -> None:
     """Make compression positive: the sign of nearly all rows, or that of the column map.
 
     A column without any force gives way to the constant force of the column map, if there is one.
@@ -445,7 +488,9 @@ def _mend_sign(
     elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
         rule = "has a normal force of both signs, so that the sign of compression is not certain"
         got = f"{positive} rows above zero, {negative} below"
-        cure = "Below [columns] in a column map, add to normal_force: sign = -1 if compression counts negative."
+        cure = (
+            "Below [columns] in a column map, add to normal_force: sign = -1 if compression counts negative."
+        )
         raise InputError(source, rule, got, cure)
 
 
@@ -518,7 +563,9 @@ def _without_stroke_speed(
 ) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
     position = read.places.get("position")
-    strokes = position is not None and plain(block.heads[position]).startswith(("linear position", "lin position"))
+    strokes = position is not None and plain(block.heads[position]).startswith(
+        ("linear position", "lin position")
+    )
     speeds = [key for key in metadata if plain(header_parts(key)[0][0]) in KEYS["slip_speed"]]
     if not strokes or not (speeds or "slip_speed" in arrays):
         return dict(metadata)

@@ -40,7 +40,9 @@ class Signal:
     values: Array  # shape (row,)
 
 
-def sliding_rows(signals: Sequence[Signal], friction: Array, time: Array | None, kept: Rows) -> tuple[Rows, str]:
+def sliding_rows(
+    signals: Sequence[Signal], friction: Array, time: Array | None, kept: Rows
+) -> tuple[Rows, str]:
     """Rows of steady sliding of those kept, and a sentence on the others; empty where all rows slide.
 
     Friction has its sign if the log has one, shape (row,); time is in s, shape (row,).
