@@ -1,4 +1,4 @@
-"""Logs of layouts that no map knows: read at once where all is clear, else through their draft, looked at once."""
+"""Logs of layouts that no map knows: read at once where all is clear, else through their draft."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_what_no_file_states_is_left_open_in_the_draft(tmp_path, what):
 def test_a_load_that_may_be_one_or_a_thousand_is_asked_and_not_used(tmp_path, load, comma):
     """Its mark may be a decimal sign or between thousands: both values are in the draft, as a remark."""
     path, draft = written(tmp_path, table(["t [s];COF"], "{t};{f}", above=[f"Load: {load}"], comma=comma))
-    with pytest.raises(InputError, match="1000 N or 1.000 N"):
+    with pytest.raises(InputError, match=r"1000 N or 1\.000 N"):
         read_log(path)
     (log,) = read_log(path, read_column_map(draft))
     assert log.conditions.normal_force is None

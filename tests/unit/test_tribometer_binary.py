@@ -7,12 +7,12 @@ import sys
 import numpy as np
 import openpyxl
 import pytest
-from minimal_xlsx import STYLES, Fault, Formula, Shown, sheet, workbook, zipped
+from minimal_xlsx import Fault, Formula, Shown, sheet, workbook, zipped
 
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.binary import tdms_groups
-from separatrix.friction.logs.log import metadata_of
 from separatrix.friction.logs.column_map import column_map
+from separatrix.friction.logs.log import metadata_of
 from separatrix.ground.errors import InputError
 
 nptdms = pytest.importorskip("nptdms")
@@ -229,7 +229,7 @@ WRONG = {
     "an error of the name of a missing value": (changed(4, 1, Fault("#N/A")), IN_B7 + "holds an error"),
     "a percentage among plain numbers": (
         changed(4, 1, Shown(0.12, 2)),
-        'row 3, column "COF" is a plain number among percentages; got 0.1. Format all cells of the column alike.',
+        'column "COF" is a plain number among percentages; got 0.1. Format all cells of the column alike.',
     ),
     "plain numbers below a percentage": (
         changed(0, 1, Shown(0.12, 2)),

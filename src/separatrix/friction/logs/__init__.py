@@ -1,7 +1,7 @@
 """Reading tribometer logs through column maps; what a file holds shows in its content, not in its name.
 
-A file is read by the map that is named, by that of a known layout, or by its heads where these leave no question.
-Else a draft of a map is made, for the user to look at: nothing is guessed in silence.
+A file is read by the map that is named, by that of a known layout, or by its heads where these leave no
+question. Else a draft of a map is made, for the user to look at: nothing is guessed in silence.
 """
 
 from __future__ import annotations
@@ -19,15 +19,23 @@ from separatrix.friction.logs.draft import Draft, draft_of
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.logs.log_tables import Block, Content, blocks_of, cells_of, content_of, matching
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, time_form
-from separatrix.friction.logs.raw import Unfit, in_si, raw_log
+from separatrix.friction.logs.raw import UnfitError, in_si, raw_log
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import parsed
 from separatrix.ground.units import format_quantity, printable, shown, unit_of
 
-__all__ = ["Unmapped", "column_map", "described", "read", "read_column_map", "read_log", "with_draft_written"]
+__all__ = [
+    "UnmappedError",
+    "column_map",
+    "described",
+    "read",
+    "read_column_map",
+    "read_log",
+    "with_draft_written",
+]
 
 
-class Unmapped(InputError):
+class UnmappedError(InputError):
     """A log with open questions: it has a draft of its column map."""
 
     draft: str = ""
@@ -47,18 +55,18 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     Raises
     ------
     InputError
-        What cannot be read or decided: file, line, and what to write. If it is not certain what the columns mean,
-        a draft of a column map is written beside the log.
+        What cannot be read or decided: file, line, and what to write. If the columns are not
+        certain, a draft of a column map is written beside the log.
     """
     try:
         return read(Path(path), column_map or ColumnMap())
-    except Unmapped as error:
+    except UnmappedError as error:
         raise with_draft_written(error) from None
 
 
 def with_draft_written(error: InputError) -> InputError:
     """The refusal, its draft written beside the log and named in its cure; a file there is kept."""
-    if not isinstance(error, Unmapped):
+    if not isinstance(error, UnmappedError):
         return error
     name = printable(error.place.name, 150)
     cure = f"Look at the draft {name} beside the log, and add: --map {name}."
@@ -85,7 +93,7 @@ def read(path: Path, given: ColumnMap) -> tuple[RawLog, ...]:
     if known.is_complete:
         try:
             return _logs(content, replace(known, is_shipped=True))
-        except Unfit as error:
+        except UnfitError as error:
             why = error
     draft = draft_of(content, known, why)
     text = draft.text(content.name)
@@ -99,13 +107,13 @@ def read(path: Path, given: ColumnMap) -> tuple[RawLog, ...]:
     raise _unmapped(content, draft, text, why)
 
 
-def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> Unmapped:
+def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> UnmappedError:
     first, more = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions) - 1
     like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
     rule = f"{like}has an open question: {first}"
     if more:
         rule = f"{like}has {more + 1} open questions, the first: {first}"
-    error = Unmapped(content.name, rule, cure="Write a column map.")
+    error = UnmappedError(content.name, rule, cure="Write a column map.")
     error.draft, error.place = text, content.path.with_name(f"{content.path.name}.map.toml")
     return error
 
@@ -118,7 +126,7 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
             f'"{one.names[0]}"' for one in columns.columns.values() if one.names and not one.optional
         )
         rule = "has no table with the columns that the column map needs"
-        raise Unfit(
+        raise UnfitError(
             content.name,
             rule,
             cure=f"They are {listed or 'given by number'}; under them, two rows of numbers.",
@@ -138,7 +146,7 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
             found.append((part.name, replace(log, series=_series(part, content, columns))))
         except InputError as error:
             wrong = wrong or error
-    if wrong is not None and found and not isinstance(wrong, Unfit):
+    if wrong is not None and found and not isinstance(wrong, UnfitError):
         names = ", ".join(shown(name) for name, _ in found)
         raise wrong.at(
             wrong.path, cure=f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
@@ -176,8 +184,8 @@ def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence
     read_from = {part.source for part in parts}
     others = [printable(part.sheet) for part in content.parts if part.source not in read_from]
     others += [printable(group.name) for group in content.groups if group.source not in read_from]
-    note = (f"without these columns, and not read: {', '.join(others)}",) if others else ()
-    yield from (replace(log, notes=(*log.notes, *note)) for log in kept.values())
+    unread = (f"without these columns, and not read: {', '.join(others)}",) if others else ()
+    yield from (replace(log, notes=(*log.notes, *unread)) for log in kept.values())
 
 
 def _tests(content: Content, columns: ColumnMap) -> list[Block]:
@@ -238,7 +246,7 @@ def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
 
 
 def _series(block: Block, content: Content, columns: ColumnMap) -> str:
-    """What the lines above a table state about the test that it is a part of; empty where the first is not there."""
+    """What the lines above a table state about the test of which it is a part; empty for nothing."""
     head = [line for part in content.parts for line in part.lines[:100]] if columns.format.series else []
     found = []
     for pattern in columns.format.series:

@@ -1,9 +1,9 @@
 """Workbooks as lines of text, and LabVIEW measurement files (TDMS) as blocks of numbers.
 
 A sheet is read by its used cells, wherever the last one is: row n is line n, with tabs between the columns.
-Formulas have the value saved with them; dates and times of day are written as such. TDMS is read by npTDMS, an
-extra of this package: a group is a table, its channels are the columns, scaled as the file states. A waveform
-has no column of time; its start and increment make one.
+Formulas have the value saved with them; dates and times of day are written as such. TDMS is read by npTDMS,
+an extra of this package: a group is a table, its channels are the columns, scaled as the file states. A
+waveform has no column of time; its start and increment make one.
 """
 
 from __future__ import annotations

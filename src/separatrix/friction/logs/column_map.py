@@ -98,12 +98,12 @@ class ColumnMap:
         return has_friction and any(name in self.columns for name in ABSCISSAE)
 
     def by(self, origin: str) -> ColumnMap:
-        """This map, its columns stated by somebody else than the user."""
+        """Return this map, its columns stated by somebody else than the user."""
         columns = {meaning: replace(one, origin=origin) for meaning, one in self.columns.items()}
         return replace(self, columns=columns)
 
     def over(self, base: ColumnMap) -> ColumnMap:
-        """This map, with what it does not state from another."""
+        """Return this map, with what it does not state from another."""
         columns = dict(base.columns)
         if "tangential_force" in self.columns and "friction" not in self.columns:
             columns.pop("friction", None)  # forces that are named go before a coefficient
@@ -221,12 +221,12 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
     _known(table, ("name", "unit", "sign", "optional"), where, "key")
     name, unit, sign = table.get("name"), table.get("unit"), table.get("sign", 1)
     names = name if isinstance(name, list) and name else [name]
-    is_number = type(name) is int
-    if not is_number and not all(isinstance(one, str) and one.strip() for one in names):
+    number = name if isinstance(name, int) and not isinstance(name, bool) else None
+    if number is None and not all(isinstance(one, str) and one.strip() for one in names):
         got = "" if name is None else shown(name)
         cure = f'Write {meaning} = "Fz", or {meaning} = {{ name = "Fz", unit = "N" }}.'
         raise InputError(where, "must be the name or the number of a column", got, cure)
-    if is_number and not 1 <= name <= MOST:
+    if number is not None and not 1 <= number <= MOST:
         raise InputError(where, "must be the number of a column, counted from 1", shown(name))
     if sign not in (1, -1) or isinstance(sign, bool):
         raise InputError(f"{where} sign", "must be 1 or -1", shown(sign))
@@ -234,8 +234,8 @@ def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
         cure = "The draft asks for it: write the true one." if unit == "..." else ""
         raise InputError(f"{where} unit", f"must be a unit such as {known_units(meaning)}", shown(unit), cure)
     return ColumnChoice(
-        names=() if is_number else tuple(names),
-        number=name if is_number else None,
+        names=() if number is not None else tuple(map(str, names)),
+        number=number,
         unit=unit,
         sign=sign,
         optional=truth(table.get("optional", False), f"{where} optional"),

@@ -10,8 +10,10 @@ from dataclasses import dataclass, field, fields, replace
 from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap, TextFormat
 from separatrix.friction.logs.log import metadata_of, two_ways
 from separatrix.friction.logs.log_tables import (
+    STARTS,
     Block,
     Content,
+    Heads,
     Part,
     cells_of,
     fields_of,
@@ -40,7 +42,7 @@ from separatrix.friction.logs.names import (
     time_form,
     torque_scale,
 )
-from separatrix.friction.logs.raw import Unfit, decimal_of, stated_units
+from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 
@@ -56,11 +58,13 @@ USUAL = {
 }
 """Units that a draft offers where the file states none, to be checked."""
 
+MOST_ROWS = 20_000  # of which a column is looked at in all
 SAMPLE = 50  # rows of a column that are looked at
 _CLOCK = re.compile(r"\d{1,4}:\d{1,2}:\d{1,2}(?:[.,:]\d+)?\s*(?:[AaPp]\.?[Mm]\.?)?")
 _ISO = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(Z|[+-]\d{2}:?\d{2})?")
 _DATE = re.compile(
-    r"(\d{1,2})([./-])(\d{1,2}|[A-Za-z]{3})\2(\d{4}|\d{2})(\D{1,2})(\d{1,2}):\d{2}(:\d{2})?([.,]\d+)?( ?[AaPp][Mm])?"
+    r"(\d{1,2})([./-])(\d{1,2}|[A-Za-z]{3})\2(\d{4}|\d{2})(\D{1,2})(\d{1,2}):\d{2}(:\d{2})?([.,]\d+)?"
+    r"( ?[AaPp][Mm])?"
 )
 
 
@@ -95,7 +99,7 @@ class Draft:
 
     def text(self, name: str) -> str:
         """The map, ready to be looked at."""
-        begin = f'# Draft of a column map for {name}: look at each line with "guess, check", then name it with --map.'
+        begin = f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.'
         lines = [
             begin,
             f"name = {_toml(f'map of {name}'[:200])}",
@@ -136,8 +140,7 @@ def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draf
     `given` is what the user and a known layout state; `why` is the reason that they do not suffice, if any.
     """
     drafts: list[tuple[str, Draft]] = []
-    for group in content.groups:
-        drafts.append((group.name, _draft(group, Draft(given))))
+    drafts += [(group.name, _draft(group, Draft(given))) for group in content.groups]
     for part in content.parts:
         draft = Draft(given)
         if (block := _block(part, draft)) is not None:
@@ -169,7 +172,7 @@ def _no_table(content: Content) -> InputError:
     return InputError(content.name, "has no table of numbers with two columns or more", cure=cure)
 
 
-# --- the table --------------------------------------------------------------------------------------------------
+# --- the table ------------------------------------------------------------------------------------
 def _block(part: Part, draft: Draft) -> Block | None:
     """The first table of a text: how it is written goes into the draft; None without one."""
     form = draft.given.format
@@ -179,7 +182,7 @@ def _block(part: Part, draft: Draft) -> Block | None:
     if not separator:
         return None
     if form.header_line is not None:
-        heads = next(heads_in(part, draft.given, separator, missing))
+        heads: Heads | None = next(heads_in(part, draft.given, separator, missing))
     else:
         heads = first_table(part.lines, separator, missing, _start(part, separator, draft.given))
     if heads is None:
@@ -221,6 +224,15 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
     is_first = True  # the first of the tables with these names
     for i in range(first, len(lines)):
         line = lines[i]
+        if (
+            not between
+            and line[:1] in STARTS
+            and '"' not in line
+            and line.count(block.separator) == width - 1
+        ):
+            if is_first:
+                block.rows.append(line)
+            continue
         begin = line.strip()
         if form.ends and begin.startswith(form.ends):
             break
@@ -239,7 +251,8 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         names = [k for k in between[-2:] if len(fields_of(lines[k], block.separator)) == width and block.rows]
         if names and width > 1:
             name = fields_of(lines[names[0]], block.separator)[0]
-            question = f"{block.word} {names[0] + 1} begins another table, which is not read: {lines[names[0]].strip()[:60]!r}"
+            got = lines[names[0]].strip()[:60]
+            question = f"{block.word} {names[0] + 1} begins another table, which is not read: {got!r}"
             draft.form.append(
                 draft.ask(f"ends = {_toml([*form.ends, name or lines[names[0]].strip()])}", question)
             )
@@ -250,6 +263,9 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         between = []
         if is_first:
             block.rows.append(line)
+    if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
+        ends = block.rows[:1000], block.rows[1000 : -1000 : len(block.rows) // 10_000], block.rows[-1000:]
+        block.rows = [row for some in ends for row in some]
     if odd:
         skip = [*form.skip, *list(odd)[:20]]
         number = next(iter(odd.values()))
@@ -260,7 +276,7 @@ def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None]
         draft.form.append(draft.ask(f"skip = {_toml(skip)}", question))
 
 
-# --- its columns ------------------------------------------------------------------------------------------------
+# --- its columns ----------------------------------------------------------------------------------
 def _draft(block: Block, draft: Draft) -> Draft:
     """What each column means: certain by name and unit, or asked."""
     places = list(range(len(block.heads)))
@@ -278,7 +294,7 @@ def _draft(block: Block, draft: Draft) -> Draft:
         draft.seen.append(printable(f"# {i + 1:3d} {_toml(block.heads[i])}{beside}: {values}", 150))
     used = _given(block, draft)
     _decide(block, draft, options, used)
-    _decimal(block, draft, [cells[i] for i in used], options)
+    _decimal(block, draft, [cells[i] for i in sorted(used)])
     _conditions(block, draft, cells)
     if not draft.given.format.tests:
         _steps(block, draft, cells, used)
@@ -387,14 +403,14 @@ def _of_twins(draft: Draft, meaning: str, one: ColumnChoice, places: Sequence[in
 
 def _stated(meaning: str, one: ColumnChoice) -> str:
     name = list(one.names) if len(one.names) > 1 else one.names[0] if one.names else one.number
-    more = {"unit": one.unit} if one.unit else {}
+    more: dict[str, object] = {"unit": one.unit} if one.unit else {}
     more |= ({"sign": -1} if one.sign < 0 else {}) | ({"optional": True} if one.optional else {})
     inside = ", ".join(f"{key} = {_toml(value)}" for key, value in ({"name": name} | more).items())
     return f"{meaning} = {{ {inside} }}" if more else f"{meaning} = {_toml(name)}"
 
 
 def _line(draft: Draft, block: Block, meaning: str, option: Option, unit: str = "") -> str:
-    """One line of [columns]: the name without its unit where that is unique, else the whole, or the number."""
+    """One line of [columns]: the name without its unit where that is unique, else the whole or the number."""
     head = " ".join(block.heads[option.index].split())
     bare = header_parts(head)[0][0]
     named = bare if bare and matching([bare], block.heads) == [option.index] else head
@@ -548,15 +564,13 @@ def _shapes(block: Block, draft: Draft, options: dict[str, list[Option]], taken:
         draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
 
 
-def _decimal(
-    block: Block, draft: Draft, cells: Sequence[Sequence[str]], options: dict[str, list[Option]]
-) -> None:
+def _decimal(block: Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None:
     """A question where marks may be decimal signs or between thousands."""
     if block.columns is not None or block.word == "row" or draft.given.format.decimal:
         return
     try:
         decimal_of(cells, block.separator, block.source)
-    except Unfit as error:
+    except UnfitError as error:
         draft.form.append(draft.ask(f'decimal = "{UNKNOWN}"', f"{error.rule}: {error.got}"))
 
 

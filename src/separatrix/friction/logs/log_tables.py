@@ -33,9 +33,9 @@ _WORD = re.compile(rf"[^\W\d_]|{_MOMENT.pattern}")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)?\s*(\d+)\s*(?:$|started)", re.IGNORECASE)
 _SEPARATED = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", " ": "blanks"}
 
-_STARTS = frozenset("0123456789+-.")
+STARTS = frozenset("0123456789+-.")
 
-_BOUND = "\x04"  # in place of a separator in quotes
+BOUND = "\x04"  # in place of a separator in quotes
 PERCENT, ERROR, UNCOMPUTED = "\x01", "\x02", "\x03"
 """Signs in the text of a sheet: behind a fraction shown as a percentage, before an error, for a formula
 without a saved value."""
@@ -115,7 +115,7 @@ def content_of(path: Path, form: TextFormat) -> Content:
     return Content(path, name, checksum, [Part(name, "", lines)], words=encoding)
 
 
-# --- text ---------------------------------------------------------------------------------------------------
+# --- text -----------------------------------------------------------------------------------------
 _MARKS = {codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
 _OTHERS = {
     b"\xd0\xcf\x11\xe0": ("an old Excel workbook", "Save it as .xlsx or as CSV."),
@@ -176,9 +176,9 @@ def _encoding_of(raw: bytes) -> str:
 def fields_of(line: str, separator: str) -> list[str]:
     """Fields of a line, without quotes and the blanks around them; what is in quotes is not divided."""
     if '"' in line:
-        bound = re.sub(r'"[^"]*"', lambda found: found[0].replace(separator, _BOUND), line)
+        bound = re.sub(r'"[^"]*"', lambda found: found[0].replace(separator, BOUND), line)
         parts = bound.split() if separator == " " else bound.split(separator)
-        return [part.replace(_BOUND, separator).strip().strip('"').strip() for part in parts]
+        return [part.replace(BOUND, separator).strip().strip('"').strip() for part in parts]
     return line.split() if separator == " " else [part.strip() for part in line.split(separator)]
 
 
@@ -236,17 +236,16 @@ def matching(names: Sequence[str], heads: Sequence[str]) -> list[int]:
 
 
 def separator_of(lines: Sequence[str], missing: Iterable[str] = MISSING) -> tuple[str, list[str]]:
-    """The separator with which most lines are rows, empty for none; and others with more than half of them."""
+    """The separator with which most lines are rows, empty for none; others with more than half of them."""
     scores = {}
     for sign in _SEPARATED:
         near = (line for line in lines[:HEAD] if sign in line or (sign == " " and "\t" in line))
-        rows = (fields_of(line, sign) for line in near)
-        scores[sign] = sum(is_row(row, missing, blanks=sign == " ") for row in rows)
+        scores[sign] = sum(is_row(fields_of(line, sign), missing, blanks=sign == " ") for line in near)
     best = max(scores, key=lambda sign: scores[sign])
     if not scores[best]:
         return "", []
-    near = [sign for sign, count in scores.items() if sign != best and 2 * count > scores[best]]
-    return best, [sign for sign in near if sign != " " and not (sign == "," and _has_decimals(lines, best))]
+    others = [sign for sign, count in scores.items() if sign != best and 2 * count > scores[best]]
+    return best, [sign for sign in others if sign != " " and not (sign == "," and _has_decimals(lines, best))]
 
 
 def _has_decimals(lines: Sequence[str], separator: str) -> bool:
@@ -254,7 +253,7 @@ def _has_decimals(lines: Sequence[str], separator: str) -> bool:
     return any("," in one and is_number(one) for line in lines[:HEAD] for one in fields_of(line, separator))
 
 
-# --- from lines to tables -----------------------------------------------------------------------------------
+# --- from lines to tables -------------------------------------------------------------------------
 @dataclass(frozen=True, slots=True)
 class Heads:
     """Where a table begins: the line of its names, and its first row."""
@@ -268,7 +267,7 @@ class Heads:
 def first_table(
     lines: Sequence[str], separator: str, missing: Iterable[str] = MISSING, start: int = 0
 ) -> Heads | None:
-    """Where the first two rows are, one below the other, and what of the lines above them are names and units."""
+    """Where the first two rows are, one below the other, and which lines above are names and units."""
     blank = separator == " "
     rows = (
         i
@@ -284,10 +283,10 @@ def first_table(
         return None
     width = len(fields_of(lines[last], separator))
     near = [i for i in range(max(0, last - 8), last) if lines[i].strip(f"{separator} \t")]
-    fitting = []
+    fitting: list[tuple[int, list[str]]] = []
     for i in reversed(near):
-        if found := next((one for one in names_of(lines[i], separator) if _fits(one, width, missing)), None):
-            fitting.append((i, found))
+        ways = [one for one in names_of(lines[i], separator) if _fits(one, width, missing)]
+        fitting += [(i, ways[0])] if ways else []
     if not fitting:
         return Heads(None, [f"column {i + 1}" for i in range(width)], [""] * width, last)
     if len(fitting) > 1 and is_units(fitting[0][1]) and not is_units(fitting[1][1]):
@@ -375,9 +374,9 @@ def heads_in(part: Part, columns: ColumnMap, separator: str, missing: Iterable[s
         if first >= len(lines):
             where = f"{part.source}: header_line = {form.header_line}"
             raise InputError(where, "must be a line above the rows", f"a file of {len(lines)} lines")
-        names = names_of(lines[form.header_line - 1], separator)
+        ways = names_of(lines[form.header_line - 1], separator)
         width = next((len(fields_of(line, separator)) for line in lines[first:] if line.strip()), 0)
-        chosen = next((one for one in names if len(one) == width), names[0])
+        chosen = next((one for one in ways if len(one) == width), ways[0])
         below = fields_of(lines[form.units_line - 1], separator) if form.units_line else []
         yield Heads(form.header_line - 1, chosen, (below + [""] * len(chosen))[: len(chosen)], first)
         return
@@ -406,11 +405,11 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
     sign, width = block.separator, 0
     rows, numbers = block.rows, []
     ends, skip = form.ends, form.skip
-    words = tuple(one for one in skip if one[:1] not in _STARTS)  # others may be the beginning of a row, too
-    is_end, end, usual = False, stop, sign != " " and not any(one[:1] in _STARTS for one in ends)
+    words = tuple(one for one in skip if one[:1] not in STARTS)  # others may be the beginning of a row, too
+    is_end, end, usual = False, stop, sign != " " and not any(one[:1] in STARTS for one in ends)
     for i in range(first, stop):
         line = lines[i]
-        if width and usual and line[:1] in _STARTS and line.count(sign) == width - 1 and '"' not in line:
+        if width and usual and line[:1] in STARTS and line.count(sign) == width - 1 and '"' not in line:
             rows.append(line)
             numbers.append(i + 1)
             continue
@@ -434,7 +433,7 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
             end = i
             break
         width = width or len(fields)
-        rows.append(line if line.count(sign) == width - 1 and '"' not in line else _BOUND.join(fields))
+        rows.append(line if line.count(sign) == width - 1 and '"' not in line else BOUND.join(fields))
         numbers.append(i + 1)
     block.lines = numbers
     if rows and not is_end:
@@ -472,9 +471,10 @@ def cells_of(block: Block, places: Sequence[int]) -> list[list[str]]:
     found: list[list[str]] = [[] for _ in places]
     pairs = [(cells.append, place) for cells, place in zip(found, places, strict=True)]
     for row in block.rows:
-        fields = row.split(_BOUND) if _BOUND in row else fields_of(row, block.separator)
+        sign = BOUND if BOUND in row else block.separator
+        fields = fields_of(row, sign) if sign == " " or '"' in row else row.split(sign)
         for append, place in pairs:
-            append(fields[place] if place < len(fields) else "")
+            append(fields[place].strip() if place < len(fields) else "")
     return found
 
 

@@ -28,7 +28,7 @@ MEANINGS = {
 
 ABSCISSAE = ("time", "distance", "cycles")  # the columns of which a log has at least one
 SHAPES = ("motion", "position", "stroke")
-"""Columns in any unit that show which rows slide: a speed, a position, a force with the sign of the stroke."""
+"""Columns in any unit that show which rows slide: speed, position, force with the sign of the stroke."""
 
 _TABLE = tomllib.loads(files(__package__).joinpath("names.toml").read_text("utf-8"))
 _COLUMNS = {key: [group.split("; ") for group in groups] for key, groups in _TABLE["columns"].items()}

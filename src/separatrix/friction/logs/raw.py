@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from io import BytesIO
 
 import numpy as np
 
 from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap
 from separatrix.friction.logs.log import ColumnRead, RawLog, conditions_of, metadata_of
 from separatrix.friction.logs.log_tables import (
+    BOUND,
     ERROR,
     PERCENT,
     UNCOMPUTED,
@@ -61,11 +63,11 @@ _SIGNALS = {
 TIMES = 'unit = "clock" for 10:00:01.5, "iso" for 2026-02-01 10:00:01, "mm:ss", "hh:mm", "%d.%m.%Y %H:%M:%S"'
 
 
-class Unfit(InputError):
+class UnfitError(InputError):
     """A table that its map does not fit: it lacks a column, or states another unit."""
 
 
-# --- numbers and times ----------------------------------------------------------------------------------------
+# --- numbers and times ----------------------------------------------------------------------------
 def decimal_of(cells: Iterable[Sequence[str]], separator: str, source: str) -> str:
     """The decimal sign of the numbers; empty where none has one. Marks between thousands are refused."""
     if separator == "," and not any("," in cell for column in cells for cell in column):
@@ -89,12 +91,12 @@ def decimal_of(cells: Iterable[Sequence[str]], separator: str, source: str) -> s
                     "Export the file without marks between thousands, or write below [format]: decimal = ..."
                 )
                 got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
-                raise Unfit(source, "has points and commas in its numbers", got, cure)
+                raise UnfitError(source, "has points and commas in its numbers", got, cure)
     if found and not certain:
         mark, cell = next(iter(found.items()))
         rule = "does not show whether its marks are decimal signs or between thousands"
         cure = f'Add to the column map, below [format]: decimal = "{mark}".'
-        raise Unfit(source, rule, f'"{printable(cell)}"', cure)
+        raise UnfitError(source, rule, f'"{printable(cell)}"', cure)
     return next(iter(found), "")
 
 
@@ -125,8 +127,8 @@ def numbers(cells: Sequence[str], decimal: str, missing: frozenset[str]) -> tupl
 def seconds(cells: Sequence[str], form: str, missing: frozenset[str] = MISSING) -> tuple[Array, list[int]]:
     """Seconds since the first time, NaN for what is missing, and the rows of what is not a time.
 
-    A clock that falls back by more than half a day has passed midnight. Zones of dates are taken into account;
-    where only some of them have one, those without it are wrong.
+    A clock that falls back by more than half a day has passed midnight. Zones of dates count; where
+    only some dates have one, the others are wrong.
     """
     texts = ["" if cell.casefold() in missing else cell for cell in cells]
     there = np.array([bool(text) for text in texts])
@@ -166,7 +168,7 @@ def _time(text: str, form: str) -> float:
     return 3600.0 * first + 60.0 * second + float(re.sub("[,:]", ".", match[3] or "0"))
 
 
-# --- columns --------------------------------------------------------------------------------------------------
+# --- columns --------------------------------------------------------------------------------------
 @dataclass(frozen=True, slots=True)
 class Read:
     """Columns of a table in SI units, where they are, their units, and the decimal sign of the numbers."""
@@ -183,7 +185,7 @@ def places_of(block: Block, columns: ColumnMap, notes: list[str]) -> dict[str, l
     for meaning, one in columns.columns.items():
         if one.number is not None and one.number > len(block.heads):
             rule = f"has {len(block.heads)} columns, not {one.number}, for {meaning.replace('_', ' ')}"
-            raise Unfit(block.source, rule)
+            raise UnfitError(block.source, rule)
         places = matching(one.names, block.heads) if one.number is None else [one.number - 1]
         if places:
             found[meaning] = places
@@ -193,7 +195,7 @@ def places_of(block: Block, columns: ColumnMap, notes: list[str]) -> dict[str, l
         else:
             listed = ", ".join(f'"{printable(head)}"' for head in block.heads[:12] if head)
             rule = f'has no column "{printable(one.names[0])}", which the column map names as {meaning}'
-            raise Unfit(block.source, rule, cure=f"It has {listed}.")
+            raise UnfitError(block.source, rule, cure=f"It has {listed}.")
     used: dict[int, str] = {}
     for meaning, places in found.items():
         for i in places:
@@ -217,7 +219,7 @@ def stated_units(head: str, below: str, meaning: str, spellings: Mapping[str, st
 
 
 def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[Scale, str]:
-    """Scale and unit of a column; refused where the file states none, an unknown one, or another than the map."""
+    """Scale and unit of a column; refused where the file states none, an unknown or another one."""
     column, head = columns.columns[meaning], block.heads[i].strip()
     stated = stated_units(head, block.below[i], meaning, columns.format.spellings)
     if meaning in SHAPES:
@@ -238,7 +240,7 @@ def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[S
             cure = (
                 f"Below [columns] of a column map: {meaning} = {{ name = {name}, unit = {shown(wrong[0])} }}."
             )
-            raise Unfit(
+            raise UnfitError(
                 where, f'is in "{column.unit}" by its map', f'"{printable(wrong[0])}" in the file', cure
             )
         return scale_of(column.unit, meaning) or Scale(), column.unit
@@ -247,9 +249,9 @@ def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[S
         raise InputError(where, rule, cure=cure)
     if None in known.values() or len({*known.values()}) > 1:
         rule = f"has a unit that is not one of the {meaning.replace('_', ' ')} ({known_units(meaning)})"
-        raise Unfit(where, rule, f'"{printable(", ".join(stated))}"', cure)
+        raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure)
     if not stated and meaning not in ("friction", "cycles"):
-        raise Unfit(where, "has no unit, so that its meaning is not certain", cure=cure)
+        raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure)
     return (next(iter(known.values())) or Scale(), stated[0]) if stated else (Scale(), "")
 
 
@@ -271,17 +273,23 @@ def in_si(
     own = frozenset(one.casefold() for one in columns.format.missing)
     absent = [float(one) for one in columns.format.missing if _FLOAT.fullmatch(one)]
     every = sorted(scales)
-    cells = dict(zip(every, cells_of(block, every), strict=True)) if block.columns is None else {}
+    at_once = _at_once(block, [i for i in every if not timed.get(i)], columns)
+    loaded, found = at_once or ({}, decimal)
+    if block.columns is not None:
+        loaded, found = dict(enumerate(block.columns)), "."
+    rest = [i for i in every if i not in loaded]
+    cells = dict(zip(rest, cells_of(block, rest), strict=True))
+    decimal = found if decimal is None else decimal
     if decimal is None:
-        plain_cells = [cells[i] for i in every if cells and not timed.get(i)]
+        plain_cells = [cells[i] for i in rest if not timed.get(i)]
         decimal = columns.format.decimal if block.word == "line" else "."
         decimal = decimal or decimal_of(plain_cells, block.separator, block.source)
     arrays: Arrays = {}
     for meaning, some in places.items():
         made = []
         for i in some:
-            if block.columns is not None:
-                values = block.columns[i]
+            if i in loaded:
+                values = loaded[i]
             else:
                 values = _values(block, cells[i], i, decimal, own, timed.get(i, ""))
                 if not timed.get(i):
@@ -293,18 +301,49 @@ def in_si(
         both = np.isfinite(made).all(axis=0)
         if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
             listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
-            cure = f"State which below [columns] in a column map: {meaning} = {' or '.join(str(i + 1) for i in some)}."
+            which = " or ".join(str(i + 1) for i in some)
+            cure = f"State which below [columns] in a column map: {meaning} = {which}."
             rule = f"has {len(some)} columns that could be the {meaning.replace('_', ' ')}"
-            raise Unfit(block.source, rule, f"columns {listed}", cure)
+            raise UnfitError(block.source, rule, f"columns {listed}", cure)
         arrays[meaning] = made[0]
     first = {meaning: some[0] for meaning, some in places.items()}
     return Read(arrays, first, {meaning: scales[i][1] for meaning, i in first.items()}, decimal)
 
 
+def _at_once(block: Block, places: Sequence[int], columns: ColumnMap) -> tuple[dict[int, Array], str] | None:
+    """Columns of nothing but numbers, by numpy's own reader, and their decimal sign; else None."""
+    if block.columns is not None or block.word == "row" or not places:
+        return None
+    text, decimal, sign = "\n".join(block.rows), columns.format.decimal, block.separator
+    comma, point = "," in text and sign != ",", "." in text
+    if BOUND in text or '"' in text or (comma and (point or decimal == ".")) or (point and decimal == ","):
+        return None
+    if decimal is None and sign != ",":  # where this is not certain, all cells decide
+        try:
+            some = replace(block, rows=block.rows[:200])
+            decimal_of(cells_of(some, places), sign, block.source)
+        except UnfitError:
+            return None
+    raw = (text.replace(",", ".") if comma else text).encode()
+    try:
+        loaded = np.loadtxt(
+            BytesIO(raw),
+            delimiter=None if sign == " " else sign,
+            usecols=places,
+            comments=None,
+            ndmin=2,
+            encoding="latin1",
+        )
+    except ValueError:
+        return None
+    found = dict(zip(places, np.ascontiguousarray(loaded.T), strict=True))
+    return found, "," if comma else "." if point or sign == "," else ""
+
+
 def _values(
     block: Block, cells: Sequence[str], i: int, decimal: str, own: frozenset[str], form: str
 ) -> Array:
-    """Numbers or seconds of a column; refused with the row of what is neither. Errors may be named as missing."""
+    """Numbers or seconds of a column; refused with the row of what is neither."""
     missing = MISSING | own | {f"{ERROR}{one}" for one in own}
     values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
     if not wrong:
@@ -361,14 +400,16 @@ def _scaled(
     )
     if meaning == "tangential_force" and torque_scale(scale[1]) is not None:
         if radius is None:
-            cure = f'In a column map: tangential_force = {{ name = {name}, unit = "{scale[1]}" }} below [columns], '
-            raise Unfit(
+            line = f'tangential_force = {{ name = {name}, unit = "{scale[1]}" }}'
+            cure = f"In a column map: {line} below [columns], "
+            raise UnfitError(
                 where, "is a torque, not a force", cure=f'{cure}and track_radius = "... mm" below [test].'
             )
         notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
         found = found / radius
     if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
-        cure = f'State its true unit below [columns] in a column map: temperature = {{ name = {name}, unit = "..." }}'
+        line = f'temperature = {{ name = {name}, unit = "..." }}'
+        cure = f"State its true unit below [columns] in a column map: {line}"
         got = f"{float(values[below[0]]):g} {scale[1]}"
         cure += (
             f'; if this is a code for a missing value, write missing = ["{got.split()[0]}"] below [format].'
@@ -377,7 +418,7 @@ def _scaled(
     return found if np.isfinite(found).all() else np.where(np.isfinite(found), found, np.nan)
 
 
-# --- the log --------------------------------------------------------------------------------------------------
+# --- the log --------------------------------------------------------------------------------------
 def raw_log(
     block: Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, str | float]
 ) -> RawLog:
@@ -501,8 +542,10 @@ def _friction(arrays: Arrays, force: float | None, source: str, notes: list[str]
     tangential = np.abs(arrays["tangential_force"])
     if "normal_force" not in arrays:
         if force is None:
-            cure = 'Below [columns] in a column map: normal_force = "..."; or below [test]: normal_force = "... N".'
-            raise Unfit(source, "has a tangential force but no normal force", cure=cure)
+            cure = (
+                'Below [columns] in a column map: normal_force = "..."; below [test]: normal_force = "... N".'
+            )
+            raise UnfitError(source, "has a tangential force but no normal force", cure=cure)
         notes.append(f"friction is |tangential force| / {format_quantity(force, 'N')}, the constant given")
         return np.asarray(tangential / force)
     notes.append("friction is |tangential force| / normal force, row by row")
