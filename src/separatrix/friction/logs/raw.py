@@ -542,9 +542,7 @@ def _friction(arrays: Arrays, force: float | None, source: str, notes: list[str]
     tangential = np.abs(arrays["tangential_force"])
     if "normal_force" not in arrays:
         if force is None:
-            cure = (
-                'Below [columns] in a column map: normal_force = "..."; below [test]: normal_force = "... N".'
-            )
+            cure = 'In a map, below [columns]: normal_force = "..."; below [test]: normal_force = "... N".'
             raise UnfitError(source, "has a tangential force but no normal force", cure=cure)
         notes.append(f"friction is |tangential force| / {format_quantity(force, 'N')}, the constant given")
         return np.asarray(tangential / force)
