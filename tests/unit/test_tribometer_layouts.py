@@ -13,7 +13,7 @@ from separatrix.cli import main
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
 from separatrix.friction.logs.log_tables import is_clock
-from separatrix.friction.logs.raw import seconds
+from separatrix.friction.logs.numbers_and_times import seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 from separatrix.ground.errors import InputError
 

@@ -19,7 +19,8 @@ from separatrix.friction.logs.draft import Draft, draft_of
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.logs.log_tables import Block, Content, blocks_of, cells_of, content_of, matching
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, time_form
-from separatrix.friction.logs.raw import UnfitError, in_si, raw_log
+from separatrix.friction.logs.numbers_and_times import UnfitError
+from separatrix.friction.logs.raw import in_si, raw_log
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import parsed
 from separatrix.ground.units import format_quantity, printable, shown, unit_of
@@ -227,7 +228,8 @@ def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
     if place is None or block.columns is not None:
         yield block
         return
-    (cells,) = cells_of(block, [place])
+    (texts,) = cells_of(block, [place])
+    cells = [re.sub(r"[.,]0*$", "", text) for text in texts]  # 1.000 and 1,0 are one step
     bounds = [0, *(i for i in range(1, len(cells)) if cells[i] != cells[i - 1]), len(cells)]
     names: list[str] = []
     single = [f"{block.heads[place].strip()} {cells[a]}" for a, b in pairwise(bounds) if b - a == 1]
@@ -236,8 +238,7 @@ def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
         if len(bounds) == 2:
             yield block
         elif stop - start >= 2:
-            number = re.fullmatch(r"(\d+)(?:[.,]0*)?", cells[start])
-            names.append(f"step {number[1] if number else printable(cells[start])}")
+            names.append(f"step {printable(cells[start])}")
             again = names.count(names[-1])
             name = names[-1] if again == 1 else f"{names[-1]}, again {again}"
             name = f"{block.name}, {name}" if block.name else name

@@ -42,7 +42,8 @@ from separatrix.friction.logs.names import (
     time_form,
     torque_scale,
 )
-from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
+from separatrix.friction.logs.numbers_and_times import UnfitError, decimal_of
+from separatrix.friction.logs.raw import stated_units
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 
@@ -161,11 +162,8 @@ def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draf
 def _no_table(content: Content) -> InputError:
     cure = "It needs a line of column names above at least two rows; a column map can state where."
     for part in content.parts:
-        rows = [
-            i
-            for i, line in enumerate(part.lines[:500])
-            if is_row(fields_of(line, separator_of([line])[0] or ","))
-        ]
+        signs = ((i, line, separator_of([line])[0]) for i, line in enumerate(part.lines[:500]))
+        rows = [i for i, line, sign in signs if sign and is_row(fields_of(line, sign))]
         if len(rows) == 1:
             where = f"{content.name}: {part.word} {rows[0] + 1}"
             return InputError(where, "is the only row", cure="A log has at least two.")
@@ -587,9 +585,7 @@ def _conditions(block: Block, draft: Draft, cells: Sequence[Sequence[str]]) -> N
 
 def _steps(block: Block, draft: Draft, cells: Sequence[Sequence[str]], used: set[int]) -> None:
     """Ask for the column that tells tests apart, where time falls back when it changes."""
-    place = next((matching(one.names, block.heads) for one in draft.given.columns.values() if one.names), [])
-    times = [i for i in used if "time" in ranks(header_parts(block.heads[i])[0][0])] or place
-    for i in times[:1]:
+    for i in [i for i in used if "time" in ranks(header_parts(block.heads[i])[0][0])][:1]:
         texts = [cell.replace(",", ".") for cell in cells[i]]
         values = [
             float(text) if re.fullmatch(r"[+-]?[0-9]+\.?[0-9]*", text) else float("nan") for text in texts
