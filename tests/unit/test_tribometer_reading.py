@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from raw_logs import as_written
 
 from separatrix.friction.logs import described, read_log
-from separatrix.friction.logs.column_map import ColumnMap, column_map
+from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
 from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog
 from separatrix.friction.logs.names import ALIASES, NAMES, ranks, scale_of
 from separatrix.ground.errors import InputError
@@ -339,18 +339,10 @@ def test_what_stands_beside_the_numbers_is_kept(tmp_path):
     assert read(tmp_path, csv(separator=";", head=LONG_HEAD)).metadata["key 39"] == "value 39"
     assert read(tmp_path, csv(head=["# material: Armalon"])).conditions.material == "Armalon"
     assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
-    assert "comma between quotes, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
+    assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     temperature = np.where(np.arange(ROWS) < 5, np.nan, 20.0)
     log = read(tmp_path, csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}))
     assert (log.rows, np.isnan(log.temperature).sum(), log.conditions.temperature) == (ROWS, 5, 293.15)
-    log = read(
-        tmp_path,
-        *(
-            csv({"time [s]": TIME, "COF": FRICTION, "mu": FRICTION}),
-            column_map({"columns": {"friction": "mu"}}),
-        ),
-    )
-    assert [one.why for one in log.columns if one.header == "COF"] == ["another column is the friction"]
 
 
 SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
@@ -498,11 +490,10 @@ def test_rtec_metadata_and_rotation_give_the_conditions(tmp_path):
     assert log.conditions.cycle_time == pytest.approx(0.5, rel=1e-12)
 
 
-@pytest.mark.parametrize("keys", ["Sample,Operator\ndisk 7,nobody", "Sample\ndisk 7"])
-def test_rtec_keys_stand_above_their_values_however_few(tmp_path, keys):
-    """Two keys over two values are not the pair of the two keys: the sample is disk 7, not "Operator"."""
-    content = keys.encode() + b"\n" + raw_logs.rtec(FRICTION, TIME, metadata=False)
-    assert read(tmp_path, content).conditions.sample == ("disk 7" if "," in keys else None)
+def test_two_keys_over_two_values_are_not_a_pair_of_keys(tmp_path):
+    """The sample is not "Operator"; what cannot be told apart is not used."""
+    content = b"Sample,Operator\ndisk 7,nobody\n" + raw_logs.rtec(FRICTION, TIME, metadata=False)
+    assert read(tmp_path, content).conditions.sample is None
 
 
 def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
@@ -511,14 +502,13 @@ def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
     assert read(tmp_path, content).conditions.sample == "disk 7"
 
 
-def test_several_tables_in_a_file_are_several_logs(tmp_path):
-    """Each with its own header; named by their order where the file does not name them."""
-    one = csv(separator="\t")
+def test_another_table_behind_the_first_is_asked(tmp_path):
+    """Of other names: the draft names it as the end of the first, which is then read."""
     two = raw_logs.plain_csv({"temps [min]": TIME, "mu": FRICTION * 2}, separator="\t")
-    first, second = read_all(tmp_path, one + b"\n" + two)
-    assert first.source == "log.txt, table 1"
-    assert second.source == "log.txt, table 2"
-    np.testing.assert_array_equal(second.time, as_written(TIME) * 60.0)
+    with pytest.raises(InputError, match="line 63 begins another table, which is not read"):
+        read(tmp_path, csv(separator="\t") + b"\n" + two)
+    log = read(tmp_path, csv(separator="\t") + b"\n" + two, read_column_map(tmp_path / "log.txt.map.toml"))
+    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
 
 
 def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
@@ -581,13 +571,11 @@ def test_a_pattern_may_name_the_folder(tmp_path):
 
 
 def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
-    """The refusal holds the line that leaves it out, and with that line the others are read."""
-    content = csv()
-    content += b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
-    with pytest.raises(InputError, match="has no column that is known to be the friction") as refusal:
-        read_all(tmp_path, content)
-    assert str(refusal.value).endswith('Or leave it out, below [format]: tables = ["table 1"].')
-    log = read(tmp_path, content, column_map({"format": {"tables": ["table 1"]}}))
+    """By the beginning of its first line."""
+    content = csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
+    with pytest.raises(InputError, match="line 64 begins another table"):
+        read(tmp_path, content)
+    log = read(tmp_path, content, column_map({"format": {"ends": ["Summary"]}}))
     np.testing.assert_array_equal(log.friction, as_written(FRICTION))
 
 
@@ -618,11 +606,10 @@ def test_description_shows_columns_units_and_reasons(tmp_path):
     """What is shown before it is trusted."""
     text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))
     assert "Bruker UMT text (utf-8, comma, decimal point), 60 rows, sha256" in text
-    assert 'friction: column "COF" (its name)' in text
-    assert 'time: column "T" in sec (its name)' in text
-    assert 'not used: column "Fx" in g (another column is the tangential force)' in text
+    assert 'friction: column "COF" (its layout)' in text
+    assert 'time: column "T" in sec (its layout)' in text
+    assert 'not used: "Z"' in text
     assert "time from 0 s to 14.75 s" in text
-    assert "note: the normal force is negative in the file" in text
 
 
 def test_no_name_and_unit_have_two_meanings():

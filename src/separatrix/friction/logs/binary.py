@@ -1,29 +1,27 @@
-"""Tables of numbers in Excel workbooks and in LabVIEW measurement files (TDMS).
+"""Workbooks as lines of text, and LabVIEW measurement files (TDMS) as blocks of numbers.
 
-A sheet becomes tab separated text, which the reader of text takes from there: row n is line n. Formulas have
-the value saved with them; dates and times of day are written as such. TDMS is read by npTDMS, an extra of
-this package: a group is a table, its channels are the columns, scaled as the file states. A waveform has no
-column of time; its start and increment make one.
+A sheet is read by its used cells, wherever the last one is: row n is line n, with tabs between the columns.
+Formulas have the value saved with them; dates and times of day are written as such. TDMS is read by npTDMS,
+an extra of this package: a group is a table, its channels are the columns, scaled as the file states. A
+waveform has no column of time; its start and increment make one.
 """
 
 from __future__ import annotations
 
 import datetime
 import logging
-import posixpath
 import re
 import struct
+import warnings
 import zipfile
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+import zlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from separatrix.friction.logs.column_map import TextFormat
-from separatrix.friction.logs.header import layout_of
-from separatrix.friction.logs.log import RawTable
+from separatrix.friction.logs.log_tables import ERROR, PERCENT, UNCOMPUTED, Block
 from separatrix.friction.logs.names import header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.input_files import size_of, unreadable
@@ -31,199 +29,112 @@ from separatrix.ground.sheet import MOST_BYTES, SAVE_AGAIN, refuse_unsafe
 from separatrix.ground.units import Array, printable, shown
 
 if TYPE_CHECKING:
-    from xml.etree.ElementTree import Element
-
     import nptdms
 
-MOST_ROWS_ABOVE = 2000  # rows in which the first rows of numbers are searched
-_NUMBERS = (float, datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
-_FIRST_DAY = datetime.datetime(1900, 1, 1)
-_PIECE = 4 * 1024**2
+MOST_CELLS = 20_000_000  # of a workbook
+MOST_COLUMNS = 1000  # of a sheet: a stray cell beyond them is not of a table
+MOST_ROWS = 1_048_576  # that a sheet can have
 _LITERAL = re.compile(r'"[^"]*"|\\.')
 """Part of a number format that is shown as it is: a % in it does not make a percentage."""
 
-_ATTRIBUTE, _PLACE = re.compile(r'(\w+)="([^"]*)"'), re.compile("([A-Z]{1,3})([0-9]{1,7})")
-_PREFIX = re.compile(rb"<(\w+:|)worksheet\b")
-_BLANKS = str.maketrans("\t\r\n", "   ")
+_BLANKS = str.maketrans("\t\r\n\x01\x02\x03\x04", "       ")
+# what openpyxl raises for a workbook that is damaged or makes no sense
+_DAMAGED_BOOK = (
+    *(ValueError, TypeError, LookupError, AttributeError, ArithmeticError, SyntaxError, OSError, EOFError),
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError, AssertionError),
+)
 
 
-def sheets_as_text(path: Path, label: str) -> dict[str, bytes]:
-    """Return the text of each sheet with a table of numbers, by its name."""
-    import python_calamine
+def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
+    """Return the lines of each sheet with a number in it, by its name."""
+    import openpyxl
+    from openpyxl.utils.exceptions import InvalidFileException
 
     refuse_unsafe(path, label)
+    found = {}
     try:
-        with python_calamine.CalamineWorkbook.from_path(path) as workbook:
-            sheets = {name: workbook.get_sheet_by_name(name) for name in workbook.sheet_names}
-            texts = {name: "\n".join(_lines(one.to_python(False))) for name, one in sheets.items()}
-    except (python_calamine.CalamineError, OSError, ValueError) as error:
-        raise _unreadable(label, error) from None
-    found = {name: text.encode() for name, text in texts.items() if text}
+        with warnings.catch_warnings(), path.open("rb") as file:
+            warnings.simplefilter("ignore")
+            book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
+            for sheet in book.worksheets:
+                lines = _lines_of_sheet(sheet, _percent_styles(book), label)
+                if any(re.search(r"\d", line) for line in lines):
+                    found[sheet.title] = lines
+            book.close()
+    except InputError:
+        raise
+    except (*_DAMAGED_BOOK, InvalidFileException) as error:
+        rule = f"is not a readable workbook: {printable(str(error), 100)}"
+        raise InputError(label, rule, cure=SAVE_AGAIN) from None
     if not found:
         cure = "Put the names of the columns in one row, and the numbers (not as text) below."
         raise InputError(label, "has no sheet with rows of numbers under a row of names", cure=cure)
     return found
 
 
-def _lines(rows: Sequence[Sequence[object]]) -> Iterator[str]:
-    """Yield a line for each row; none for a sheet without two rows of numbers, one below the other.
-
-    From the second such row on, a row of words alone is a remark, which ends where its words do.
-    """
-    counts = [sum(isinstance(cell, _NUMBERS) for cell in row) for row in rows[:MOST_ROWS_ABOVE]]
-    begin = next((i for i in range(1, len(counts)) if counts[i - 1] and counts[i]), None)
-    for i, row in enumerate(rows if begin else ()):
-        kinds = set(map(type, row))
-        if kinds == {float}:
-            yield "\t".join(map(repr, row))
-            continue
-        line = "\t".join(map(_written, row))
-        has_numbers = not kinds.isdisjoint(_NUMBERS)
-        yield line if has_numbers or (begin and i < begin and line.strip()) else line.rstrip()
+def _percent_styles(book: Any) -> set[int]:
+    """Numbers of the cell styles that show percentages."""
+    formats = {9: "0%", 10: "0.00%"} | {164 + i: form for i, form in enumerate(book._number_formats)}
+    used = [formats.get(style.numFmtId, "") for style in book._cell_styles]
+    return {i for i, form in enumerate(used) if "%" in _LITERAL.sub("", form)}
 
 
-def _written(cell: object) -> str:
-    if isinstance(cell, str):
-        return cell.translate(_BLANKS)
-    if isinstance(cell, float):
-        return repr(cell)
-    return str(_FIRST_DAY + cell if isinstance(cell, datetime.timedelta) else cell)
+def _lines_of_sheet(sheet: Any, percent: set[int], label: str) -> list[str]:
+    """Lines of a sheet, of equal length where there is a number in them; empty where no cell is used."""
+    from openpyxl.worksheet._reader import FORMULA_TAG, WorkSheetParser
+
+    class Parser(WorkSheetParser):
+        def parse_cell(self, element: Any) -> dict[str, Any]:
+            cell: dict[str, Any] = super().parse_cell(element)
+            no_value = cell["value"] is None and element.get("t") != "str"
+            return cell | {"data_type": "f"} if no_value and element.find(FORMULA_TAG) is not None else cell
+
+    rows: dict[int, dict[int, str]] = {}
+    count, width = 0, 0
+    with sheet._get_source() as source:
+        book = sheet.parent
+        parser = Parser(
+            *(source, sheet._shared_strings),
+            data_only=True,
+            epoch=book.epoch,
+            date_formats=book._date_formats,
+            timedelta_formats=book._timedelta_formats,
+        )
+        for number, cells in parser.parse():
+            used = {
+                cell["column"]: _written(cell, percent) for cell in cells if cell["column"] <= MOST_COLUMNS
+            }
+            used = {column: text for column, text in used.items() if text}
+            count += len(used)
+            if count > MOST_CELLS or number > MOST_ROWS:
+                raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
+            if used:
+                rows[number] = used
+            if sum(text[0].isdigit() for text in used.values()) > 1:
+                width = max(width, *used)
+    lines = [""] * max(rows, default=0)
+    for number, used in rows.items():
+        has_numbers = any(text[:1] in f"0123456789-.{ERROR}{UNCOMPUTED}" for text in used.values())
+        last = max(width, *used) if has_numbers or len(used) > 1 else max(used)
+        lines[number - 1] = "\t".join(used.get(i, "") for i in range(1, last + 1))
+    return lines
 
 
-@dataclass(frozen=True, slots=True)
-class OddCells:
-    """Cells of a sheet that differ from their value, by column from 0 and row from 1."""
-
-    percentages: dict[int, list[int]] = field(default_factory=dict)
-    """Rows of the cells that are shown as percentages, by column. Their values are fractions."""
-    valueless: list[tuple[int, int, str]] = field(default_factory=list)
-    """Column, row and error of each error cell; no error for a formula that was never computed."""
-
-
-def odd_cells(path: Path, sheet: str, label: str) -> OddCells:
-    """Return the percentages, the errors and the formulas without a value of a sheet.
-
-    calamine returns neither formats nor errors, and openpyxl takes a minute for a million rows: the XML is
-    searched for such cells.
-    """
-    found = OddCells()
-    try:
-        with zipfile.ZipFile(path) as archive:
-            target, percent = _part_and_percentages(archive, sheet)
-            with archive.open(target) as part:
-                _search(part, percent, found)
-    except (OSError, LookupError, ValueError, SyntaxError) as error:  # SyntaxError: of XML
-        raise _unreadable(label, error) from None
-    return found
-
-
-def _part_and_percentages(archive: zipfile.ZipFile, sheet: str) -> tuple[str, set[str]]:
-    """Return the part of a sheet, and the numbers of the cell styles that show percentages."""
-    from openpyxl.xml.functions import fromstring
-
-    names = {name.casefold(): name for name in archive.namelist()}
-
-    def read(part: str) -> Element:
-        return fromstring(archive.read(names[part.casefold()]))
-
-    def related(part: str) -> tuple[dict[str, str], dict[str, str]]:
-        """Return the parts that a part names, by their identifiers and by their kinds."""
-        folder, _, name = part.rpartition("/")
-        by_id, by_kind = {}, {}
-        for one in read(f"{folder}/_rels/{name}.rels".lstrip("/")):
-            path = posixpath.normpath(posixpath.join("/", folder, one.attrib["Target"]))[1:]
-            by_id[one.attrib["Id"]] = by_kind[one.attrib["Type"].rpartition("/")[2]] = path
-        return by_id, by_kind
-
-    book = related("")[1]["officeDocument"]
-    paths, kinds = related(book)
-    sheets = {one.attrib["name"]: one.attrib for one in read(book).iterfind("{*}sheets/{*}sheet")}
-    target = names[
-        paths[next(value for key, value in sheets[sheet].items() if key.endswith("}id"))].casefold()
-    ]
-    if "styles" not in kinds:
-        return target, set()
-    styles = read(kinds["styles"])
-    formats = {"9": "0%", "10": "0.00%"}  # those that every workbook has
-    for one in styles.iterfind("{*}numFmts/{*}numFmt"):
-        formats[one.attrib["numFmtId"]] = one.attrib["formatCode"]
-    used = [formats.get(one.get("numFmtId", ""), "") for one in styles.iterfind("{*}cellXfs/{*}xf")]
-    return target, {str(i) for i, text in enumerate(used) if "%" in _LITERAL.sub("", text)}
-
-
-def _search(part: IO[bytes], percent: Collection[str], found: OddCells) -> None:
-    """Note the odd cells of a sheet's XML, which is read in pieces that end with a row."""
-    from openpyxl.utils import column_index_from_string
-
-    left = part.read(_PIECE)
-    prefix = _PREFIX.search(left)
-    x = prefix[1].decode() if prefix else ""
-    marks = "|".join(['t="e"', *(f's="{style}"' for style in sorted(percent))])
-    formula = rf"<{x}f\b(?:[^<>]*/>|[^<>]*>[^<]*</{x}f>)\s*(?:<{x}v\s*(?:/>|></{x}v>)\s*)?</{x}c>"
-    cells = re.compile(rf"<{x}c (?:[^<>]*?\b(?:{marks})|[^<>]*>\s*{formula})".encode())
-    value = re.compile(rf"<{x}v>([^<]*)<".encode())
-    while left:
-        end = left.rfind(b"row>") + 4
-        for cell in cells.finditer(left, 0, end) if end >= 4 else ():
-            close = left.index(b">", cell.start())
-            known = dict(_ATTRIBUTE.findall(left[cell.start() : close].decode()))
-            place = _PLACE.fullmatch(known.get("r", ""))
-            if place is None:
-                raise ValueError("its cells do not state where they are")
-            column, row = column_index_from_string(place[1]) - 1, int(place[2])
-            if known.get("t") == "e":
-                error = value.search(left, close)
-                found.valueless.append((column, row, error[1].decode() if error else "#"))
-            elif known.get("s") in percent:
-                found.percentages.setdefault(column, []).append(row)
-            elif known.get("t") != "str":  # a formula whose value is an empty text has one
-                found.valueless.append((column, row, ""))
-        piece = part.read(_PIECE)
-        left = left[max(end, 0) :] + piece if piece else b""
-
-
-def checked(
-    table: RawTable, odd: OddCells, where: str, read: Sequence[int], percent: Sequence[int], form: TextFormat
-) -> RawTable:
-    """Return a table of a sheet, its columns of percent in percent where their cells are fractions.
-
-    `where` names the workbook and the sheet in a refusal, `percent` the columns that are in percent by their
-    name or the column map. An error that `form` names means a missing value.
-    """
-    from openpyxl.utils import get_column_letter
-
-    units, columns, lines = list(table.units), list(table.columns), np.asarray(table.lines)
-    inside = set(lines.tolist()) if odd.valueless else set()
-    for column, row, error in odd.valueless:
-        if column not in read or row not in inside or error.casefold() in form.missing:
-            continue
-        place = f"{where}, cell {get_column_letter(column + 1)}{row}"
-        if not error:
-            cure = "Open the workbook in a spreadsheet program and save it."
-            raise InputError(place, "holds a formula without a saved value", cure=cure)
-        cure = f'If that means a missing value, add below [format] in the column map: missing = ["{error}"].'
-        raise InputError(place, "holds an error", error, cure)
-    for i in read:
-        there = np.isfinite(columns[i])
-        shown = np.isin(lines, odd.percentages.get(i, ())) & there
-        if not shown.any():
-            continue
-        if not np.array_equal(shown, there):
-            first = shown[there][0]
-            row = int(np.flatnonzero(there & (shown != first))[0])
-            rule = (
-                "is a percentage among plain numbers" if not first else "is a plain number among percentages"
-            )
-            got = f"{columns[i][row]:g}" if first else f"{100.0 * columns[i][row]:g} %"
-            place = f"{where}, cell {get_column_letter(i + 1)}{lines[row]}"
-            raise InputError(place, rule, got, "Format all cells of the column alike.")
-        if i in percent:
-            units[i], columns[i] = "%", columns[i] * 100.0
-    return replace(table, units=tuple(units), columns=columns)
-
-
-def _unreadable(label: str, error: Exception) -> InputError:
-    return InputError(label, f"is not a readable workbook: {printable(str(error), 100)}", cure=SAVE_AGAIN)
+def _written(cell: dict[str, Any], percent: set[int]) -> str:
+    """Text of a cell, with a sign where it differs from its value."""
+    value, kind = cell["value"], cell["data_type"]
+    if kind == "f":
+        return UNCOMPUTED
+    if value is None:
+        return ""
+    if kind == "e":
+        return f"{ERROR}{value}"
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return repr(float(value)) + (PERCENT if cell["style_id"] in percent else "")
+    if isinstance(value, datetime.timedelta):
+        hours, rest = divmod(value.total_seconds(), 3600.0)
+        return f"{hours:.0f}:{rest // 60:02.0f}:{rest % 60:09.6f}"
+    return str(value).translate(_BLANKS)
 
 
 MOST_CHANNELS = 1000
@@ -239,7 +150,7 @@ _DAMAGED = (
 )
 
 
-def tdms_tables(path: Path) -> list[RawTable]:
+def tdms_groups(path: Path) -> list[Block]:
     """Return the tables of a file: one for each group, or for each length of channel in a group."""
     label = printable(path.name)
     try:
@@ -289,14 +200,14 @@ def _check_segments(file: BinaryIO, size: int, label: str) -> None:
     file.seek(0)
 
 
-def _tables(group: nptdms.TdmsGroup, content: nptdms.TdmsFile, label: str, size: int) -> Iterator[RawTable]:
+def _tables(group: nptdms.TdmsGroup, content: nptdms.TdmsFile, label: str, size: int) -> Iterator[Block]:
     """Yield the tables of a group, longest first."""
     lengths: dict[int, list[nptdms.TdmsChannel]] = {}
     for channel in group.channels():
         if len(channel) and channel.dtype is not None and np.dtype(channel.dtype).kind in "fiubM":
             lengths.setdefault(len(channel), []).append(channel)
     metadata = {
-        printable(str(key)): printable(str(value), LONGEST_PROPERTY)
+        printable(str(key)).replace(":", " "): printable(str(value), LONGEST_PROPERTY)
         for key, value in {**content.properties, **group.properties}.items()
         if str(value).strip()
     }
@@ -314,13 +225,15 @@ def _tables(group: nptdms.TdmsGroup, content: nptdms.TdmsFile, label: str, size:
             time = _waveform_time(channels, f"{label}, group {printable(group.name)}")
             if time is not None:
                 headers, units, columns = ["time of the waveform", *headers], ["s", *units], [time, *columns]
-        yield RawTable(
-            name=printable(f"{group.name}, {length} rows" if len(lengths) > 1 else group.name),
-            headers=tuple(headers),
-            units=tuple(units),
+        yield Block(
+            f"{label}, group {printable(group.name)}",
+            printable(f"{group.name}, {length} rows" if len(lengths) > 1 else group.name),
+            headers,
+            units,
+            [f"{key}: {value}" for key, value in metadata.items()],
+            lines=range(1, length + 1),
+            word="row",
             columns=columns,
-            metadata=metadata,
-            layout=layout_of("\t".join(headers)),
         )
 
 

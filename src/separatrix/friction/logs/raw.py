@@ -2,16 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from io import BytesIO
 
 import numpy as np
 
-from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.columns import Meant, Understood, understand
-from separatrix.friction.logs.dialect import is_number
-from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
-from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain
-from separatrix.friction.logs.sliding import Rows, sliding_rows
+from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap
+from separatrix.friction.logs.log import ColumnRead, RawLog, conditions_of, metadata_of
+from separatrix.friction.logs.log_tables import (
+    BOUND,
+    ERROR,
+    PERCENT,
+    UNCOMPUTED,
+    Block,
+    bare_unit,
+    cells_of,
+    described_form,
+    is_clock,
+    matching,
+)
+from separatrix.friction.logs.names import (
+    ABSCISSAE,
+    KEYS,
+    MEANINGS,
+    MISSING,
+    SHAPES,
+    Scale,
+    header_parts,
+    known_units,
+    looks_extreme,
+    looks_like_force,
+    plain,
+    scale_of,
+    time_form,
+    torque_scale,
+)
+from separatrix.friction.logs.numbers_and_times import FLOAT, UnfitError, decimal_of, numbers, seconds
+from separatrix.friction.logs.sliding import Rows, Signal, sliding_rows
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, format_quantity, printable, shown
 
@@ -21,111 +50,343 @@ HIGHEST = 5.0
 FEW = 0.1  # share of the rows up to which such values are left out; with more the column is refused
 ONE_SIGN = 0.9  # share of the rows in which the normal force must have one sign to be that of compression
 Arrays = dict[str, Array]  # columns by their meaning, shape (row,) each, in SI units
+_SIGNALS = {
+    **dict.fromkeys(("slip_speed", "rotational_speed", "motion"), "speed"),
+    **dict.fromkeys(("tangential_force", "stroke"), "force"),
+    "position": "position",
+}
+TIMES = 'unit = "clock" for 10:00:01.5, "iso" for 2026-02-01 10:00:01, "mm:ss", "hh:mm", "%d.%m.%Y %H:%M:%S"'
 
 
+# --- columns --------------------------------------------------------------------------------------
+@dataclass(frozen=True, slots=True)
+class Read:
+    """Columns of a table in SI units, where they are, their units, and the decimal sign of the numbers."""
+
+    arrays: Arrays
+    places: Mapping[str, int]
+    units: Mapping[str, str]
+    decimal: str
+
+
+def places_of(block: Block, columns: ColumnMap, notes: list[str]) -> dict[str, list[int]]:
+    """Columns of each meaning; several where a name stands twice."""
+    found: dict[str, list[int]] = {}
+    for meaning, one in columns.columns.items():
+        if one.number is not None and one.number > len(block.heads):
+            rule = f"has {len(block.heads)} columns, not {one.number}, for {meaning.replace('_', ' ')}"
+            raise UnfitError(block.source, rule)
+        places = matching(one.names, block.heads) if one.number is None else [one.number - 1]
+        if places:
+            found[meaning] = places
+        elif one.optional:
+            name = printable(one.names[0])
+            notes.append(f'no column "{name}": without it the {meaning.replace("_", " ")} is not known')
+        else:
+            listed = ", ".join(f'"{printable(head)}"' for head in block.heads[:12] if head)
+            rule = f'has no column "{printable(one.names[0])}", which the column map names as {meaning}'
+            raise UnfitError(block.source, rule, cure=f"It has {listed}.")
+    used: dict[int, str] = {}
+    for meaning, places in found.items():
+        for i in places:
+            if used.setdefault(i, meaning) != meaning:
+                rule = f'column "{printable(block.heads[i].strip())}" is both {used[i]} and {meaning}'
+                raise InputError(block.source, f"{rule} in the column map")
+    return found
+
+
+def stated_units(head: str, below: str, meaning: str, spellings: Mapping[str, str]) -> list[str]:
+    """Units that the file writes for a column, in its head and in the line below; also unknown ones.
+
+    Words after a name without brackets that are not a unit of the meaning are a part of the name.
+    """
+    ways = header_parts(head)
+    beside = [spellings.get(unit, unit) for _, unit in ways if unit]
+    if len(ways) > 1 or not re.search(r"[\[(<{]", head):
+        beside = [unit for unit in beside if scale_of(unit, meaning) is not None][:1]
+    under = bare_unit(below)
+    return [unit for unit in (spellings.get(under, under), *beside) if unit]
+
+
+def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[Scale, str]:
+    """Scale and unit of a column; refused where the file states none, an unknown or another one."""
+    column, head = columns.columns[meaning], block.heads[i].strip()
+    stated = stated_units(head, block.below[i], meaning, columns.format.spellings)
+    if meaning in SHAPES:
+        return Scale(), (stated or [""])[0]
+    where, name = f'{block.source}: column "{printable(head)}"', shown(head)
+    cure = (
+        f'Below [columns] in a column map, with the true unit: {meaning} = {{ name = {name}, unit = "..." }}.'
+    )
+    known = {unit: scale_of(unit, meaning) for unit in stated}
+    if column.unit is not None:
+        wrong = [
+            unit
+            for unit, scale in known.items()
+            if scale is not None and not _alike(unit, column.unit, meaning)
+        ]
+        wrong += [unit for unit, scale in known.items() if scale is None and columns.is_shipped]
+        if wrong:
+            cure = (
+                f"Below [columns] of a column map: {meaning} = {{ name = {name}, unit = {shown(wrong[0])} }}."
+            )
+            raise UnfitError(
+                where, f'is in "{column.unit}" by its map', f'"{printable(wrong[0])}" in the file', cure
+            )
+        return scale_of(column.unit, meaning) or Scale(), column.unit
+    if meaning == "friction" and looks_like_force(head):
+        rule, cure = "is a force by its name, not a friction", "Name it as tangential_force, with its unit."
+        raise InputError(where, rule, cure=cure)
+    if None in known.values() or len({*known.values()}) > 1:
+        rule = f"has a unit that is not one of the {meaning.replace('_', ' ')} ({known_units(meaning)})"
+        raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure)
+    if not stated and meaning not in ("friction", "cycles"):
+        raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure)
+    return (next(iter(known.values())) or Scale(), stated[0]) if stated else (Scale(), "")
+
+
+def _alike(unit: str, other: str, meaning: str) -> bool:
+    """Whether two units have one size and are of one quantity; for times as text the map decides."""
+    if meaning == "time" and time_form(other):
+        return True
+    same = (torque_scale(unit) is None) == (torque_scale(other) is None)
+    return scale_of(unit, meaning) == scale_of(other, meaning) and same
+
+
+def in_si(
+    block: Block, columns: ColumnMap, radius: float | None, notes: list[str], decimal: str | None
+) -> Read:
+    """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
+    places = places_of(block, columns, notes)
+    scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
+    timed = {i: time_form(scales[i][1]) for i in places.get("time", ())}
+    own = frozenset(one.casefold() for one in columns.format.missing)
+    absent = [float(one) for one in columns.format.missing if FLOAT.fullmatch(one)]
+    every = sorted(scales)
+    at_once = _at_once(block, [i for i in every if not timed.get(i)], columns)
+    loaded, found = at_once or ({}, decimal)
+    if block.columns is not None:
+        loaded, found = dict(enumerate(block.columns)), "."
+    rest = [i for i in every if i not in loaded]
+    cells = dict(zip(rest, cells_of(block, rest), strict=True))
+    decimal = found if decimal is None else decimal
+    if decimal is None:
+        plain_cells = [cells[i] for i in rest if not timed.get(i)]
+        decimal = columns.format.decimal if block.word == "line" else "."
+        decimal = decimal or decimal_of(plain_cells, block.separator, block.source)
+    arrays: Arrays = {}
+    for meaning, some in places.items():
+        made = []
+        for i in some:
+            if i in loaded:
+                values = loaded[i]
+            else:
+                values = _values(block, cells[i], i, decimal, own, timed.get(i, ""))
+                if not timed.get(i):
+                    values = _percentages(block, cells[i], i, values, scales[i])
+            values = np.where(np.isin(values, absent), np.nan, values) if absent else values
+            made.append(
+                _scaled(block, values, i, meaning, scales[i], columns.columns[meaning], radius, notes)
+            )
+        both = np.isfinite(made).all(axis=0)
+        if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
+            listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
+            which = " or ".join(str(i + 1) for i in some)
+            cure = f"State which below [columns] in a column map: {meaning} = {which}."
+            rule = f"has {len(some)} columns that could be the {meaning.replace('_', ' ')}"
+            raise UnfitError(block.source, rule, f"columns {listed}", cure)
+        arrays[meaning] = made[0]
+    first = {meaning: some[0] for meaning, some in places.items()}
+    return Read(arrays, first, {meaning: scales[i][1] for meaning, i in first.items()}, decimal)
+
+
+def _at_once(block: Block, places: Sequence[int], columns: ColumnMap) -> tuple[dict[int, Array], str] | None:
+    """Columns of nothing but numbers, by numpy's own reader, and their decimal sign; else None."""
+    if block.columns is not None or block.word == "row" or not places:
+        return None
+    text, decimal, sign = "\n".join(block.rows), columns.format.decimal, block.separator
+    comma, point = "," in text and sign != ",", "." in text
+    if BOUND in text or '"' in text or (comma and (point or decimal == ".")) or (point and decimal == ","):
+        return None
+    if decimal is None and sign != ",":  # where this is not certain, all cells decide
+        try:
+            some = replace(block, rows=block.rows[:200])
+            decimal_of(cells_of(some, places), sign, block.source)
+        except UnfitError:
+            return None
+    raw = (text.replace(",", ".") if comma else text).encode()
+    try:
+        loaded = np.loadtxt(
+            BytesIO(raw),
+            delimiter=None if sign == " " else sign,
+            usecols=places,
+            comments=None,
+            ndmin=2,
+            encoding="latin1",
+        )
+    except ValueError:
+        return None
+    found = dict(zip(places, np.ascontiguousarray(loaded.T), strict=True))
+    return found, "," if comma else "." if point or sign == "," else ""
+
+
+def _values(
+    block: Block, cells: Sequence[str], i: int, decimal: str, own: frozenset[str], form: str
+) -> Array:
+    """Numbers or seconds of a column; refused with the row of what is neither."""
+    missing = MISSING | own | {f"{ERROR}{one}" for one in own}
+    values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
+    if not wrong:
+        return values
+    cell, where = cells[wrong[0]], block.at(wrong[0], i)
+    if cell == UNCOMPUTED:
+        cure = "Open the workbook in a spreadsheet program and save it."
+        raise InputError(where, "holds a formula without a saved value", cure=cure)
+    bare = cell.lstrip(ERROR).rstrip(PERCENT)
+    cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
+    if cell.startswith(ERROR):
+        raise InputError(where, "holds an error", bare, cure)
+    if form:
+        raise InputError(
+            where, f'must be a time ("{form}")', f'"{printable(bare)}"', f"Forms of times: {TIMES}."
+        )
+    if is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
+        cure = f"For a column of times, add to the column map: {TIMES}."
+    raise InputError(where, "must be a number", f'"{printable(bare)}"', cure)
+
+
+def _percentages(
+    block: Block, cells: Sequence[str], i: int, values: Array, scale: tuple[Scale, str]
+) -> Array:
+    """Numbers of a sheet: what is shown as a percentage is saved as a fraction."""
+    shown_so = np.array([PERCENT in cell for cell in cells])
+    there = np.isfinite(values)
+    if not (shown_so & there).any():
+        return values
+    mixed = np.flatnonzero(there & ~shown_so)
+    if mixed.size:
+        rule, got = "is a plain number among percentages", f"{values[mixed[0]]:g}"
+        raise InputError(block.at(int(mixed[0]), i), rule, got, "Format all cells of the column alike.")
+    return values * 100.0 if scale[1] == "%" else values
+
+
+def _scaled(
+    block: Block,
+    values: Array,
+    i: int,
+    meaning: str,
+    scale: tuple[Scale, str],
+    column: ColumnChoice,
+    radius: float | None,
+    notes: list[str],
+) -> Array:
+    """A column in SI units; a torque divided by the radius of the track."""
+    where, name = (
+        f'{block.source}: column "{printable(block.heads[i].strip())}"',
+        shown(block.heads[i].strip()),
+    )
+    found = (
+        scale[0].of(values) * (1.0 if column.sign > 0 else -1.0) if meaning != "time" else scale[0].of(values)
+    )
+    if meaning == "tangential_force" and torque_scale(scale[1]) is not None:
+        if radius is None:
+            line = f'tangential_force = {{ name = {name}, unit = "{scale[1]}" }}'
+            cure = f"In a column map: {line} below [columns], "
+            raise UnfitError(
+                where, "is a torque, not a force", cure=f'{cure}and track_radius = "... mm" below [test].'
+            )
+        notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
+        found = found / radius
+    if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
+        line = f'temperature = {{ name = {name}, unit = "..." }}'
+        cure = f"State its true unit below [columns] in a column map: {line}"
+        got = f"{float(values[below[0]]):g} {scale[1]}"
+        cure += (
+            f'; if this is a code for a missing value, write missing = ["{got.split()[0]}"] below [format].'
+        )
+        raise InputError(where, "has temperatures below absolute zero", got, cure)
+    return found if np.isfinite(found).all() else np.where(np.isfinite(found), found, np.nan)
+
+
+# --- the log --------------------------------------------------------------------------------------
 def raw_log(
-    table: RawTable,
-    source: str,
-    checksum: str,
-    format_name: str,
-    columns: ColumnMap,
-    given: Mapping[str, str | float],
+    block: Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, str | float]
 ) -> RawLog:
     """Log of one table, with the conditions that the column map states for its file."""
-    constant = given.get("normal_force")
-    force = constant if isinstance(constant, float) else None
-    of_track = given.get("track_radius")
-    radius = of_track if isinstance(of_track, float) else None
-    understood = understand(
-        *(table.headers, table.units, source, columns, table.layout),
-        constant_force=force is not None,
-        track_radius=radius,
+    force, radius = (
+        one if isinstance(one := given.get(key), float) else None for key in ("normal_force", "track_radius")
     )
-    _check_twins(table, understood, source)
-    notes: list[str] = []
-    mean = understood.used.get("friction")
-    if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
-        notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
-    arrays = _in_si(table, understood, columns, source, notes)
-    _mend_sign(arrays, understood, source, notes, is_given=force is not None)
-    signed = _friction(arrays, force, notes)
+    notes = list(block.notes)
+    read = in_si(block, columns, radius, notes, None)
+    arrays = dict(read.arrays)
+    if "friction" in read.places and looks_extreme(head := block.heads[read.places["friction"]].strip()):
+        notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
+    _drop_empty(arrays, source, notes)
+    _mend_sign(arrays, columns, source, notes, is_given=force is not None)
+    signed = _friction(arrays, force, source, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
-    kept = _complete(arrays, table, source)
+    kept = _complete(arrays, block, source)
     missing = int(len(kept) - kept.sum())
     if missing:
         notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
-    kept, left_out = sliding_rows(table, signed, arrays.get("time"), kept)
+    kept, left_out = sliding_rows(_signals(block, read), signed, arrays.get("time"), kept)
     notes += [left_out] if left_out else []
-    if not kept.all():
-        arrays = {meaning: column[kept] for meaning, column in arrays.items()}
+    arrays = {meaning: column[kept] for meaning, column in arrays.items() if meaning not in SHAPES}
     rotation = arrays.pop("rotational_speed", None)
     turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
-    metadata = _without_stroke_speed(table, arrays, notes)
-    conditions, measured, sentences = conditions_of(given, metadata, arrays | turns, source)
+    metadata = metadata_of(block.above)
+    useful = _without_stroke_speed(metadata, block, read, arrays, notes)
+    decimal = read.decimal if block.word == "line" or block.columns is not None else ""
+    conditions, measured, sentences = conditions_of(given, useful, arrays | turns, source, decimal)
     if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
         turning = turns["rotational_speed"]  # the radius of the track is in the head of the file
         arrays["slip_speed"] = turning * (conditions.slip_speed / float(np.nanmedian(turning)))
+    form = f", {described_form(block.separator, read.decimal)}" if block.word == "line" else ""
     return RawLog(
         source=source,
         checksum=checksum,
-        format=format_name,
+        format=f"{columns.name} ({words}{form})",
         missing=missing,
-        columns=understood.columns,
-        metadata=dict(table.metadata),
+        columns=_columns_read(block, columns, read),
+        metadata=metadata,
         conditions=conditions,
         measured=measured,
         notes=(*notes, *sentences),
-        friction=arrays["friction"],
-        time=arrays.get("time"),
-        distance=arrays.get("distance"),
-        cycles=arrays.get("cycles"),
-        normal_force=arrays.get("normal_force"),
-        tangential_force=arrays.get("tangential_force"),
-        temperature=arrays.get("temperature"),
-        wear_depth=arrays.get("wear_depth"),
-        slip_speed=arrays.get("slip_speed"),
+        **arrays,  # type: ignore[arg-type]
     )
 
 
-def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
-    """Refuse columns of one name with different numbers, where one of them is needed."""
-    for meaning, others in understood.twins.items():
-        if meaning not in understood.used:
-            continue
-        places = [understood.used[meaning].index, *others]
-        columns = [table.columns[i] for i in places]
-        both = np.isfinite(columns).all(axis=0)
-        if any(not np.array_equal(columns[0][both], one[both]) for one in columns[1:]):
-            header = table.headers[places[0]].strip()
-            rule = f"has {len(places)} columns that could be the {meaning.replace('_', ' ')}"
-            listed = ", ".join(f'"{printable(header)}"' for _ in places)
-            numbers = " or ".join(str(i + 1) for i in places)
-            cure = f"State which below [columns] in a column map: {meaning} = {numbers}."
-            raise InputError(source, rule, f"columns {listed}", cure)
-
-
-def _in_si(
-    table: RawTable, understood: Understood, columns: ColumnMap, source: str, notes: list[str]
-) -> Arrays:
-    """Columns in SI units; NaN for what is not finite or a number that means a missing value."""
-    absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
-    arrays = {}
-    for meaning, one in understood.used.items():
-        column = table.columns[one.index]
-        if absent:
-            column = np.where(np.isin(column, absent), np.nan, column)
-        if one.scale is not None:
-            column = one.scale.of(column)
-        if one.sign < 0:
-            column = -column
-        if meaning == "temperature":
-            _check_absolute_zero(column, table, one, source)
-        arrays[meaning] = (
-            column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
+def _columns_read(block: Block, columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
+    """How each column of the file was understood."""
+    meanings = {i: meaning for meaning, i in read.places.items()}
+    found = []
+    for i, head in enumerate(block.heads):
+        meaning = meanings.get(i)
+        why = columns.columns[meaning].origin if meaning else "not needed"
+        unit = read.units[meaning] if meaning else block.below[i]
+        own = meaning if meaning in MEANINGS else None
+        found.append(
+            ColumnRead(
+                header=head.strip(),
+                meaning=own,
+                unit=unit,
+                why=f"{meaning}, {why}" if meaning and not own else why,
+            )
         )
+    return tuple(found)
+
+
+def _signals(block: Block, read: Read) -> list[Signal]:
+    """Columns that may show which rows slide, in the order of the file."""
+    there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
+    return [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
+
+
+def _drop_empty(arrays: Arrays, source: str, notes: list[str]) -> None:
+    """Leave out abscissae without any value; one must be left."""
     there = [meaning for meaning in ABSCISSAE if meaning in arrays]
     empty = [meaning for meaning in there if np.isnan(arrays[meaning]).all()]
     if empty == there:
@@ -133,26 +394,9 @@ def _in_si(
     for meaning in empty:
         del arrays[meaning]
         notes.append(f"the column of {meaning} is empty and not used")
-    return arrays
 
 
-def _check_absolute_zero(column: Array, table: RawTable, one: Meant, source: str) -> None:
-    """Refuse temperatures below absolute zero: the unit is another, or they mean a missing value."""
-    below = np.flatnonzero(column < -1e-9)
-    if below.size:
-        name = shown(table.headers[one.index].strip())
-        line = f'temperature = {{ name = {name}, unit = "..." }}'
-        got = f"{float(table.columns[one.index][below[0]]):g} {one.unit}"
-        cure = (
-            f"State its true unit below [columns] in a column map: {line}; if this is a code for a missing "
-            f'value, write missing = ["{got.split()[0]}"] below [format].'
-        )
-        raise InputError(f"{source}: column {name}", "has temperatures below absolute zero", got, cure)
-
-
-def _mend_sign(
-    arrays: Arrays, understood: Understood, source: str, notes: list[str], *, is_given: bool
-) -> None:
+def _mend_sign(arrays: Arrays, columns: ColumnMap, source: str, notes: list[str], *, is_given: bool) -> None:
     """Make compression positive: the sign of nearly all rows, or that of the column map.
 
     A column without any force gives way to the constant force of the column map, if there is one.
@@ -166,7 +410,7 @@ def _mend_sign(
         del arrays["normal_force"]
         notes.append("the column of normal force has no load in any row and is not used")
         return
-    if column is None or understood.used["normal_force"].sign < 0:
+    if column is None or columns.columns["normal_force"].sign < 0:
         return
     negative, positive = int((column < 0.0).sum()), int((column > 0.0).sum())
     if negative > ONE_SIGN * (negative + positive):
@@ -175,20 +419,23 @@ def _mend_sign(
     elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
         rule = "has a normal force of both signs, so that the sign of compression is not certain"
         got = f"{positive} rows above zero, {negative} below"
-        cure = "Below [columns] in a column map, add to normal_force: sign = 1 (or -1)."
-        if understood.used["normal_force"].why != "column map":
-            raise InputError(source, rule, got, cure)
+        cure = (
+            "Below [columns] in a column map, add to normal_force: sign = -1 if compression counts negative."
+        )
+        raise InputError(source, rule, got, cure)
 
 
-def _friction(arrays: Arrays, force: float | None, notes: list[str]) -> Array:
+def _friction(arrays: Arrays, force: float | None, source: str, notes: list[str]) -> Array:
     """Friction with its sign as logged, or tangential over normal force."""
     if "friction" in arrays:
         return arrays["friction"]
     tangential = np.abs(arrays["tangential_force"])
     if "normal_force" not in arrays:
-        normal = np.nan if force is None else force
-        notes.append(f"friction is |tangential force| / {format_quantity(normal, 'N')}, the constant given")
-        return np.asarray(tangential / normal)
+        if force is None:
+            cure = 'In a map, below [columns]: normal_force = "..."; below [test]: normal_force = "... N".'
+            raise UnfitError(source, "has a tangential force but no normal force", cure=cure)
+        notes.append(f"friction is |tangential force| / {format_quantity(force, 'N')}, the constant given")
+        return np.asarray(tangential / force)
     notes.append("friction is |tangential force| / normal force, row by row")
     normal_force = arrays["normal_force"]
     released = int((normal_force <= 0.0).sum())
@@ -222,7 +469,7 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
     return size
 
 
-def _complete(arrays: Arrays, table: RawTable, source: str) -> Rows:
+def _complete(arrays: Arrays, block: Block, source: str) -> Rows:
     """Rows that have friction and every abscissa, none of which may run backwards."""
     abscissae = [meaning for meaning in ABSCISSAE if meaning in arrays]
     kept: Rows = np.all([np.isfinite(arrays[name]) for name in ("friction", *abscissae)], axis=0)
@@ -235,24 +482,27 @@ def _complete(arrays: Arrays, table: RawTable, source: str) -> Rows:
         back = np.flatnonzero(np.diff(column) < 0.0)
         if len(back):
             i = int(back[0]) + 1
-            row = f"table row {rows[i] + 1}" if table.lines is None else f"line {table.lines[rows[i]]}"
             here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
             cure = "Split the file there; or, if this column has another meaning, state it in a column map."
             rule = f"{meaning} must not run backwards"
-            raise InputError(f"{source}: {row}", rule, f"{here} after {before}", cure)
+            raise InputError(block.at(int(rows[i])), rule, f"{here} after {before}", cure)
     return kept
 
 
-def _without_stroke_speed(table: RawTable, arrays: Arrays, notes: list[str]) -> dict[str, str]:
+def _without_stroke_speed(
+    metadata: Mapping[str, str], block: Block, read: Read, arrays: Arrays, notes: list[str]
+) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
-    strokes = any(plain(header).startswith(("linear position", "lin position")) for header in table.headers)
-    names = KEYS["slip_speed"].split("; ")
-    speeds = [key for key in table.metadata if plain(header_parts(key)[0][0]) in names]
+    position = read.places.get("position")
+    strokes = position is not None and plain(block.heads[position]).startswith(
+        ("linear position", "lin position")
+    )
+    speeds = [key for key in metadata if plain(header_parts(key)[0][0]) in KEYS["slip_speed"]]
     if not strokes or not (speeds or "slip_speed" in arrays):
-        return dict(table.metadata)
+        return dict(metadata)
     arrays.pop("slip_speed", None)
     notes.append(
         "these are strokes there and back: the file has their greatest speed, which is not used; write "
         "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
     )
-    return {key: value for key, value in table.metadata.items() if key not in speeds}
+    return {key: value for key, value in metadata.items() if key not in speeds}
