@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from separatrix.friction.file import CONDITIONS, NAMES, FrictionTest, Place, place
 from separatrix.friction.fit import FrictionFit, fit_friction
-from separatrix.friction.logs import read, with_draft_written
+from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
 from separatrix.friction.logs.log import RawLog, in_order, joined, of_log
 from separatrix.friction.prediction import FRICTION_LIMIT
@@ -72,7 +72,7 @@ def tribometer(
     cut = None if run_in is None else place(run_in, RUN_IN_END)
     pool = ThreadPoolExecutor(jobs)
     try:
-        logs = _each(pool, lambda path: read(path, chosen), files, progress, 0)
+        logs = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
         tests = _tests_of(list(zip(files, logs, strict=True)), join=join, complete=complete)
         reduced = _each(pool, lambda test: _reduced(*test, chosen, cut), tests, progress, 500)
     finally:  # nothing new is begun once the work is interrupted
@@ -102,7 +102,7 @@ def _files(paths: Sequence[str | Path]) -> list[Path]:
         try:
             is_folder = path.is_dir()
         except OSError:
-            is_folder = False  # `read` reports why
+            is_folder = False  # `read_log` reports why
         if not is_folder:
             found.append(path)
             continue
@@ -144,12 +144,11 @@ def _each(
 
 
 def _with_others(wrong: Sequence[InputError]) -> InputError:
-    """The first refusal, its draft of a column map written, and how many other files are refused."""
-    first, others = with_draft_written(wrong[0]), len(wrong) - 1
-    if not others:
-        return first
-    more = f"{others} other file{'s are' if others > 1 else ' is'} refused too."
-    return first.at(first.path, cure=f"{first.cure} {more}".strip())
+    """The first refusal, and how many other files are refused."""
+    first, others = wrong[0], len(wrong) - 1
+    if others:
+        first.cure += f" {others} other file{'s are' if others > 1 else ' is'} refused too."
+    return first
 
 
 def _tests_of(
@@ -195,9 +194,7 @@ def _tests_of(
 
 def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Cut | None) -> Reduction:
     try:
-        if cut is None and (text := chosen.run_in_end(path)) is not None:
-            cut = place(text, RUN_IN_END)
-        return reduction(log, cut)
+        return reduction(log, cut or chosen.conditions(path).get("run_in_end"))
     except InputError as error:
         if error.path != RUN_IN_END:
             raise

@@ -14,7 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from separatrix.friction.logs.column_map import KIND, ColumnMap, column_map, read_column_map, shipped_maps
+from separatrix.friction.logs.column_map import (
+    ColumnMap,
+    column_map,
+    column_map_of,
+    read_column_map,
+    shipped_maps,
+)
 from separatrix.friction.logs.draft import Draft, draft_of
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.logs.log_tables import Block, Content, blocks_of, cells_of, content_of, matching
@@ -22,18 +28,9 @@ from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, time_form
 from separatrix.friction.logs.numbers_and_times import UnfitError
 from separatrix.friction.logs.raw import in_si, raw_log
 from separatrix.ground.errors import InputError
-from separatrix.ground.toml import parsed
 from separatrix.ground.units import format_quantity, printable, shown, unit_of
 
-__all__ = [
-    "UnmappedError",
-    "column_map",
-    "described",
-    "read",
-    "read_column_map",
-    "read_log",
-    "with_draft_written",
-]
+__all__ = ["UnmappedError", "column_map", "described", "read_column_map", "read_log"]
 
 
 class UnmappedError(InputError):
@@ -41,6 +38,7 @@ class UnmappedError(InputError):
 
     draft: str = ""
     place: Path = Path()
+    """Where the draft is to be written."""
 
 
 def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:
@@ -57,35 +55,10 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     ------
     InputError
         What cannot be read or decided: file, line, and what to write. If the columns are not
-        certain, a draft of a column map is written beside the log.
+        certain, it is an `UnmappedError` with the text of a draft.
     """
-    try:
-        return read(Path(path), column_map or ColumnMap())
-    except UnmappedError as error:
-        raise with_draft_written(error) from None
-
-
-def with_draft_written(error: InputError) -> InputError:
-    """The refusal, its draft written beside the log and named in its cure; a file there is kept."""
-    if not isinstance(error, UnmappedError):
-        return error
-    name = printable(error.place.name, 150)
-    cure = f"Look at the draft {name} beside the log, and add: --map {name}."
-    try:
-        with error.place.open("x", encoding="utf-8") as file:
-            file.write(error.draft)
-    except FileExistsError:
-        cure = (
-            f"There is a file {name}: look at it, and add: --map {name}. Without it, a new draft is written."
-        )
-    except OSError as fault:
-        cure = f"A draft of a column map could not be written beside the log: {fault.strerror}."
-    return error.at(error.path, cure=cure)
-
-
-def read(path: Path, given: ColumnMap) -> tuple[RawLog, ...]:
-    """Logs of one file, as `read_log`, but without writing a draft."""
-    content = content_of(path, given.format)
+    given = column_map or ColumnMap()
+    content = content_of(Path(path), given.format)
     if given.is_complete:
         return _logs(content, given)
     fitting = [one for one in shipped_maps() if all(text in content.beginning for text in one.signature)]
@@ -98,24 +71,24 @@ def read(path: Path, given: ColumnMap) -> tuple[RawLog, ...]:
             why = error
     draft = draft_of(content, known, why)
     text = draft.text(content.name)
-    if not draft.questions:
-        document, _ = parsed(text, f"{content.name}, its heads", KIND)
-        columns = column_map(document, f"{content.name}, its heads").by("its name")
-        stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
-        name = fitting[0].name if fitting else "plain text"
-        columns = replace(columns, columns={**columns.columns, **stated}, name=name)
-        return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
-    raise _unmapped(content, draft, text, why)
+    if draft.questions:
+        raise _unmapped(content, draft, text, why)
+    columns = column_map_of(text, f"{content.name}, its heads").by("its name")
+    stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
+    name = fitting[0].name if fitting else "plain text"
+    columns = replace(columns, columns={**columns.columns, **stated}, name=name)
+    return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
 
 
 def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> UnmappedError:
-    first, more = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions) - 1
+    first, count = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions)
     like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
-    rule = f"{like}has an open question: {first}"
-    if more:
-        rule = f"{like}has {more + 1} open questions, the first: {first}"
-    error = UnmappedError(content.name, rule, cure="Write a column map.")
-    error.draft, error.place = text, content.path.with_name(f"{content.path.name}.map.toml")
+    rule = f"{like}has {count} open questions, the first: {first}"
+    rule = rule if count > 1 else f"{like}has an open question: {first}"
+    place = content.path.with_name(f"{content.path.name}.map.toml")
+    cure = "Write a column map; `separatrix tribometer` writes a draft of it beside the log."
+    error = UnmappedError(content.name, rule, cure=cure)
+    error.draft, error.place = text, place
     return error
 
 
@@ -127,23 +100,19 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
             f'"{one.names[0]}"' for one in columns.columns.values() if one.names and not one.optional
         )
         rule = "has no table with the columns that the column map needs"
-        raise UnfitError(
-            content.name,
-            rule,
-            cure=f"They are {listed or 'given by number'}; under them, two rows of numbers.",
-        )
+        cure = f"They are {listed or 'given by number'}; under them, two rows of numbers."
+        raise UnfitError(content.name, rule, cure=cure)
     if len({(part.source, part.name) for part in parts}) < len(parts):
         sheets = {part.source: part.name for part in parts if content.parts and content.parts[0].sheet}
         named = [f"{name}, " if (name := sheets.get(part.source)) else "" for part in parts]
         parts = [replace(part, name=f"{named[i]}table {i + 1}") for i, part in enumerate(parts)]
     found: list[tuple[str, RawLog]] = []
     wrong: InputError | None = None
+    stated = columns.conditions(content.path)
     for part in _named(parts, content, columns):
         source = f"{content.name}, {printable(part.name)}" if part.name else content.name
         try:
-            log = raw_log(
-                part, source, content.checksum, content.words, columns, columns.conditions(content.path)
-            )
+            log = raw_log(part, source, content.checksum, content.words, columns, stated)
             found.append((part.name, replace(log, series=_series(part, content, columns))))
         except InputError as error:
             wrong = wrong or error

@@ -51,86 +51,73 @@ def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     from openpyxl.utils.exceptions import InvalidFileException
 
     refuse_unsafe(path, label)
-    found = {}
     try:
         with warnings.catch_warnings(), path.open("rb") as file:
             warnings.simplefilter("ignore")
             book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
-            for sheet in book.worksheets:
-                lines = _lines_of_sheet(sheet, _percent_styles(book), label)
-                if any(re.search(r"\d", line) for line in lines):
-                    found[sheet.title] = lines
-            book.close()
+            formulas = openpyxl.load_workbook(file, read_only=True, keep_links=False)
+            found = {one.title: _lines(one, formulas[one.title], label) for one in book.worksheets}
     except InputError:
         raise
     except (*_DAMAGED_BOOK, InvalidFileException) as error:
         rule = f"is not a readable workbook: {printable(str(error), 100)}"
         raise InputError(label, rule, cure=SAVE_AGAIN) from None
+    found = {title: lines for title, lines in found.items() if any(re.search(r"\d", one) for one in lines)}
     if not found:
         cure = "Put the names of the columns in one row, and the numbers (not as text) below."
         raise InputError(label, "has no sheet with rows of numbers under a row of names", cure=cure)
     return found
 
 
-def _percent_styles(book: Any) -> set[int]:
-    """Numbers of the cell styles that show percentages."""
-    formats = {9: "0%", 10: "0.00%"} | {164 + i: form for i, form in enumerate(book._number_formats)}
-    used = [formats.get(style.numFmtId, "") for style in book._cell_styles]
-    return {i for i, form in enumerate(used) if "%" in _LITERAL.sub("", form)}
-
-
-def _lines_of_sheet(sheet: Any, percent: set[int], label: str) -> list[str]:
+def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
     """Lines of a sheet, of equal length where there is a number in them; empty where no cell is used."""
-    from openpyxl.worksheet._reader import FORMULA_TAG, WorkSheetParser
-
-    class Parser(WorkSheetParser):
-        def parse_cell(self, element: Any) -> dict[str, Any]:
-            cell: dict[str, Any] = super().parse_cell(element)
-            no_value = cell["value"] is None and element.get("t") != "str"
-            return cell | {"data_type": "f"} if no_value and element.find(FORMULA_TAG) is not None else cell
-
     rows: dict[int, dict[int, str]] = {}
-    count, width = 0, 0
-    with sheet._get_source() as source:
-        book = sheet.parent
-        parser = Parser(
-            *(source, sheet._shared_strings),
-            data_only=True,
-            epoch=book.epoch,
-            date_formats=book._date_formats,
-            timedelta_formats=book._timedelta_formats,
-        )
-        for number, cells in parser.parse():
-            used = {
-                cell["column"]: _written(cell, percent) for cell in cells if cell["column"] <= MOST_COLUMNS
-            }
-            used = {column: text for column, text in used.items() if text}
-            count += len(used)
-            if count > MOST_CELLS or number > MOST_ROWS:
-                raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
-            if used:
-                rows[number] = used
-            if sum(text[0].isdigit() for text in used.values()) > 1:
-                width = max(width, *used)
-    lines = [""] * max(rows, default=0)
+    empty: set[tuple[int, int]] = set()  # cells that are there, without a value
+    count = 0
+    for number, cells in _used(sheet):
+        rows[number] = {place: text for place, cell in cells if (text := _written(cell))}
+        empty |= {(number, place) for place, cell in cells if cell.value is None and cell.data_type == "n"}
+        count += len(cells)
+        if count > MOST_CELLS:
+            raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
+    for number, cells in _used(formulas) if empty else ():
+        known = [place for place, cell in cells if cell.data_type == "f" and (number, place) in empty]
+        rows[number] |= dict.fromkeys(known, UNCOMPUTED)
+    table = [used for used in rows.values() if sum(text[0].isdigit() for text in used.values()) > 1]
+    width = max((max(used) for used in table), default=0)
+    lines = [""] * max((number for number, used in rows.items() if used), default=0)
     for number, used in rows.items():
         has_numbers = any(text[:1] in f"0123456789-.{ERROR}{UNCOMPUTED}" for text in used.values())
-        last = max(width, *used) if has_numbers or len(used) > 1 else max(used)
-        lines[number - 1] = "\t".join(used.get(i, "") for i in range(1, last + 1))
+        last = max(width, *used) if has_numbers or len(used) > 1 else max(used, default=0)
+        lines[number - 1 : number] = (
+            ["\t".join(used.get(i, "") for i in range(1, last + 1))] if used else [""]
+        )
     return lines
 
 
-def _written(cell: dict[str, Any], percent: set[int]) -> str:
+def _used(sheet: Any) -> Iterator[tuple[int, list[tuple[int, Any]]]]:
+    """Rows of a sheet with a cell in them: their numbers, and the columns and cells."""
+    from openpyxl.cell.read_only import EmptyCell
+
+    sheet.reset_dimensions()  # else each row is filled up to the last column that the sheet declares
+    for number, row in enumerate(sheet.iter_rows(), 1):
+        if number > MOST_ROWS:
+            raise ValueError(f"row {number}")
+        cells = [(i, cell) for i, cell in enumerate(row[:MOST_COLUMNS], 1) if not isinstance(cell, EmptyCell)]
+        if cells:
+            yield number, cells
+
+
+def _written(cell: Any) -> str:
     """Text of a cell, with a sign where it differs from its value."""
-    value, kind = cell["value"], cell["data_type"]
-    if kind == "f":
-        return UNCOMPUTED
+    value = cell.value
     if value is None:
         return ""
-    if kind == "e":
+    if cell.data_type == "e":
         return f"{ERROR}{value}"
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return repr(float(value)) + (PERCENT if cell["style_id"] in percent else "")
+        is_percentage = "%" in _LITERAL.sub("", cell.number_format)
+        return repr(float(value)) + (PERCENT if is_percentage else "")
     if isinstance(value, datetime.timedelta):
         hours, rest = divmod(value.total_seconds(), 3600.0)
         return f"{hours:.0f}:{rest // 60:02.0f}:{rest % 60:09.6f}"
@@ -138,7 +125,6 @@ def _written(cell: dict[str, Any], percent: set[int]) -> str:
 
 
 MOST_CHANNELS = 1000
-MOST_SEGMENTS = 1_000_000
 MOST_SCALES = 100
 LONGEST_PROPERTY = 200
 _LEAD_IN = struct.Struct("<4sIIQQ")
@@ -167,8 +153,7 @@ def tdms_groups(path: Path) -> list[Block]:
                 groups = content.groups()
                 for holder in (content, *groups, *(one for group in groups for one in group.channels())):
                     number = holder.properties.get("NI_Number_Of_Scales", 0)
-                    if not isinstance(number, int | np.integer) or not 0 <= number <= MOST_SCALES:
-                        # what only a damaged file has, before npTDMS counts up to it
+                    if not 0 <= int(number) <= MOST_SCALES:  # npTDMS would count up to it
                         rule = f"must have at most {MOST_SCALES} scalings a channel"
                         raise InputError(label, rule, shown(number))
                 tables = [table for group in groups for table in _tables(group, content, label, size)]
@@ -185,16 +170,13 @@ def tdms_groups(path: Path) -> list[Block]:
 
 def _check_segments(file: BinaryIO, size: int, label: str) -> None:
     """Refuse a file whose segments do not follow one another up to its end."""
-    at = count = 0
+    at = 0
     while at < size:
         file.seek(at)
         head = file.read(_LEAD_IN.size)
         if not head.startswith(b"TDSm"):
-            raise InputError(label, "is a damaged TDMS file" if at else "is not a TDMS file")
-        length = _LEAD_IN.unpack(head)[3] if len(head) == _LEAD_IN.size else size
-        at, count = at + _LEAD_IN.size + length, count + 1
-        if count > MOST_SEGMENTS:
-            raise InputError(label, f"has more than {MOST_SEGMENTS} segments", cure="Defragment it.")
+            raise InputError(label, "is a damaged TDMS file", cure=_EXPORT)
+        at += _LEAD_IN.size + (_LEAD_IN.unpack(head)[3] if len(head) == _LEAD_IN.size else size)
     if at != size:
         raise InputError(label, "ends within its last segment", cure=_EXPORT)
     file.seek(0)
@@ -206,35 +188,25 @@ def _tables(group: nptdms.TdmsGroup, content: nptdms.TdmsFile, label: str, size:
     for channel in group.channels():
         if len(channel) and channel.dtype is not None and np.dtype(channel.dtype).kind in "fiubM":
             lengths.setdefault(len(channel), []).append(channel)
-    metadata = {
-        printable(str(key)).replace(":", " "): printable(str(value), LONGEST_PROPERTY)
-        for key, value in {**content.properties, **group.properties}.items()
-        if str(value).strip()
-    }
+    pairs = {str(key): str(value) for key, value in {**content.properties, **group.properties}.items()}
+    above = [
+        f"{printable(key).replace(':', ' ')}: {printable(value, LONGEST_PROPERTY)}"
+        for key, value in pairs.items()
+        if value.strip()
+    ]
     for length, channels in sorted(lengths.items(), reverse=True):
-        if len(channels) > MOST_CHANNELS:
-            raise InputError(label, f"has more than {MOST_CHANNELS} channels in a group", str(len(channels)))
-        if length > size:
-            raise InputError(label, "declares more values than it can hold", f"{length} in {size} bytes")
-        if 8 * length * len(channels) > MOST_BYTES:
-            rule = f"would need more than {MOST_BYTES // 1024**2} MB"
-            raise InputError(label, rule, cure="Export fewer channels or rows.")
-        headers = [channel.name.strip() for channel in channels]
+        if len(channels) > MOST_CHANNELS or 8 * length * len(channels) > MOST_BYTES or length > size:
+            rule = f"must have at most {MOST_CHANNELS} channels in a group, of {MOST_BYTES // 1024**2} MB"
+            raise InputError(label, rule, f"{len(channels)} of {length} values in {size} bytes")
+        heads = [channel.name.strip() for channel in channels]
         units, columns = map(list, zip(*map(_column, channels), strict=True))
-        if not any("time" in ranks(name) for header in headers for name, _ in header_parts(header)):
-            time = _waveform_time(channels, f"{label}, group {printable(group.name)}")
-            if time is not None:
-                headers, units, columns = ["time of the waveform", *headers], ["s", *units], [time, *columns]
-        yield Block(
-            f"{label}, group {printable(group.name)}",
-            printable(f"{group.name}, {length} rows" if len(lengths) > 1 else group.name),
-            headers,
-            units,
-            [f"{key}: {value}" for key, value in metadata.items()],
-            lines=range(1, length + 1),
-            word="row",
-            columns=columns,
-        )
+        where = f"{label}, group {printable(group.name)}"
+        is_timed = any("time" in ranks(name) for head in heads for name, _ in header_parts(head))
+        if not is_timed and (time := _waveform_time(channels, where)) is not None:
+            heads, units, columns = ["time of the waveform", *heads], ["s", *units], [time, *columns]
+        name = printable(f"{group.name}, {length} rows" if len(lengths) > 1 else group.name)
+        lines = range(1, length + 1)
+        yield Block(where, name, heads, units, above, lines=lines, word="row", columns=columns)
 
 
 def _column(channel: nptdms.TdmsChannel) -> tuple[str, Array]:

@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
+from itertools import takewhile
+from typing import Any
 
-from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap, TextFormat
+from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, given_in
 from separatrix.friction.logs.log import metadata_of, two_ways
 from separatrix.friction.logs.log_tables import (
-    STARTS,
     Block,
+    BrokenError,
     Content,
     Heads,
     Part,
+    blocks_of_part,
     cells_of,
     fields_of,
     first_table,
@@ -23,15 +26,14 @@ from separatrix.friction.logs.log_tables import (
     is_number,
     is_row,
     matching,
+    separator_in,
     separator_of,
 )
 from separatrix.friction.logs.names import (
     ABSCISSAE,
     KEYS,
-    MASSES,
     MEANINGS,
     MISSING,
-    POSITIONS,
     header_parts,
     looks_extreme,
     looks_like_friction,
@@ -49,16 +51,12 @@ from separatrix.ground.units import printable
 
 CHECK = "# guess, check"
 UNKNOWN = "..."  # is refused until it is edited
-USUAL = {
-    "time": "s",
-    "distance": "m",
-    "temperature": "degC",
-    "wear_depth": "um",
-    "friction": "-",
-    "cycles": "-",
-}
-"""Units that a draft offers where the file states none, to be checked."""
+USUAL = {"time": "s", "distance": "m", "temperature": "degC", "wear_depth": "um"} | dict.fromkeys(
+    ("friction", "cycles"), "-"
+)
+"""Units that a draft offers where the file states none, to be checked; of others N."""
 
+MOST_BREAKS = 20  # kinds of lines among the rows
 MOST_ROWS = 20_000  # of which a column is looked at in all
 SAMPLE = 50  # rows of a column that are looked at
 _CLOCK = re.compile(r"\d{1,4}:\d{1,2}:\d{1,2}(?:[.,:]\d+)?\s*(?:[AaPp]\.?[Mm]\.?)?")
@@ -75,9 +73,12 @@ class Option:
 
     rank: int
     index: int
-    unit: str  # as the file states it; empty for none
-    known: bool
+    unit: str = ""  # as the file states it; empty for none
+    known: bool = False
     question: str = ""
+
+
+Options = dict[str, list[Option]]  # by meaning
 
 
 @dataclass(slots=True)
@@ -85,11 +86,12 @@ class Draft:
     """Lines of a column map, what has to be looked at, and what is not used."""
 
     given: ColumnMap
+    stated: Mapping[str, Any]  # conditions of the file
     form: list[str] = field(default_factory=list)
     columns: dict[str, str] = field(default_factory=dict)  # by meaning
     test: list[str] = field(default_factory=list)
-    seen: list[str] = field(default_factory=list)
     cells: list[list[str]] = field(default_factory=list)  # of each column
+    seen: list[str] = field(default_factory=list)
     questions: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -100,36 +102,25 @@ class Draft:
 
     def text(self, name: str) -> str:
         """The map, ready to be looked at."""
-        begin = f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.'
         lines = [
-            begin,
+            f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.',
             f"name = {_toml(f'map of {name}'[:200])}",
-            "",
-            "[format]",
-            *self.form,
-            "",
-            "[columns]",
+            *("", "[format]", *self.form, "", "[columns]", *self.columns.values(), "", "[test]"),
         ]
-        lines += self.columns.values()
-        stated = self.given.stated
-        test = [f"{key} = {_toml(value)}" for key, value in _section(stated.get("test")).items()]
-        lines += ["", "[test]", *test, *self.test] if test or self.test else []
-        for pattern, section in _section(stated.get("files")).items():
+        written = self.given.as_written
+        lines += [*(f"{key} = {_toml(value)}" for key, value in written.get("test", {}).items()), *self.test]
+        for pattern, section in written.get("files", {}).items():
             lines += ["", f"[files.{_toml(pattern)}]"]
-            lines += [f"{key} = {_toml(value)}" for key, value in _section(section).items()]
-        return "\n".join(
-            [*lines, "", "# The columns, with their first, middle and last values:", *self.seen, ""]
-        )
-
-
-def _section(value: object) -> Mapping[str, object]:
-    return value if isinstance(value, dict) else {}
+            lines += [f"{key} = {_toml(value)}" for key, value in section.items()]
+        about = "# The columns, with their first, middle and last values:"
+        return "\n".join([*lines, "", about, *self.seen, ""])
 
 
 def _toml(value: object) -> str:
     """A value in TOML."""
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_toml(key)} = {_toml(one)}" for key, one in value.items()) + " }"
+        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml(key) for key in value}
+        return "{ " + ", ".join(f"{keys[key]} = {_toml(one)}" for key, one in value.items()) + " }"
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_toml, value))}]"
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
@@ -140,10 +131,10 @@ def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draf
 
     `given` is what the user and a known layout state; `why` is the reason that they do not suffice, if any.
     """
-    drafts: list[tuple[str, Draft]] = []
-    drafts += [(group.name, _draft(group, Draft(given))) for group in content.groups]
+    stated = given.conditions(content.path)
+    drafts = [(group.name, _draft(group, Draft(given, stated))) for group in content.groups]
     for part in content.parts:
-        draft = Draft(given)
+        draft = Draft(given, stated)
         if (block := _block(part, draft)) is not None:
             drafts.append((part.sheet, _draft(block, draft)))
     if not drafts:
@@ -153,9 +144,8 @@ def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draf
         listed = ", ".join(_toml(one) for one, _ in drafts)
         found.form.append(found.ask(f"tables = [{_toml(name)}]", f"one of {listed}?"))
     if why is not None:
-        found.form.insert(
-            0, found.ask(f"# {given.name}", f"the map of this layout does not fit: {why.rule} {why.got}")
-        )
+        question = f"the map of this layout does not fit: {why.rule} {why.got}"
+        found.form.insert(0, found.ask(f"# {given.name}", question))
     return found
 
 
@@ -172,172 +162,115 @@ def _no_table(content: Content) -> InputError:
 
 # --- the table ------------------------------------------------------------------------------------
 def _block(part: Part, draft: Draft) -> Block | None:
-    """The first table of a text: how it is written goes into the draft; None without one."""
+    """The first table of a text, with a question on each kind of line among its rows that is not one."""
     form = draft.given.format
-    missing = MISSING | {one.casefold() for one in form.missing}
-    separator, others = (form.separator, []) if form.separator else separator_of(part.lines, missing)
-    separator = "\t" if part.sheet else separator
-    if not separator:
-        return None
-    if form.header_line is not None:
-        heads: Heads | None = next(heads_in(part, draft.given, separator, missing))
-    else:
-        heads = first_table(part.lines, separator, missing, _start(part, separator, draft.given))
+    separator, others = separator_in(part, form)
+    heads = _heads(part, separator, draft.given) if separator else None
     if heads is None:
         return None
-    own = {f.name: value for f in fields(TextFormat) if (value := getattr(form, f.name))}
-    draft.form += [f"{key} = {_toml(value)}" for key, value in own.items()]
-    if "separator" not in own and not part.sheet:
-        line = f"separator = {_toml(separator)}"
-        names = " or ".join(_toml(one) for one in others)
-        draft.form.append(draft.ask(line, f"or {names}?") if others else line)
-    block = Block(
-        part.source,
-        part.sheet,
-        heads.names,
-        heads.below,
-        part.lines[: heads.line or 0],
-        separator=separator,
-        word=part.word,
-    )
-    known = {part.lines[heads.line] if heads.line is not None else None}
-    _rows(block, part.lines, heads.first, known, draft)
+    asked = {"separator": f"or {' or '.join(map(_toml, others))}?"} if others else {}
+    form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
+    names = heads.names if heads.line is not None and form.header_line is None else []
+    needed = [(name,) for name in names if name.strip()]
+    for left in range(MOST_BREAKS, -1, -1):
+        try:
+            blocks = list(blocks_of_part(part, form, needed))
+            if blocks or heads.line is None or form.header_line is not None:
+                break
+            form, needed = replace(form, header_line=heads.line + 1), []
+            asked["header_line"] = "its line of names?"
+        except BrokenError as error:
+            line = part.lines[error.line].strip()
+            begin = "".join(takewhile(str.isprintable, line))
+            if not left or not begin:
+                raise
+            if error.names is not None:
+                got = part.lines[error.names].strip()[:60]
+                question = f"{part.word} {error.names + 1} begins another table, which is not read: {got!r}"
+                asked.setdefault("ends", question)
+                form = replace(form, ends=(*form.ends, begin[:60].strip()))
+            else:
+                question = f"{part.word} {error.line + 1} is among the rows and is left out: {line[:60]!r}"
+                asked.setdefault("skip", question)
+                word = re.match(r"\D{0,30}", begin)
+                form = replace(form, skip=(*form.skip, (word and word[0].strip()) or begin[:20].strip()))
+    for key, value in given_in(form).items():
+        line = f"{key} = {_toml(value)}"
+        draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
+    if not blocks:
+        return None
+    block = blocks[0]
     if heads.line is None:
-        block.heads = [""] * len(heads.names)
+        block.heads = [""] * len(block.heads)
+    if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
+        middle = block.rows[1000 : -1000 : len(block.rows) // 10_000]
+        block.rows = [*block.rows[:1000], *middle, *block.rows[-1000:]]
     return block
 
 
-def _start(part: Part, separator: str, given: ColumnMap) -> int:
-    """The first line with the names that are stated; the first of all where there is none."""
+def _heads(part: Part, separator: str, given: ColumnMap) -> Heads | None:
+    """Names of the first table: at the line that is stated, or below the first with the names stated."""
+    if given.format.header_line is not None:
+        return next(heads_in(part, given.format, (), separator))
     named = [one.names for one in given.columns.values() if one.names and not one.optional]
     lines = ((i, fields_of(line, separator)) for i, line in enumerate(part.lines) if named)
-    return next((i for i, heads in lines if all(matching(names, heads) for names in named)), 0)
-
-
-def _rows(block: Block, lines: Sequence[str], first: int, heads: set[str | None], draft: Draft) -> None:
-    """Add the rows to the block, and a question on each kind of line among them that is not one."""
-    width = len(fields_of(lines[first], block.separator))
-    form, odd = draft.given.format, dict[str, int]()
-    between: list[int] = []
-    is_first = True  # the first of the tables with these names
-    for i in range(first, len(lines)):
-        line = lines[i]
-        if (
-            not between
-            and line[:1] in STARTS
-            and '"' not in line
-            and line.count(block.separator) == width - 1
-        ):
-            if is_first:
-                block.rows.append(line)
-            continue
-        begin = line.strip()
-        if form.ends and begin.startswith(form.ends):
-            break
-        if not line.strip(f"{block.separator} \t") or begin.startswith(
-            (*(one for one in form.skip if not one[0].isdigit()), "\0")
-        ):
-            continue
-        if line in heads:
-            between, is_first, heads = [], False, heads | {block.separator.join(block.below)}
-            continue
-        parts = fields_of(line, block.separator)
-        has_number = any(is_number(one) or is_clock(one) or one.casefold() in MISSING for one in parts)
-        if len(parts) != width or not has_number or (between and not is_row(parts)):
-            between.append(i)
-            continue
-        names = [k for k in between[-2:] if len(fields_of(lines[k], block.separator)) == width and block.rows]
-        if names and width > 1:
-            name = fields_of(lines[names[0]], block.separator)[0]
-            got = lines[names[0]].strip()[:60]
-            question = f"{block.word} {names[0] + 1} begins another table, which is not read: {got!r}"
-            draft.form.append(
-                draft.ask(f"ends = {_toml([*form.ends, name or lines[names[0]].strip()])}", question)
-            )
-            break
-        for k in between[:20] if block.rows else ():
-            word = re.match(r"\D{0,30}", lines[k].strip())
-            odd.setdefault((word[0].strip() if word else "") or lines[k].strip()[:20], k)
-        between = []
-        if is_first:
-            block.rows.append(line)
-    if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
-        ends = block.rows[:1000], block.rows[1000 : -1000 : len(block.rows) // 10_000], block.rows[-1000:]
-        block.rows = [row for some in ends for row in some]
-    if odd:
-        skip = [*form.skip, *list(odd)[:20]]
-        number = next(iter(odd.values()))
-        draft.form = [line for line in draft.form if not line.startswith("skip =")]
-        question = (
-            f"{block.word} {number + 1} is among the rows and is left out: {lines[number].strip()[:60]!r}"
-        )
-        draft.form.append(draft.ask(f"skip = {_toml(skip)}", question))
+    start = next((i for i, heads in lines if all(matching(names, heads) for names in named)), 0)
+    missing = MISSING | {one.casefold() for one in given.format.missing}
+    return first_table(part.lines, separator, missing, start)
 
 
 # --- its columns ----------------------------------------------------------------------------------
 def _draft(block: Block, draft: Draft) -> Draft:
     """What each column means: certain by name and unit, or asked."""
-    places = list(range(len(block.heads)))
     if block.columns is not None:
-        cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
+        draft.cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
     else:
-        cells = cells_of(block, places)
-    draft.cells = cells
-    options: dict[str, list[Option]] = {}
-    for i in places:
-        for meaning, option in _options(block, i, cells[i]):
+        draft.cells = cells_of(block, range(len(block.heads)))
+    options: Options = {}
+    for i, cells in enumerate(draft.cells):
+        for meaning, option in _options(block, i, cells).items():
             options.setdefault(meaning, []).append(option)
-        values = ", ".join(cells[i][k] for k in (0, len(cells[i]) // 2, -1)) if cells[i] else ""
+        values = ", ".join(cells[k] for k in (0, len(cells) // 2, -1)) if cells else ""
         beside = f" {block.below[i]}" if block.below[i] else ""
         draft.seen.append(printable(f"# {i + 1:3d} {_toml(block.heads[i])}{beside}: {values}", 150))
     used = _given(block, draft)
     _decide(block, draft, options, used)
-    _decimal(block, draft, [cells[i] for i in sorted(used)])
-    _conditions(block, draft, cells)
-    if not draft.given.format.tests:
-        _steps(block, draft, cells, used)
+    _decimal(block, draft, [draft.cells[i] for i in sorted(used)])
+    _conditions(block, draft)
     return draft
 
 
-def _options(block: Block, i: int, cells: Sequence[str]) -> list[tuple[str, Option]]:
+def _options(block: Block, i: int, cells: Sequence[str]) -> dict[str, Option]:
     """Meanings that a column may have."""
-    head, below = block.heads[i], block.below[i]
+    ways = header_parts(block.heads[i])
     sample = [cell for cell in cells[:SAMPLE] if cell.casefold() not in MISSING]
     clocks = [cell for cell in sample if is_clock(cell)]
     if 2 * len(clocks) > len(sample):
-        named = "time" in ranks(header_parts(head)[0][0])
-        return [("time", _clock(8 if named else 9, i, stated_units(head, below, "time", {}), cells, clocks))]
-    if sum(not is_number(cell) for cell in sample) > len(sample) / 2:
-        return []
-    found = []
-    is_extreme = looks_extreme(header_parts(head)[0][0])
-    for name, unit in header_parts(head):
-        names = {name, name.rpartition(".")[2]}
-        meanings = {meaning: rank for one in names for meaning, rank in ranks(one).items()}
-        if unit.isdigit():
-            meanings = {}  # a second station, COF_2
-        if is_extreme:
-            meanings = {
-                key: rank for key, rank in meanings.items() if "friction" not in key and "force" not in key
-            }
-        for meaning, rank in meanings.items():
-            stated = stated_units(head, below, meaning, {})
-            scales = {scale_of(one, meaning) for one in stated}
-            known = None not in scales and len(scales) == 1
-            known = known or (not stated and meaning in ("friction", "cycles") and len(meanings) == 1)
-            if meaning in ("friction", "tangential_force") and looks_like_torque(head, below):
-                known = False
-            found.append(
-                (
-                    meaning,
-                    Option(rank, i, (stated[0] if known else ", ".join(stated)) if stated else "", known),
-                )
-            )
-        if any(plain(one) in POSITIONS for one in names):
-            found.append(("position", Option(0, i, "", known=True)))
-        if found:
-            break
-    return found
+        stated = stated_units(block.heads[i], block.below[i], "time", {})
+        return {"time": _clock(8 if "time" in ranks(ways[0][0]) else 9, i, stated, cells, clocks)}
+    if 2 * sum(not is_number(cell) for cell in sample) > len(sample):
+        return {}
+    for name, unit in ways:
+        meanings = {} if unit.isdigit() else ranks(name.rpartition(".")[2]) | ranks(name)  # COF_2: a station
+        if looks_extreme(ways[0][0]):
+            meanings = {key: rank for key, rank in meanings.items() if not re.search("friction|force", key)}
+        if meanings:
+            only = len(meanings) == 1
+            return {one: _option(block, i, one, rank, is_only=only) for one, rank in meanings.items()}
+    return {}
+
+
+def _option(block: Block, i: int, meaning: str, rank: int, *, is_only: bool) -> Option:
+    """A column of numbers with a usual name: certain where its unit is."""
+    stated = stated_units(block.heads[i], block.below[i], meaning, {})
+    scales = {scale_of(one, meaning) for one in stated}
+    known = (None not in scales and len(scales) == 1) or meaning == "position"
+    known = known or (not stated and meaning in ("friction", "cycles") and is_only)
+    is_torque = meaning in ("friction", "tangential_force") and looks_like_torque(
+        block.heads[i], block.below[i]
+    )
+    unit = (stated[0] if known else ", ".join(stated)) if stated else ""
+    return Option(rank, i, unit, known and not is_torque)
 
 
 def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clocks: Sequence[str]) -> Option:
@@ -351,20 +284,17 @@ def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clock
         return Option(rank, i, "iso", known=True, question=question)
     if dates := [match for one in cells if (match := _DATE.fullmatch(one))]:
         form, is_certain = _date_format(dates)
-        return Option(
-            rank, i, form, known=True, question="" if is_certain else "is the day before the month?"
-        )
+        return Option(rank, i, form, True, "" if is_certain else "is the day before the month?")
     if all(re.fullmatch(r"\d{1,4}:\d{1,2}(?:[.,]\d+)?", one) for one in clocks):
-        return Option(rank, i, "", known=False, question="minutes and seconds, or hours and minutes (hh:mm)?")
-    return Option(rank, i, UNKNOWN, known=False)
+        return Option(rank, i, question="minutes and seconds, or hours and minutes (hh:mm)?")
+    return Option(rank, i, UNKNOWN)
 
 
 def _date_format(dates: Sequence[re.Match[str]]) -> tuple[str, bool]:
     """Format of dates, and whether their numbers show which of them is the day."""
     one = dates[0]
-    if one[3].isalpha():
-        order, is_certain = ("%d", "%b"), True
-    else:
+    order, is_certain = ("%d", "%b"), True
+    if not one[3].isalpha():
         first, second = (max(int(match[k]) for match in dates) for k in (1, 3))
         order, is_certain = (("%m", "%d") if second > 12 else ("%d", "%m")), max(first, second) > 12
     date = one[2].join((*order, "%Y" if len(one[4]) == 4 else "%y"))
@@ -373,6 +303,7 @@ def _date_format(dates: Sequence[re.Match[str]]) -> tuple[str, bool]:
     return f"{date}{one[5]}{time}{half}", is_certain
 
 
+# --- the lines of the map -------------------------------------------------------------------------
 def _given(block: Block, draft: Draft) -> set[int]:
     """Columns that are stated already, with their lines; what the table does not have is asked."""
     used = set()
@@ -387,24 +318,22 @@ def _given(block: Block, draft: Draft) -> set[int]:
     return used
 
 
-def _of_twins(draft: Draft, meaning: str, one: ColumnChoice, places: Sequence[int]) -> str:
+def _of_twins(draft: Draft, meaning: str, one: Column, places: Sequence[int]) -> str:
     """The line of columns of one name; asked by number where their numbers differ."""
     if all(draft.cells[i] == draft.cells[places[0]] for i in places[1:]):
         return _stated(meaning, one)
-    line = _stated(meaning, replace(one, names=(), number=places[0] + 1))
-    others = " or ".join(str(i + 1) for i in places[1:])
-    return draft.ask(
-        line,
-        f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {others}?",
+    numbers = " or ".join(str(i + 1) for i in places[1:])
+    question = (
+        f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {numbers}?"
     )
+    return draft.ask(_stated(meaning, replace(one, name=places[0] + 1)), question)
 
 
-def _stated(meaning: str, one: ColumnChoice) -> str:
-    name = list(one.names) if len(one.names) > 1 else one.names[0] if one.names else one.number
-    more: dict[str, object] = {"unit": one.unit} if one.unit else {}
-    more |= ({"sign": -1} if one.sign < 0 else {}) | ({"optional": True} if one.optional else {})
-    inside = ", ".join(f"{key} = {_toml(value)}" for key, value in ({"name": name} | more).items())
-    return f"{meaning} = {{ {inside} }}" if more else f"{meaning} = {_toml(name)}"
+def _stated(meaning: str, one: Column) -> str:
+    name = one.names[0] if len(one.names) == 1 else one.name
+    more = ({"unit": one.unit} if one.unit else {}) | ({"sign": -1} if one.sign < 0 else {})
+    more |= {"optional": True} if one.optional else {}
+    return f"{meaning} = {_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
 
 
 def _line(draft: Draft, block: Block, meaning: str, option: Option, unit: str = "") -> str:
@@ -412,54 +341,54 @@ def _line(draft: Draft, block: Block, meaning: str, option: Option, unit: str = 
     head = " ".join(block.heads[option.index].split())
     bare = header_parts(head)[0][0]
     named = bare if bare and matching([bare], block.heads) == [option.index] else head
-    choice = ColumnChoice(names=(named,) if named else (), number=None if named else option.index + 1)
     unit = unit or (option.unit if meaning == "time" and time_form(option.unit) else "")
-    choice = replace(choice, optional=meaning in ("temperature", "wear_depth"))
-    places = matching([named], block.heads) if named else [option.index]
-    return _of_twins(draft, meaning, replace(choice, unit=unit or None), places)
+    choice = Column(
+        name=(named,) if named else option.index + 1,
+        unit=unit or None,
+        optional=meaning in ("temperature", "wear_depth"),
+    )
+    return _of_twins(draft, meaning, choice, matching([named], block.heads) if named else [option.index])
 
 
-def _decide(block: Block, draft: Draft, options: dict[str, list[Option]], used: set[int]) -> None:
+def _decide(block: Block, draft: Draft, options: Options, used: set[int]) -> None:
     """One line of the map for each meaning that is there: certain, asked, or noted as not used."""
     free = {key: [one for one in some if one.index not in used] for key, some in options.items()}
     sure = {key: _best([one for one in free.get(key, ()) if one.known]) for key in (*MEANINGS, "position")}
-    has_load = (
-        "normal_force" in draft.columns or bool(sure["normal_force"]) or "normal_force" in draft.given.test
-    )
-    near = sure["friction"] or free.get("friction") or any(map(looks_like_friction, block.heads))
-    by_forces = "tangential_force" in draft.columns or (bool(sure["tangential_force"]) and has_load)
-    by_forces = by_forces or (bool(free.get("tangential_force")) and not near)
-    needed = set()
-    if "friction" not in draft.columns and (
-        "tangential_force" in draft.columns or (by_forces and not sure["friction"])
-    ):
-        needed |= {"tangential_force", "normal_force"}
-        sure["friction"] = []
-        free["friction"] = []
-    else:
-        needed.add("friction")
-    if not any(name in draft.columns or sure[name] for name in ABSCISSAE):
-        needed.add(next((name for name in ABSCISSAE if free.get(name)), "time"))
-    taken = set(used)
+    needed = _needed(block, draft, free, sure)
     for meaning in (*MEANINGS, "position"):
-        chosen = [one for one in sure[meaning] if one.index not in taken]
+        chosen = [one for one in sure[meaning] if one.index not in used]
+        rest = [one for one in free.get(meaning, ()) if one.index not in used]
         if meaning in draft.columns:
             continue
         if chosen:
             _choose(block, draft, meaning, chosen, is_needed=meaning in needed or meaning == "time")
-            taken |= {one.index for one in chosen}
-        elif rest := [one for one in free.get(meaning, ()) if one.index not in taken]:
-            if meaning in needed:
-                _ask_unit(block, draft, meaning, _best(rest)[0])
-            elif meaning in ("temperature", "wear_depth", "normal_force", "distance"):
-                head = printable(block.heads[rest[0].index].strip())
-                draft.notes.append(
-                    f'column "{head}" has no known unit and is not used as {meaning.replace("_", " ")}'
-                )
+            used |= {one.index for one in chosen}
+        elif rest and meaning in needed:
+            _ask_unit(block, draft, meaning, _best(rest)[0])
+        elif rest and meaning in ("temperature", "wear_depth", "normal_force", "distance"):
+            head, words = printable(block.heads[rest[0].index].strip()), meaning.replace("_", " ")
+            draft.notes.append(f'column "{head}" has no known unit and is not used as {words}')
     for meaning in sorted(needed - draft.columns.keys()):
         _ask_column(block, draft, meaning)
-    _shapes(block, draft, options, taken)
-    used |= taken
+    _shapes(block, draft, options, used)
+
+
+def _needed(block: Block, draft: Draft, free: Options, sure: Options) -> set[str]:
+    """Meanings that the map must have: friction, or the forces instead; and an abscissa."""
+    has_load = "normal_force" in draft.columns or sure["normal_force"] or "normal_force" in draft.stated
+    has_friction = sure["friction"] or free.get("friction") or any(map(looks_like_friction, block.heads))
+    by_forces = sure["tangential_force"] if has_load else []
+    by_forces = by_forces or ([] if has_friction else free.get("tangential_force", []))
+    if "friction" in draft.columns:
+        needed = {"friction"}
+    elif "tangential_force" in draft.columns or (by_forces and not sure["friction"]):
+        needed = {"tangential_force", "normal_force"}
+        sure["friction"], free["friction"] = [], []
+    else:
+        needed = {"friction"}
+    if not any(name in draft.columns or sure[name] for name in ABSCISSAE):
+        needed.add(next((name for name in ABSCISSAE if free.get(name)), "time"))
+    return needed
 
 
 def _best(options: Sequence[Option]) -> list[Option]:
@@ -469,22 +398,20 @@ def _best(options: Sequence[Option]) -> list[Option]:
 
 def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool) -> None:
     """The line of columns that are certain; asked where several of other names are."""
-    count = len(draft.questions)
+    count, words = len(draft.questions), meaning.replace("_", " ")
     line = _line(draft, block, meaning, chosen[0])
     names = list(dict.fromkeys(_toml(block.heads[one.index].strip()) for one in chosen))
     units = {scale_of(one.unit, meaning) if one.unit else None for one in chosen}
     if len(draft.questions) > count and not is_needed:
         del draft.questions[count:]
-        draft.notes.append(f"columns {names[0]} differ, and none is used as {meaning.replace('_', ' ')}")
+        draft.notes.append(f"columns {names[0]} differ, and none is used as {words}")
         return
     if len(names) > 1 or len(units) > 1:
         if not is_needed:
             draft.notes.append(f"columns {', '.join(names)} could all be the {meaning}, and none is used")
             return
-        others = " or ".join(
-            f"{name} (column {one.index + 1})" for name, one in zip(names[1:], chosen[1:], strict=False)
-        )
-        line = draft.ask(line, f"{names[0]}, or {others or 'its namesake'}?")
+        others = [f"{_toml(block.heads[one.index].strip())} (column {one.index + 1})" for one in chosen[1:]]
+        line = draft.ask(line, f"{names[0]}, or {' or '.join(others)}?")
     elif chosen[0].question:
         line = draft.ask(line, f"column {names[0]}: {chosen[0].question}")
     draft.columns[meaning] = line
@@ -492,32 +419,23 @@ def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], 
 
 def _ask_unit(block: Block, draft: Draft, meaning: str, option: Option) -> None:
     """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
-    head = _toml(block.heads[option.index].strip())
-    if meaning == "tangential_force" and looks_like_torque(
-        block.heads[option.index], block.below[option.index]
-    ):
-        _ask_torque(block, draft, option)
+    head, below = block.heads[option.index], block.below[option.index]
+    if meaning == "tangential_force" and looks_like_torque(head, below):
+        _ask_torque(block, draft, option.index)
         return
-    usual = USUAL.get(meaning, "N")
-    unit = MASSES.get(option.unit, UNKNOWN) if option.unit else ("mm:ss" if option.question else usual)
+    unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
     said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
-    draft.columns[meaning] = draft.ask(_line(draft, block, meaning, option, unit), f"column {head}: {said}")
+    line = _line(draft, block, meaning, option, unit)
+    draft.columns[meaning] = draft.ask(line, f"column {_toml(head.strip())}: {said}")
 
 
-def _ask_torque(block: Block, draft: Draft, option: Option) -> None:
-    unit = next(
-        (
-            one
-            for one in (block.below[option.index], header_parts(block.heads[option.index])[0][1])
-            if torque_scale(one)
-        ),
-        UNKNOWN,
-    )
-    line = _line(draft, block, "tangential_force", option, unit)
-    draft.columns["tangential_force"] = draft.ask(
-        line, "a torque: write the radius of its track below [test]"
-    )
-    if "track_radius" not in draft.given.test:
+def _ask_torque(block: Block, draft: Draft, i: int) -> None:
+    written = (block.below[i], header_parts(block.heads[i])[0][1])
+    unit = next((one for one in written if torque_scale(one)), UNKNOWN)
+    line = _line(draft, block, "tangential_force", Option(0, i), unit)
+    question = "a torque: write the radius of its track below [test]"
+    draft.columns["tangential_force"] = draft.ask(line, question)
+    if "track_radius" not in draft.stated:
         draft.test.append('track_radius = "... mm"')
 
 
@@ -526,37 +444,28 @@ def _ask_column(block: Block, draft: Draft, meaning: str) -> None:
     torque = [i for i, head in enumerate(block.heads) if looks_like_torque(head, block.below[i])]
     near = [i for i, head in enumerate(block.heads) if looks_like_friction(head)]
     if meaning == "normal_force":
-        if "normal_force" not in draft.given.test:
+        if "normal_force" not in draft.stated:
             draft.test.append(draft.ask('normal_force = "... N"', "the log has no normal force"))
     elif meaning == "friction" and torque and not near:
-        _ask_torque(block, draft, Option(0, torque[0], "", known=False))
+        _ask_torque(block, draft, torque[0])
         if "normal_force" not in draft.columns:
             _ask_column(block, draft, "normal_force")
     elif meaning == "friction" and near:
         names = ", ".join(_toml(block.heads[i].strip()) for i in near[:4])
-        option = Option(0, near[0], "", known=False)
-        draft.columns[meaning] = draft.ask(
-            _line(draft, block, meaning, option, "-"), f"the friction by its name? There are {names}"
-        )
+        line = _line(draft, block, meaning, Option(0, near[0]), "-")
+        draft.columns[meaning] = draft.ask(line, f"the friction by its name? There are {names}")
     else:
-        name = (
-            f'{{ name = 1, unit = "{UNKNOWN}" }}'
-            if not any(block.heads)
-            else f'{{ name = "{UNKNOWN}", unit = "{UNKNOWN}" }}'
-        )
-        draft.columns[meaning] = draft.ask(
-            f"{meaning} = {name}", f"which column is the {meaning.replace('_', ' ')}?"
-        )
+        line = f"{meaning} = {_toml({'name': UNKNOWN if any(block.heads) else 1, 'unit': UNKNOWN})}"
+        draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
 
 
-def _shapes(block: Block, draft: Draft, options: dict[str, list[Option]], taken: set[int]) -> None:
+def _shapes(block: Block, draft: Draft, options: Options, used: set[int]) -> None:
     """Columns in any unit that show standstill and reversals."""
     speeds = [one for key in ("slip_speed", "rotational_speed") for one in options.get(key, ())]
-    speeds = [one for one in speeds if one.index not in taken and one.unit.casefold() not in ("v", "a")]
-    has_speed = {"slip_speed", "rotational_speed", "motion"} & draft.columns.keys()
-    if speeds and not has_speed:
+    speeds = [one for one in speeds if one.index not in used and one.unit.casefold() not in ("v", "a")]
+    if speeds and not {"slip_speed", "rotational_speed", "motion"} & draft.columns.keys():
         draft.columns["motion"] = _line(draft, block, "motion", min(speeds, key=lambda one: one.index))
-    forces = [one for one in options.get("tangential_force", ()) if one.index not in taken]
+    forces = [one for one in options.get("tangential_force", ()) if one.index not in used]
     forces = [one for one in forces if not looks_like_torque(block.heads[one.index])]
     if forces and "stroke" not in draft.columns and "friction" in draft.columns:
         draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
@@ -572,28 +481,12 @@ def _decimal(block: Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None
         draft.form.append(draft.ask(f'decimal = "{UNKNOWN}"', f"{error.rule}: {error.got}"))
 
 
-def _conditions(block: Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None:
+def _conditions(block: Block, draft: Draft) -> None:
     """A question on each condition above the table whose number can be read in two ways."""
-    text = "".join("".join(column[:SAMPLE]) for column in cells)
+    text = "".join("".join(column[:SAMPLE]) for column in draft.cells)
     decimal = "," if "," in text else "." if "." in text or block.separator == "," else ""
     for key, value in metadata_of(block.above).items():
         meant = [one for one, names in KEYS.items() if plain(header_parts(key)[0][0]) in names]
-        if meant and meant[0] not in draft.given.test and (ways := two_ways(value, decimal)):
+        if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
             question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
             draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
-
-
-def _steps(block: Block, draft: Draft, cells: Sequence[Sequence[str]], used: set[int]) -> None:
-    """Ask for the column that tells tests apart, where time falls back when it changes."""
-    for i in [i for i in used if "time" in ranks(header_parts(block.heads[i])[0][0])][:1]:
-        texts = [cell.replace(",", ".") for cell in cells[i]]
-        values = [
-            float(text) if re.fullmatch(r"[+-]?[0-9]+\.?[0-9]*", text) else float("nan") for text in texts
-        ]
-        falls = [k for k in range(1, len(values)) if values[k] < values[k - 1]]
-        for j, head in enumerate(block.heads if falls else ()):
-            few = j not in used and head.strip() and len(set(cells[j])) <= SAMPLE
-            if few and all(cells[j][k] != cells[j][k - 1] for k in falls):
-                question = f"{block.heads[i].strip()} begins anew where this changes: tests of their own?"
-                draft.form.append(draft.ask(f"tests = [{_toml(head.strip())}]", question))
-                return

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 
 from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
-from separatrix.friction.logs.names import ABSCISSAE, KEYS, header_parts, plain, scale_in
-from separatrix.friction.logs.names import MEANINGS as MEANINGS
-from separatrix.ground import bounds as _check
+from separatrix.friction.logs.names import ABSCISSAE, KEYS, MEANINGS, header_parts, plain, scale_in
 from separatrix.ground.errors import InputError
+from separatrix.ground.schema import key, positive, record
 from separatrix.ground.units import (
     Array,
     Kelvin,
@@ -30,28 +29,33 @@ from separatrix.ground.units import (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class Conditions:
     """Under which one test was run; None where that is not known."""
 
-    material: str | None = None  # of the sample
-    counterface: str | None = None  # what the sample slides on
-    medium: str | None = None  # in which it slides
-    sample: str | None = None  # name of the piece; tests of one piece share it
-    test: str | None = None  # name of the test
-    temperature: Kelvin | None = field(default=None, metadata=_check.must(_check.positive, 0.1, 3000.0))
-    """Of the test."""
-    slip_speed: MetrePerSecond | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e3))
-    """Of the test."""
-    pressure: Pascal | None = field(default=None, metadata=_check.must(_check.positive, 1e-3, 1e12))
-    """Mean contact pressure."""
-    normal_force: Newton | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e7))
-    """Of the test."""
-    cycle_time: Second | None = field(default=None, metadata=_check.must(_check.positive, 1e-6, 1e7))
-    """Of one revolution or of one stroke there and back."""
+    material: str | None = key(default=None)
+    """Of the sample."""
 
-    def __post_init__(self) -> None:
-        _check.settle(*(_check.printable_text(self, name) for name in TEXTS), _check.each_field(self))
+    counterface: str | None = key(default=None)
+    """What the sample slides on."""
+
+    medium: str | None = key(default=None)
+    """In which it slides."""
+
+    sample: str | None = key(default=None)
+    """Name of the piece; tests of one piece share it."""
+
+    test: str | None = key(default=None)
+    """Name of the test."""
+
+    temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
+    slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
+    pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
+    """Mean contact pressure."""
+
+    normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
+    cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
+    """Of one revolution or of one stroke there and back."""
 
     @property
     def environment(self) -> str | None:
@@ -97,19 +101,14 @@ class RawLog:
     notes: tuple[str, ...] = ()  # what the reading did that a user should know, a sentence each
 
     def __post_init__(self) -> None:
-        problems = []
         if not self.abscissae:
-            problems.append(InputError(self.source, f"needs one of {', '.join(ABSCISSAE)}"))
+            raise InputError(self.source, f"needs one of {', '.join(ABSCISSAE)}")
         if self.rows < 2:
-            problems.append(
-                InputError(self.source, "needs at least two rows with a friction", str(self.rows))
-            )
-        for name in sorted(MEANINGS.keys() & {f.name for f in fields(self)}):
+            raise InputError(self.source, "needs at least two rows with a friction", str(self.rows))
+        for name in MEANINGS.keys() & {f.name for f in fields(self)}:
             column = getattr(self, name)
             if column is not None and len(column) != self.rows:
-                rule = "must have as many rows as friction"
-                problems.append(InputError(f"RawLog.{name}", rule, str(len(column))))
-        _check.settle(problems)
+                raise InputError(f"RawLog.{name}", "must have as many rows as friction", str(len(column)))
 
     @property
     def rows(self) -> int:

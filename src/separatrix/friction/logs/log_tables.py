@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from separatrix.friction.logs.column_map import ENCODINGS, ColumnMap, TextFormat
+from separatrix.friction.logs.column_map import ColumnMap, TextFormat
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.input_files import size_of, unreadable
@@ -33,6 +33,7 @@ _WORD = re.compile(rf"[^\W\d_]|{_MOMENT.pattern}")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)?\s*(\d+)\s*(?:$|started)", re.IGNORECASE)
 _SEPARATED = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", " ": "blanks"}
 
+Needed = Sequence[tuple[str, ...]]  # columns that a table must have, each by one of its names
 STARTS = frozenset("0123456789+-.")
 
 BOUND = "\x04"  # in place of a separator in quotes
@@ -93,8 +94,6 @@ class Content:
 
 def content_of(path: Path, form: TextFormat) -> Content:
     """Content of a file; its first bytes show what it is."""
-    from separatrix.friction.logs.binary import sheets_as_lines, tdms_groups
-
     name = printable(path.name or str(path), 150)
     size = size_of(path, name)
     if size > LARGEST:
@@ -106,10 +105,14 @@ def content_of(path: Path, form: TextFormat) -> Content:
         raise unreadable(name, error) from None
     checksum = hashlib.sha256(raw).hexdigest()
     if raw.startswith(b"PK\x03\x04"):
+        from separatrix.friction.logs.binary import sheets_as_lines
+
         sheets = sheets_as_lines(path, name).items()
         parts = [Part(f"{name}, sheet {printable(sheet)}", sheet, one, "row") for sheet, one in sheets]
         return Content(path, name, checksum, parts, words="Excel workbook")
     if raw.startswith(b"TDSm"):
+        from separatrix.friction.logs.binary import tdms_groups
+
         return Content(path, name, checksum, groups=tdms_groups(path), words="LabVIEW TDMS")
     lines, encoding = text_lines(raw, name, form.encoding)
     return Content(path, name, checksum, [Part(name, "", lines)], words=encoding)
@@ -142,7 +145,7 @@ def text_lines(raw: bytes, name: str, encoding: str | None = None) -> tuple[list
     except UnicodeError as problem:
         place = getattr(problem, "start", 0)
         line = body.count(b"\n", 0, place) + 1
-        cure = f'Add to the column map, below [format]: encoding = "..." (one of {", ".join(ENCODINGS)}).'
+        cure = 'Add to a column map, below [format]: encoding = "...", for instance "utf-16" or "cp1250".'
         rule = f"cannot be read as {chosen} text"
         raise InputError(f"{name}: line {line}", rule, f"byte {body[place]:#04x}", cure) from None
     text = text.rstrip("\x1a").replace("\u2212", "-").replace("\f", "\n").lstrip("\ufeff")
@@ -158,14 +161,10 @@ def _encoding_of(raw: bytes) -> str:
     if b"\0" in raw:  # UTF-16 by the side of the NUL bytes; other files with NUL bytes are refused as text
         head = raw[: min(len(raw), 65536) // 2 * 2]
         low, high = head[0::2].count(0), head[1::2].count(0)
-        most = 0.4 * len(head)
-        return (
-            "utf-16-le"
-            if low == 0 and high > most
-            else "utf-16-be"
-            if high == 0 and low > most
-            else "latin-1"
-        )
+        for code, none, many in (("utf-16-le", low, high), ("utf-16-be", high, low)):
+            if none == 0 and many > 0.4 * len(head):
+                return code
+        return "latin-1"
     try:
         raw.decode("utf-8")
     except UnicodeDecodeError:
@@ -264,16 +263,22 @@ class Heads:
     first: int
 
 
+class BrokenError(InputError):
+    """A line that is not a row, with rows behind it."""
+
+    line: int = 0
+    """From 0."""
+
+    names: int | None = None
+    """Line below it with as many fields as a row, which may be the names of another table."""
+
+
 def first_table(
     lines: Sequence[str], separator: str, missing: Iterable[str] = MISSING, start: int = 0
 ) -> Heads | None:
     """Where the first two rows are, one below the other, and which lines above are names and units."""
-    blank = separator == " "
-    rows = (
-        i
-        for i in range(start, min(len(lines), start + HEAD))
-        if is_row(fields_of(lines[i], separator), missing, blanks=blank)
-    )
+    near = range(start, min(len(lines), start + HEAD))
+    rows = (i for i in near if is_row(fields_of(lines[i], separator), missing, blanks=separator == " "))
     last = -2
     for i in rows:
         if i == last + 1 and len(fields_of(lines[i], separator)) == len(fields_of(lines[last], separator)):
@@ -282,25 +287,23 @@ def first_table(
     else:
         return None
     width = len(fields_of(lines[last], separator))
-    near = [i for i in range(max(0, last - 8), last) if lines[i].strip(f"{separator} \t")]
     fitting: list[tuple[int, list[str]]] = []
-    for i in reversed(near):
-        ways = [one for one in names_of(lines[i], separator) if _fits(one, width, missing)]
-        fitting += [(i, ways[0])] if ways else []
+    for i in range(last - 1, max(0, last - 8) - 1, -1):
+        ways = names_of(lines[i], separator) if lines[i].strip(f"{separator} \t") else []
+        fitting += [(i, one) for one in ways if _fits(one, width, missing)][:1]
     if not fitting:
         return Heads(None, [f"column {i + 1}" for i in range(width)], [""] * width, last)
-    if len(fitting) > 1 and is_units(fitting[0][1]) and not is_units(fitting[1][1]):
-        (_, below), (line, names) = fitting[:2]
-        return Heads(line, names, below, last)
-    return Heads(*fitting[0], [""] * len(fitting[0][1]), last)
+    line, names = fitting[0]
+    if len(fitting) > 1 and is_units(names) and not is_units(fitting[1][1]):
+        return Heads(*fitting[1], names, last)
+    return Heads(line, names, [""] * len(names), last)
 
 
 def _fits(names: Sequence[str], width: int, missing: Iterable[str]) -> bool:
     """Whether a line has a name for each field of a row; a remark behind them does not count."""
     filled = [name for name in names if name.casefold() not in missing]
-    numbers = sum(map(is_number, filled))
     same = len(names) == width or (len(names) == width + 1 and _is_remark(names[-1]))
-    return same and bool(filled) and (len(filled) > 2 * numbers or is_units(names))
+    return same and bool(filled) and (len(filled) > 2 * sum(map(is_number, filled)) or is_units(names))
 
 
 def _is_remark(name: str) -> bool:
@@ -313,7 +316,7 @@ def is_units(row: Sequence[str]) -> bool:
     if all(not one or one[0] in "[(" for one in row):
         return len(bare) > 1
     known = [unit for unit in bare if unit in UNIT_WORDS]
-    names = [one for one in bare if ranks(one) and one not in UNIT_WORDS]
+    names = [one for one in bare if one not in UNIT_WORDS and ranks(one)]
     return not names and any(known) and len(known) >= 0.7 * len(bare)
 
 
@@ -324,33 +327,32 @@ def bare_unit(unit: str) -> str:
 
 def blocks_of(content: Content, columns: ColumnMap) -> list[Block]:
     """All tables of a file that have the columns that the map needs."""
-    there = {part.sheet for part in content.parts}
-    named = set(columns.format.tables) & there - {""}
-    found = [block for block in content.groups if _needed_in(block.heads, columns)]
+    named = set(columns.format.tables) & {part.sheet for part in content.parts} - {""}
+    needed = [one.names for one in columns.columns.values() if one.names and not one.optional]
+    found = [block for block in content.groups if _needed_in(block.heads, needed)]
     for part in content.parts:
         if not named or part.sheet in named:
-            found += _part_blocks(part, columns)
+            found += blocks_of_part(part, columns.format, needed)
     if len(found) > MOST_TABLES:
         raise InputError(content.name, f"has more than {MOST_TABLES} tables", cure="Split the file.")
     return found
 
 
-def _needed(columns: ColumnMap) -> list[tuple[str, ...]]:
-    return [one.names for one in columns.columns.values() if one.names and not one.optional]
+def _needed_in(heads: Sequence[str], needed: Needed) -> bool:
+    return all(matching(names, heads) for names in needed)
 
 
-def _needed_in(heads: Sequence[str], columns: ColumnMap) -> bool:
-    return all(matching(names, heads) for names in _needed(columns))
+def separator_in(part: Part, form: TextFormat) -> tuple[str, list[str]]:
+    """The separator that is stated, or that a text shows, with others that it may be; empty for none."""
+    if part.sheet or form.separator:
+        return ("\t" if part.sheet else form.separator or ""), []
+    return separator_of(part.lines, MISSING | {one.casefold() for one in form.missing})
 
 
-def _part_blocks(part: Part, columns: ColumnMap) -> Iterator[Block]:
-    """Tables of one text."""
-    missing = MISSING | {one.casefold() for one in columns.format.missing}
-    separator = columns.format.separator or separator_of(part.lines, missing)[0]
-    separator = "\t" if part.sheet else separator
-    if not separator:
-        return
-    found = list(heads_in(part, columns, separator, missing))
+def blocks_of_part(part: Part, form: TextFormat, needed: Needed) -> Iterator[Block]:
+    """Tables of one text that have the columns needed."""
+    separator, _ = separator_in(part, form)
+    found = list(heads_in(part, form, needed, separator)) if separator else []
     begin, numbered = 0, dict[str, str]()
     for i, heads in enumerate(found):
         stop = (found[i + 1].line if i + 1 < len(found) else None) or len(part.lines)
@@ -361,38 +363,33 @@ def _part_blocks(part: Part, columns: ColumnMap) -> Iterator[Block]:
         words = [f"{word} {numbered[word]}" for word in ("run", "step") if word in numbered]
         name = ", ".join([*([part.sheet] if part.sheet else []), *words])
         block = Block(part.source, name, heads.names, heads.below, above, [], [], separator, part.word)
-        begin = _fill(block, part.lines, heads.first, stop, columns.format, last=stop == len(part.lines))
+        begin = _fill(block, part.lines, heads.first, stop, form, last=stop == len(part.lines))
         if block.rows:
             yield block
 
 
-def heads_in(part: Part, columns: ColumnMap, separator: str, missing: Iterable[str]) -> Iterator[Heads]:
-    """Where tables begin: at the line that the map names, else at each line with the names that it needs."""
-    lines, form, needed = part.lines, columns.format, _needed(columns)
+def heads_in(part: Part, form: TextFormat, needed: Needed, separator: str) -> Iterator[Heads]:
+    """Where tables begin: at the line that the map names, else at each line with the names needed."""
+    lines = part.lines
     if form.header_line is not None:
         first = max(form.header_line, form.units_line or 0)
         if first >= len(lines):
             where = f"{part.source}: header_line = {form.header_line}"
             raise InputError(where, "must be a line above the rows", f"a file of {len(lines)} lines")
-        ways = names_of(lines[form.header_line - 1], separator)
-        width = next((len(fields_of(line, separator)) for line in lines[first:] if line.strip()), 0)
-        chosen = next((one for one in ways if len(one) == width), ways[0])
+        names = _names_in(lines, form.header_line - 1, separator, lines[first:]) or [""]
         below = fields_of(lines[form.units_line - 1], separator) if form.units_line else []
-        yield Heads(form.header_line - 1, chosen, (below + [""] * len(chosen))[: len(chosen)], first)
+        yield Heads(form.header_line - 1, names, (below + [""] * len(names))[: len(names)], first)
         return
     if not needed:
-        found = first_table(lines, separator, missing)
-        if found is not None:
-            yield found
+        missing = MISSING | {one.casefold() for one in form.missing}
+        yield from [found] if (found := first_table(lines, separator, missing)) is not None else []
         return
-    quick = [tuple(name.split()[0] for name in names) for names in needed]
+    words = [tuple(name.split()[0] for name in names) for names in needed]
     for i, line in enumerate(lines):
-        if not all(any(word in line for word in words) for words in quick):
+        if not all(any(word in line for word in some) for some in words):
             continue
-        ways = [one for one in names_of(line, separator) if _needed_in(one, columns)]
-        width = next((len(fields_of(below, separator)) for below in lines[i + 1 : i + 9] if below.strip()), 0)
-        names = next((one for one in ways if len(one) == width), ways[0] if ways else None)
-        if names is not None:
+        names = _names_in(lines, i, separator, lines[i + 1 : i + 9], needed)
+        if names:
             first, below = i + 1, [""] * len(names)
             if form.units_below:
                 first = next((k for k in range(i + 1, len(lines)) if lines[k].strip()), i) + 1
@@ -400,13 +397,21 @@ def heads_in(part: Part, columns: ColumnMap, separator: str, missing: Iterable[s
             yield Heads(i, names, below, first)
 
 
+def _names_in(
+    lines: Sequence[str], place: int, separator: str, below: Sequence[str], needed: Needed = ()
+) -> list[str]:
+    """Names in a line that has those needed, as many as the first line below has fields if it can be."""
+    width = next((len(fields_of(line, separator)) for line in below if line.strip()), 0)
+    ways = [one for one in names_of(lines[place], separator) if _needed_in(one, needed)]
+    return next((one for one in ways if len(one) == width), ways[0] if ways else [])
+
+
 def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextFormat, *, last: bool) -> int:
     """Add the rows of a table to it, and return where the lines begin that are not among them."""
-    sign, width = block.separator, 0
-    rows, numbers = block.rows, []
-    ends, skip = form.ends, form.skip
-    words = tuple(one for one in skip if one[:1] not in STARTS)  # others may be the beginning of a row, too
-    is_end, end, usual = False, stop, sign != " " and not any(one[:1] in STARTS for one in ends)
+    sign, width, numbers = block.separator, 0, list[int]()
+    rows, ends, end, is_end = block.rows, form.ends, stop, False
+    words = tuple(one for one in form.skip if one[:1] not in STARTS)  # others may begin a row, too
+    usual = sign != " " and not any(one[:1] in STARTS for one in ends)
     for i in range(first, stop):
         line = lines[i]
         if width and usual and line[:1] in STARTS and line.count(sign) == width - 1 and '"' not in line:
@@ -419,22 +424,19 @@ def _fill(block: Block, lines: Sequence[str], first: int, stop: int, form: TextF
         fields = fields_of(line, sign)
         while len(fields) > (width or len(block.heads)) and not fields[-1]:
             fields.pop()
-        has_value = any(is_number(one) or is_clock(one) or one.casefold() in MISSING for one in fields)
         if not rows and not any(block.below) and is_units(fields):
             block.below = (fields + [""] * len(block.heads))[: len(block.heads)]
             continue
         due = (width,) if width else _widths(block.heads, sign)
+        has_value = any(is_number(one) or is_clock(one) or one.casefold() in MISSING for one in fields)
         is_end = bool(ends) and begin.startswith(ends)
-        if is_end or len(fields) not in due or not has_value:
-            if (form.header_line is not None and not rows) or (
-                skip and not is_end and begin.startswith(skip)
-            ):
-                continue
+        if not is_end and len(fields) in due and has_value:
+            width = width or len(fields)
+            rows.append(line if line.count(sign) == width - 1 and '"' not in line else BOUND.join(fields))
+            numbers.append(i + 1)
+        elif is_end or not (begin.startswith(form.skip) or (form.header_line is not None and not rows)):
             end = i
             break
-        width = width or len(fields)
-        rows.append(line if line.count(sign) == width - 1 and '"' not in line else BOUND.join(fields))
-        numbers.append(i + 1)
     block.lines = numbers
     if rows and not is_end:
         _check_rest(block, lines, end, stop, width, last=last)
@@ -452,18 +454,27 @@ def _widths(heads: Sequence[str], separator: str) -> tuple[int, ...]:
 
 def _check_rest(block: Block, lines: Sequence[str], end: int, stop: int, width: int, *, last: bool) -> None:
     """Refuse lines behind the rows that are like rows: the table is broken there, or a row is damaged."""
-    for i in range(end, stop):
-        fields = fields_of(lines[i], block.separator)
+    sign = block.separator
+    rest = ((i, fields_of(lines[i], sign)) for i in range(end + 1, stop))
+    row = next((i for i, one in rest if len(one) == width and is_row(one, blanks=sign == " ")), None)
+    for i in range(end, stop if last and row is None else min(end + 1, stop)):
+        fields = fields_of(lines[i], sign)
         filled = [one for one in fields if one]
-        is_like = len(fields) == width and is_row(fields, blanks=block.separator == " ")
-        if is_like and i > end:
-            where, rule = f"{block.source}: {block.word} {end + 1}", "breaks the table"
-            cure = "Delete it, or name its beginning below [format] of a column map: skip or ends."
-            raise InputError(where, rule, f'"{printable(lines[end].strip())}"', cure)
-        if filled and (last or i == end) and all(map(is_number, filled)):
+        where, got = f"{block.source}: {block.word} {i + 1}", f'"{printable(lines[i].strip())}"'
+        rule, cure = (
+            "breaks the table",
+            "Delete it, or name its beginning below [format] of a map: skip or ends.",
+        )
+        if filled and all(map(is_number, filled)):
             rule = f"has {len(fields)} fields where the rows before it have {width}"
-            where, got = f"{block.source}: {block.word} {i + 1}", f'"{printable(lines[i].strip())}"'
-            raise InputError(where, rule, got, "Mend or delete this line.")
+            cure = "Mend or delete this line."
+        if row is not None:
+            error = BrokenError(where, rule, got, cure)
+            names = [k for k in range(end, row) if len(fields_of(lines[k], sign)) == width]
+            error.line, error.names = i, next(iter(names[-2:]), None)
+            raise error
+        if rule.startswith("has"):
+            raise InputError(where, rule, got, cure)
 
 
 def cells_of(block: Block, places: Sequence[int]) -> list[list[str]]:

@@ -31,27 +31,20 @@ SHAPES = ("motion", "position", "stroke")
 """Columns in any unit that show which rows slide: speed, position, force with the sign of the stroke."""
 
 _TABLE = tomllib.loads(files(__package__).joinpath("names.toml").read_text("utf-8"))
-_COLUMNS = {key: [group.split("; ") for group in groups] for key, groups in _TABLE["columns"].items()}
-NAMES = {key: tuple(map("; ".join, _COLUMNS[key])) for key in MEANINGS}
+NAMES: dict[str, list[frozenset[str]]] = {
+    key: [frozenset(group.split("; ")) for group in groups] for key, groups in _TABLE["columns"].items()
+}
 """Names of each meaning; a name in an earlier entry is preferred to one in a later."""
 
-POSITIONS = frozenset(_COLUMNS["position"][0])
-KEYS: dict[str, frozenset[str]] = {
-    key: frozenset(names.split("; ")) for key, names in _TABLE["conditions"].items()
-}
+KEYS = {key: frozenset(names.split("; ")) for key, names in _TABLE["conditions"].items()}
 """Names of each condition in the lines above a table."""
 
 ALIASES: dict[str, dict[str, str]] = _TABLE["units"]  # spellings beyond study files, by the size of each
 SYMBOLS: dict[str, list[str]] = _TABLE["symbols"]  # they may follow a name of their meaning
 TORQUES: dict[str, float] = _TABLE["torques"]
-MISSING = frozenset({"", *_TABLE["words"]["missing"].split()})  # how files write a missing value
-REMARKS = frozenset(_TABLE["words"]["remarks"].split())  # names of a last column that rows leave out
-MASSES = {"g": "gf", "kg": "kgf"}
-"""Units of mass in which programs write forces, and the force that each means."""
-
-MANGLED = frozenset({"?", "??", "\ufffd", "\ufffd\ufffd"})
-"""What a Greek letter becomes where a program could not write it; as a name most likely that of friction."""
-
+_WORDS = {key: frozenset(words.split()) for key, words in _TABLE["words"].items()}
+MISSING = _WORDS["missing"] | {""}  # how files write a missing value
+REMARKS = _WORDS["remarks"]  # names of a last column that rows leave out
 CLOCKS = {
     "clock": ("clock", "hh:mm:ss", "h:mm:ss", "h:m:s", "hms"),
     "iso": ("iso",),
@@ -60,22 +53,12 @@ CLOCKS = {
 }
 """Units of times written as text, with the spellings of each; a format of a date is another: "%d.%m.%Y"."""
 
-_FORCES = (
-    "force",
-    "kraft",
-    "load",
-    "newton",
-    "torque",
-    "moment",
-)  # in names of what is not a ratio of forces
 _NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless", "ohne", "*", "/"})
-_COUNTS = frozenset(_TABLE["words"]["counts"].split())
 UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
     + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
-    + [unit.casefold() for unit in (*TORQUES, *MASSES.values())]
-    + [*_TABLE["words"]["other_units"].split(), "n m", "n mm", "n\u00b7m", "n\u00b7mm", "\u00b5m", "\u03bcm"]
-    + ["n.a.", *_NONE, *_COUNTS]
+    + [*(unit.casefold() for unit in TORQUES), *_WORDS["other_units"], *_WORDS["counts"], *_NONE]
+    + ["gf", "kgf", "n.a.", "n m", "n mm", "n\u00b7m", "n\u00b7mm", "\u00b5m", "\u03bcm"]
 )
 """What may be in a row of units, in small letters."""
 
@@ -127,15 +110,13 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
         return Scale()
     if meaning == "tangential_force" and torque_scale(spelling) is not None:
         return torque_scale(spelling)  # to be divided by the radius of the track
-    si = MEANINGS[meaning]
-    if si == "-":
-        if meaning == "friction" and spelling == "%":
-            return Scale(divisor=100.0)
-        if meaning == "friction" and (plain(spelling) in SYMBOLS["friction"] or spelling in MANGLED):
-            return Scale()
-        fits = spelling.casefold() in _NONE or (meaning == "cycles" and spelling.casefold() in _COUNTS)
-        return Scale() if fits else None
-    return scale_in(spelling, si)
+    if MEANINGS[meaning] != "-":
+        return scale_in(spelling, MEANINGS[meaning])
+    if meaning == "friction" and spelling == "%":
+        return Scale(divisor=100.0)
+    is_symbol = meaning == "friction" and plain(spelling) in SYMBOLS["friction"]
+    known = _NONE | _WORDS["counts"] if meaning == "cycles" else _NONE
+    return Scale() if is_symbol or spelling.casefold() in known else None
 
 
 @cache
@@ -154,8 +135,7 @@ def scale_in(unit: str, si: str) -> Scale | None:
         return Scale(divisor=float(number[2:]))
     offset = units.parse(f"0 {name}", si)
     factor = units.parse(size, si) - offset
-    if si == "K":
-        factor = round(factor, 12)
+    factor = round(factor, 12) if si == "K" else factor
     inverse = round(1.0 / factor)
     if factor < 1.0 and abs(inverse * factor - 1.0) < 1e-12:
         return Scale(divisor=float(inverse), offset=offset)
@@ -173,16 +153,7 @@ def time_form(unit: str) -> str:
 def torque_scale(unit: str) -> Scale | None:
     """How to bring a torque in that unit to N m; None where the unit is not one of torque."""
     text = re.sub(r"[\s.*\u00b7\u22c5-]+", "", unit.replace("\u00b5", "u").replace("\u03bc", "u"))
-    size = TORQUES.get(text)
-    return None if size is None else Scale(factor=size)
-
-
-def looks_like_torque(header: str, unit: str = "") -> bool:
-    """True for a column of torque, by its unit or by its name."""
-    written = (unit, *(part for _, part in header_parts(header)))
-    named = any(word == "couple" or word.endswith(("torque", "moment")) for word in plain(header).split())
-    force = any(scale_in(one, "N") is not None for one in written if one)
-    return any(torque_scale(one) is not None for one in written) or (named and not force)
+    return Scale(factor=TORQUES[text]) if text in TORQUES else None
 
 
 def known_units(meaning: str) -> str:
@@ -204,39 +175,41 @@ def header_parts(header: str) -> list[tuple[str, str]]:
     bracket = re.fullmatch(r"(.*?)\s*[\[(<{]\s*([^\[\](){}<>]*?)\s*[\])>}]\s*", text)
     if bracket:
         return [(bracket[1].strip(), bracket[2])]
-    ways = [(text, "")]
     patterns = (re.fullmatch(pattern, text) for pattern in _UNIT_AT_END)
-    ways += [(found[1].strip(), found[2].strip()) for found in patterns if found and found[2] != "1"]
-    return ways
+    return [(text, "")] + [(one[1].strip(), one[2].strip()) for one in patterns if one and one[2] != "1"]
 
 
 def ranks(name: str) -> dict[str, int]:
     """Meanings that a name may have, each with its place in the list of names."""
     words = plain(name)
-    found = {}
+    found: dict[str, int] = {}
     for meaning, groups in NAMES.items():
         signs = (words.removesuffix(f" {sign}") for sign in SYMBOLS.get(meaning, ()))
         bare = next((rest for rest in signs if rest != words and len(rest) > 1), words)
-        rank = next((rank for rank, group in enumerate(groups) if bare in group.split("; ")), None)
-        if rank is not None:
-            found[meaning] = rank
+        found |= {meaning: rank for rank, group in reversed([*enumerate(groups)]) if bare in group}
     return found
 
 
+# --- what a name looks like, for a draft ----------------------------------------------------------
+def looks_like_torque(header: str, unit: str = "") -> bool:
+    """True for a column of torque, by its unit or by its name."""
+    written = (unit, *(part for _, part in header_parts(header)))
+    named = any(word == "couple" or word.endswith(("torque", "moment")) for word in plain(header).split())
+    force = any(scale_in(one, "N") is not None for one in written if one)
+    return any(torque_scale(one) is not None for one in written) or (named and not force)
+
+
 def looks_like_friction(header: str) -> bool:
-    """True for a name that may be that of a coefficient of friction, for messages only; never for a force."""
+    """True for a name that may be that of a coefficient of friction; never for a force."""
     words = plain(header)
     parts = ("cof", "coef", "fric", "reib", "frott", "traction")
     named = any(part in words for part in parts) or "mu" in words.split()
-    return (named or header.strip() in MANGLED) and not looks_like_force(header)
+    return named and not looks_like_force(header)
 
 
 def looks_extreme(header: str) -> bool:
     """True for a name of an extreme or a scatter of what it names, and not of its mean."""
-    words = set(plain(header).split())
-    return bool(
-        words & {"max", "min", "maximum", "minimum", "peak", "static", "std", "dev", "sd", "stdev", "error"}
-    )
+    return not _WORDS["extremes"].isdisjoint(plain(header).split())
 
 
 def looks_like_force(header: str) -> bool:
@@ -244,4 +217,4 @@ def looks_like_force(header: str) -> bool:
     words = plain(header)
     coefficient = any(part in words for part in ("coef", "cof", "beiwert"))
     units_of_force = any(scale_in(unit, "N") is not None for _, unit in header_parts(header) if unit)
-    return not coefficient and (units_of_force or any(part in words for part in _FORCES))
+    return not coefficient and (units_of_force or any(part in words for part in _WORDS["forces"]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -24,35 +24,26 @@ class UnfitError(InputError):
     """A table that its map does not fit: it lacks a column, or states another unit."""
 
 
-def decimal_of(cells: Iterable[Sequence[str]], separator: str, source: str) -> str:
+def decimal_of(cells: Sequence[Sequence[str]], separator: str, source: str) -> str:
     """The decimal sign of the numbers; empty where none has one. Marks between thousands are refused."""
     if separator == "," and not any("," in cell for column in cells for cell in column):
         return "."
     found: dict[str, str] = {}
     certain = False
-    for column in cells:
-        for cell in column:
-            comma, point = cell.count(","), cell.count(".")
-            if (
-                not (comma or point)
-                or is_clock(cell)
-                or cell.casefold() in MISSING
-                or not cell[-1:].isdigit()
-            ):
-                continue
-            found |= ({",": cell} if comma else {}) | ({".": cell} if point else {})
-            certain = certain or not _GROUPED.fullmatch(cell)
-            if len(found) > 1 or comma + point > 1:
-                cure = (
-                    "Export the file without marks between thousands, or write below [format]: decimal = ..."
-                )
-                got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
-                raise UnfitError(source, "has points and commas in its numbers", got, cure)
+    for cell in (cell for column in cells for cell in column if "," in cell or "." in cell):
+        if is_clock(cell) or cell.casefold() in MISSING or not cell[-1:].isdigit():
+            continue
+        found |= {mark: cell for mark in ",." if mark in cell}
+        certain = certain or not _GROUPED.fullmatch(cell)
+        if len(found) > 1 or cell.count(",") + cell.count(".") > 1:
+            cure = "Export the file without marks between thousands, or write below [format]: decimal = ..."
+            got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
+            raise UnfitError(source, "has points and commas in its numbers", got, cure)
     if found and not certain:
-        mark, cell = next(iter(found.items()))
+        mark, one = next(iter(found.items()))
         rule = "does not show whether its marks are decimal signs or between thousands"
         cure = f'Add to the column map, below [format]: decimal = "{mark}".'
-        raise UnfitError(source, rule, f'"{printable(cell)}"', cure)
+        raise UnfitError(source, rule, f'"{printable(one)}"', cure)
     return next(iter(found), "")
 
 
@@ -67,15 +58,12 @@ def numbers(cells: Sequence[str], decimal: str, missing: frozenset[str]) -> tupl
         except ValueError:  # an empty cell, or `1-2`
             pass
     found, wrong = np.full(len(cells), np.nan), []
-    other = "," if decimal != "," else "."
     for i, cell in enumerate(cells):
         one = cell.rstrip(PERCENT)
-        if one.casefold() in missing:
-            continue
-        plain_number = one.replace(",", ".") if decimal == "," and other not in one else one
+        plain_number = one.replace(",", ".") if decimal == "," and "." not in one else one
         if FLOAT.fullmatch(plain_number):
             found[i] = float(plain_number.replace("d", "e").replace("D", "e"))
-        else:
+        elif one.casefold() not in missing:
             wrong.append(i)
     return np.where(np.isfinite(found), found, np.nan), wrong
 

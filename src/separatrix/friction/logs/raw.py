@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from io import BytesIO
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from separatrix.friction.logs.column_map import ColumnChoice, ColumnMap
+from separatrix.friction.logs.column_map import Column, ColumnMap
 from separatrix.friction.logs.log import ColumnRead, RawLog, conditions_of, metadata_of
 from separatrix.friction.logs.log_tables import (
-    BOUND,
     ERROR,
     PERCENT,
     UNCOMPUTED,
@@ -72,22 +71,20 @@ class Read:
 def places_of(block: Block, columns: ColumnMap, notes: list[str]) -> dict[str, list[int]]:
     """Columns of each meaning; several where a name stands twice."""
     found: dict[str, list[int]] = {}
+    used: dict[int, str] = {}
     for meaning, one in columns.columns.items():
+        words = meaning.replace("_", " ")
         if one.number is not None and one.number > len(block.heads):
-            rule = f"has {len(block.heads)} columns, not {one.number}, for {meaning.replace('_', ' ')}"
-            raise UnfitError(block.source, rule)
+            raise UnfitError(block.source, f"has {len(block.heads)} columns, not {one.number}, for {words}")
         places = matching(one.names, block.heads) if one.number is None else [one.number - 1]
         if places:
             found[meaning] = places
         elif one.optional:
-            name = printable(one.names[0])
-            notes.append(f'no column "{name}": without it the {meaning.replace("_", " ")} is not known')
+            notes.append(f'no column "{printable(one.names[0])}": without it the {words} is not known')
         else:
             listed = ", ".join(f'"{printable(head)}"' for head in block.heads[:12] if head)
             rule = f'has no column "{printable(one.names[0])}", which the column map names as {meaning}'
             raise UnfitError(block.source, rule, cure=f"It has {listed}.")
-    used: dict[int, str] = {}
-    for meaning, places in found.items():
         for i in places:
             if used.setdefault(i, meaning) != meaning:
                 rule = f'column "{printable(block.heads[i].strip())}" is both {used[i]} and {meaning}'
@@ -114,35 +111,29 @@ def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[S
     stated = stated_units(head, block.below[i], meaning, columns.format.spellings)
     if meaning in SHAPES:
         return Scale(), (stated or [""])[0]
-    where, name = f'{block.source}: column "{printable(head)}"', shown(head)
-    cure = (
-        f'Below [columns] in a column map, with the true unit: {meaning} = {{ name = {name}, unit = "..." }}.'
-    )
+    where = f'{block.source}: column "{printable(head)}"'
+
+    def cure(unit: str) -> str:
+        return (
+            f"Below [columns] of a column map: {meaning} = {{ name = {shown(head)}, unit = {shown(unit)} }}."
+        )
+
     known = {unit: scale_of(unit, meaning) for unit in stated}
     if column.unit is not None:
-        wrong = [
-            unit
-            for unit, scale in known.items()
-            if scale is not None and not _alike(unit, column.unit, meaning)
-        ]
-        wrong += [unit for unit, scale in known.items() if scale is None and columns.is_shipped]
-        if wrong:
-            cure = (
-                f"Below [columns] of a column map: {meaning} = {{ name = {name}, unit = {shown(wrong[0])} }}."
-            )
-            raise UnfitError(
-                where, f'is in "{column.unit}" by its map', f'"{printable(wrong[0])}" in the file', cure
-            )
+        for unit, scale in known.items():
+            if columns.is_shipped if scale is None else not _alike(unit, column.unit, meaning):
+                rule, got = f'is in "{column.unit}" by its map', f'"{printable(unit)}" in the file'
+                raise UnfitError(where, rule, got, cure(unit))
         return scale_of(column.unit, meaning) or Scale(), column.unit
     if meaning == "friction" and looks_like_force(head):
-        rule, cure = "is a force by its name, not a friction", "Name it as tangential_force, with its unit."
-        raise InputError(where, rule, cure=cure)
+        rule = "is a force by its name, not a friction"
+        raise InputError(where, rule, cure="Name it as tangential_force, with its unit.")
     if None in known.values() or len({*known.values()}) > 1:
         rule = f"has a unit that is not one of the {meaning.replace('_', ' ')} ({known_units(meaning)})"
-        raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure)
+        raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure("..."))
     if not stated and meaning not in ("friction", "cycles"):
-        raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure)
-    return (next(iter(known.values())) or Scale(), stated[0]) if stated else (Scale(), "")
+        raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure("..."))
+    return (known[stated[0]] or Scale(), stated[0]) if stated else (Scale(), "")
 
 
 def _alike(unit: str, other: str, meaning: str) -> bool:
@@ -154,40 +145,30 @@ def _alike(unit: str, other: str, meaning: str) -> bool:
 
 
 def in_si(
-    block: Block, columns: ColumnMap, radius: float | None, notes: list[str], decimal: str | None
+    block: Block, columns: ColumnMap, radius: float | None, notes: list[str], decimal: str | None = None
 ) -> Read:
     """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
-    timed = {i: time_form(scales[i][1]) for i in places.get("time", ())}
-    own = frozenset(one.casefold() for one in columns.format.missing)
-    absent = [float(one) for one in columns.format.missing if FLOAT.fullmatch(one)]
-    every = sorted(scales)
-    at_once = _at_once(block, [i for i in every if not timed.get(i)], columns)
-    loaded, found = at_once or ({}, decimal)
-    if block.columns is not None:
-        loaded, found = dict(enumerate(block.columns)), "."
-    rest = [i for i in every if i not in loaded]
-    cells = dict(zip(rest, cells_of(block, rest), strict=True))
-    decimal = found if decimal is None else decimal
+    every = [] if block.columns is not None else sorted(scales)
+    cells = dict(zip(every, cells_of(block, every), strict=True))
+    timed = {i: form for i in places.get("time", ()) if (form := time_form(scales[i][1]))}
     if decimal is None:
-        plain_cells = [cells[i] for i in rest if not timed.get(i)]
         decimal = columns.format.decimal if block.word == "line" else "."
-        decimal = decimal or decimal_of(plain_cells, block.separator, block.source)
+        numeric = [cells[i] for i in every if i not in timed]
+        decimal = decimal or decimal_of(numeric, block.separator, block.source)
+    absent = [float(one) for one in columns.format.missing if FLOAT.fullmatch(one)]
     arrays: Arrays = {}
     for meaning, some in places.items():
         made = []
         for i in some:
-            if i in loaded:
-                values = loaded[i]
+            if block.columns is not None:
+                values = block.columns[i]
             else:
-                values = _values(block, cells[i], i, decimal, own, timed.get(i, ""))
-                if not timed.get(i):
-                    values = _percentages(block, cells[i], i, values, scales[i])
+                values = _values(block, cells[i], i, columns.format.missing, decimal, timed.get(i, ""))
+                values = values if i in timed else _percentages(block, cells[i], i, values, scales[i][1])
             values = np.where(np.isin(values, absent), np.nan, values) if absent else values
-            made.append(
-                _scaled(block, values, i, meaning, scales[i], columns.columns[meaning], radius, notes)
-            )
+            made.append(_scaled(block, values, i, meaning, scales[i], columns, radius, notes))
         both = np.isfinite(made).all(axis=0)
         if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
             listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
@@ -200,40 +181,11 @@ def in_si(
     return Read(arrays, first, {meaning: scales[i][1] for meaning, i in first.items()}, decimal)
 
 
-def _at_once(block: Block, places: Sequence[int], columns: ColumnMap) -> tuple[dict[int, Array], str] | None:
-    """Columns of nothing but numbers, by numpy's own reader, and their decimal sign; else None."""
-    if block.columns is not None or block.word == "row" or not places:
-        return None
-    text, decimal, sign = "\n".join(block.rows), columns.format.decimal, block.separator
-    comma, point = "," in text and sign != ",", "." in text
-    if BOUND in text or '"' in text or (comma and (point or decimal == ".")) or (point and decimal == ","):
-        return None
-    if decimal is None and sign != ",":  # where this is not certain, all cells decide
-        try:
-            some = replace(block, rows=block.rows[:200])
-            decimal_of(cells_of(some, places), sign, block.source)
-        except UnfitError:
-            return None
-    raw = (text.replace(",", ".") if comma else text).encode()
-    try:
-        loaded = np.loadtxt(
-            BytesIO(raw),
-            delimiter=None if sign == " " else sign,
-            usecols=places,
-            comments=None,
-            ndmin=2,
-            encoding="latin1",
-        )
-    except ValueError:
-        return None
-    found = dict(zip(places, np.ascontiguousarray(loaded.T), strict=True))
-    return found, "," if comma else "." if point or sign == "," else ""
-
-
 def _values(
-    block: Block, cells: Sequence[str], i: int, decimal: str, own: frozenset[str], form: str
+    block: Block, cells: Sequence[str], i: int, marks: Sequence[str], decimal: str, form: str
 ) -> Array:
     """Numbers or seconds of a column; refused with the row of what is neither."""
+    own = {one.casefold() for one in marks}
     missing = MISSING | own | {f"{ERROR}{one}" for one in own}
     values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
     if not wrong:
@@ -246,28 +198,26 @@ def _values(
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
     if cell.startswith(ERROR):
         raise InputError(where, "holds an error", bare, cure)
+    got = f'"{printable(bare)}"'
     if form:
-        raise InputError(
-            where, f'must be a time ("{form}")', f'"{printable(bare)}"', f"Forms of times: {TIMES}."
-        )
+        raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")
     if is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
         cure = f"For a column of times, add to the column map: {TIMES}."
-    raise InputError(where, "must be a number", f'"{printable(bare)}"', cure)
+    raise InputError(where, "must be a number", got, cure)
 
 
-def _percentages(
-    block: Block, cells: Sequence[str], i: int, values: Array, scale: tuple[Scale, str]
-) -> Array:
+def _percentages(block: Block, cells: Sequence[str], i: int, values: Array, unit: str) -> Array:
     """Numbers of a sheet: what is shown as a percentage is saved as a fraction."""
-    shown_so = np.array([PERCENT in cell for cell in cells])
-    there = np.isfinite(values)
-    if not (shown_so & there).any():
+    if block.word == "line":
         return values
-    mixed = np.flatnonzero(there & ~shown_so)
+    shown_so = np.array([PERCENT in cell for cell in cells])
+    mixed = np.flatnonzero(np.isfinite(values) & ~shown_so)
+    if not (shown_so & np.isfinite(values)).any():
+        return values
     if mixed.size:
         rule, got = "is a plain number among percentages", f"{values[mixed[0]]:g}"
         raise InputError(block.at(int(mixed[0]), i), rule, got, "Format all cells of the column alike.")
-    return values * 100.0 if scale[1] == "%" else values
+    return values * 100.0 if unit == "%" else values
 
 
 def _scaled(
@@ -276,48 +226,39 @@ def _scaled(
     i: int,
     meaning: str,
     scale: tuple[Scale, str],
-    column: ColumnChoice,
+    columns: ColumnMap,
     radius: float | None,
     notes: list[str],
 ) -> Array:
     """A column in SI units; a torque divided by the radius of the track."""
-    where, name = (
-        f'{block.source}: column "{printable(block.heads[i].strip())}"',
-        shown(block.heads[i].strip()),
-    )
-    found = (
-        scale[0].of(values) * (1.0 if column.sign > 0 else -1.0) if meaning != "time" else scale[0].of(values)
-    )
+    column: Column = columns.columns[meaning]
+    head = block.heads[i].strip()
+    where = f'{block.source}: column "{printable(head)}"'
+    found = scale[0].of(values) * (-1.0 if column.sign < 0 and meaning != "time" else 1.0)
     if meaning == "tangential_force" and torque_scale(scale[1]) is not None:
         if radius is None:
-            line = f'tangential_force = {{ name = {name}, unit = "{scale[1]}" }}'
-            cure = f"In a column map: {line} below [columns], "
-            raise UnfitError(
-                where, "is a torque, not a force", cure=f'{cure}and track_radius = "... mm" below [test].'
-            )
+            line = f'tangential_force = {{ name = {shown(head)}, unit = "{scale[1]}" }}'
+            cure = f'In a column map: {line} below [columns], and track_radius = "... mm" below [test].'
+            raise UnfitError(where, "is a torque, not a force", cure=cure)
         notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
         found = found / radius
     if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
-        line = f'temperature = {{ name = {name}, unit = "..." }}'
+        got = f"{float(values[below[0]]):g}"
+        line = f'temperature = {{ name = {shown(head)}, unit = "..." }}'
         cure = f"State its true unit below [columns] in a column map: {line}"
-        got = f"{float(values[below[0]]):g} {scale[1]}"
-        cure += (
-            f'; if this is a code for a missing value, write missing = ["{got.split()[0]}"] below [format].'
-        )
-        raise InputError(where, "has temperatures below absolute zero", got, cure)
+        cure += f'; if this is a code for a missing value, write missing = ["{got}"] below [format].'
+        raise InputError(where, "has temperatures below absolute zero", f"{got} {scale[1]}", cure)
     return found if np.isfinite(found).all() else np.where(np.isfinite(found), found, np.nan)
 
 
 # --- the log --------------------------------------------------------------------------------------
 def raw_log(
-    block: Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, str | float]
+    block: Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, Any]
 ) -> RawLog:
     """Log of one table, with the conditions that the column map states for its file."""
-    force, radius = (
-        one if isinstance(one := given.get(key), float) else None for key in ("normal_force", "track_radius")
-    )
+    force, radius = given.get("normal_force"), given.get("track_radius")
     notes = list(block.notes)
-    read = in_si(block, columns, radius, notes, None)
+    read = in_si(block, columns, radius, notes)
     arrays = dict(read.arrays)
     if "friction" in read.places and looks_extreme(head := block.heads[read.places["friction"]].strip()):
         notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
@@ -325,15 +266,18 @@ def raw_log(
     _mend_sign(arrays, columns, source, notes, is_given=force is not None)
     signed = _friction(arrays, force, source, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
-    kept = _complete(arrays, block, source)
-    missing = int(len(kept) - kept.sum())
+    complete = _complete(arrays, block, source)
+    missing = int((~complete).sum())
     if missing:
-        notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
-    kept, left_out = sliding_rows(_signals(block, read), signed, arrays.get("time"), kept)
+        notes.append(f"{missing} of {complete.size} rows are left out: friction or its abscissa is missing")
+    there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
+    signals = [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
+    kept, left_out = sliding_rows(signals, signed, arrays.get("time"), complete)
     notes += [left_out] if left_out else []
     arrays = {meaning: column[kept] for meaning, column in arrays.items() if meaning not in SHAPES}
-    rotation = arrays.pop("rotational_speed", None)
-    turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
+    turns = (
+        {"rotational_speed": np.abs(arrays.pop("rotational_speed"))} if "rotational_speed" in arrays else {}
+    )
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
@@ -366,23 +310,16 @@ def _columns_read(block: Block, columns: ColumnMap, read: Read) -> tuple[ColumnR
     for i, head in enumerate(block.heads):
         meaning = meanings.get(i)
         why = columns.columns[meaning].origin if meaning else "not needed"
-        unit = read.units[meaning] if meaning else block.below[i]
-        own = meaning if meaning in MEANINGS else None
+        is_shape = meaning in SHAPES
         found.append(
             ColumnRead(
                 header=head.strip(),
-                meaning=own,
-                unit=unit,
-                why=f"{meaning}, {why}" if meaning and not own else why,
+                meaning=None if is_shape else meaning,
+                unit=read.units[meaning] if meaning else block.below[i],
+                why=f"{meaning}, {why}" if is_shape else why,
             )
         )
     return tuple(found)
-
-
-def _signals(block: Block, read: Read) -> list[Signal]:
-    """Columns that may show which rows slide, in the order of the file."""
-    there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
-    return [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
 
 
 def _drop_empty(arrays: Arrays, source: str, notes: list[str]) -> None:
@@ -419,9 +356,7 @@ def _mend_sign(arrays: Arrays, columns: ColumnMap, source: str, notes: list[str]
     elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
         rule = "has a normal force of both signs, so that the sign of compression is not certain"
         got = f"{positive} rows above zero, {negative} below"
-        cure = (
-            "Below [columns] in a column map, add to normal_force: sign = -1 if compression counts negative."
-        )
+        cure = "Below [columns] in a column map, add to normal_force: sign = -1 if compression is negative."
         raise InputError(source, rule, got, cure)
 
 
@@ -480,12 +415,16 @@ def _complete(arrays: Arrays, block: Block, source: str) -> Rows:
     for meaning in abscissae:
         column = arrays[meaning][kept]
         back = np.flatnonzero(np.diff(column) < 0.0)
-        if len(back):
+        if back.size:
             i = int(back[0]) + 1
             here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
-            cure = "Split the file there; or, if this column has another meaning, state it in a column map."
-            rule = f"{meaning} must not run backwards"
-            raise InputError(block.at(int(rows[i])), rule, f"{here} after {before}", cure)
+            cure = (
+                "Split the file there; if a column numbers its tests, write below [format] of a column map:"
+            )
+            cure += ' tests = ["..."]; if this column has another meaning, state it there.'
+            raise InputError(
+                block.at(int(rows[i])), f"{meaning} must not run backwards", f"{here} after {before}", cure
+            )
     return kept
 
 
@@ -493,12 +432,9 @@ def _without_stroke_speed(
     metadata: Mapping[str, str], block: Block, read: Read, arrays: Arrays, notes: list[str]
 ) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
-    position = read.places.get("position")
-    strokes = position is not None and plain(block.heads[position]).startswith(
-        ("linear position", "lin position")
-    )
+    head = plain(block.heads[read.places["position"]]) if "position" in read.places else ""
     speeds = [key for key in metadata if plain(header_parts(key)[0][0]) in KEYS["slip_speed"]]
-    if not strokes or not (speeds or "slip_speed" in arrays):
+    if not head.startswith(("linear position", "lin position")) or not (speeds or "slip_speed" in arrays):
         return dict(metadata)
     arrays.pop("slip_speed", None)
     notes.append(

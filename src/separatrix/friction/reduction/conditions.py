@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog, of_log
+from separatrix.friction.logs.log import Conditions, RawLog, of_log
+from separatrix.friction.logs.names import MEANINGS
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, format_quantity
 
