@@ -12,9 +12,9 @@ from typing import Any, ClassVar, Literal
 from separatrix.friction.file import Place, place
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, SHAPES, known_units, scale_of
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import Document, Reading, read_document, read_text
+from separatrix.ground.reader import Document, read_document, read_text
 from separatrix.ground.schema import Fault, Faults, between, check, key, keys_of, positive, record
-from separatrix.ground.toml import KeyPath, Kind, label_of, nearest, parsed
+from separatrix.ground.toml import Kind, label_of, nearest, parsed
 from separatrix.ground.toml import read_text as text_of
 from separatrix.ground.units import (
     Kelvin,
@@ -37,7 +37,7 @@ DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
 def _one_of(known: Mapping[str, str]) -> Any:
     """Reader of a text that stands for a character."""
 
-    def read(raw: object, path: KeyPath, reading: Reading) -> str:
+    def read(raw: object, *_: object) -> str:
         if not isinstance(raw, str) or raw not in known:
             names = ", ".join(f'"{name}"' for name in known if name.isprintable() and name.strip())
             raise InputError("", f"must be one of {names}", shown(raw))
@@ -46,7 +46,7 @@ def _one_of(known: Mapping[str, str]) -> Any:
     return read
 
 
-def _column_name(raw: object, path: KeyPath, reading: Reading) -> tuple[str, ...] | int:
+def _column_name(raw: object, *_: object) -> tuple[str, ...] | int:
     if isinstance(raw, int) and not isinstance(raw, bool):
         if LAST.low <= raw <= LAST.high:
             return raw
@@ -129,10 +129,6 @@ def _commas(separator: str, decimal: str) -> Faults:
         yield Fault("", "cannot have a comma both as separator and as decimal sign", got="")
 
 
-def _place(raw: object, path: KeyPath, reading: Reading) -> Place:
-    return place(raw, "")
-
-
 @record
 class Stated:
     """What is stated about a test."""
@@ -151,7 +147,7 @@ class Stated:
     pin_diameter: Metre | None = key(positive(1e-9, 1e2), default=None)
     track_radius: Metre | None = key(positive(1e-9, 1e2), default=None)
     rotational_speed: RadianPerSecond | None = key(positive(1e-9, 1e6), default=None)
-    run_in_end: Place | None = key(default=None, read=_place)
+    run_in_end: Place | None = key(default=None, read=lambda raw, *_: place(raw, ""))
     """Where running-in ends."""
 
 

@@ -9,41 +9,10 @@ from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from typing import Any
 
+from separatrix.friction.logs import log_tables as tables
+from separatrix.friction.logs import names as naming
 from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, given_in
 from separatrix.friction.logs.log import metadata_of, two_ways
-from separatrix.friction.logs.log_tables import (
-    Block,
-    BrokenError,
-    Content,
-    Heads,
-    Part,
-    blocks_of_part,
-    cells_of,
-    fields_of,
-    first_table,
-    heads_in,
-    is_clock,
-    is_number,
-    is_row,
-    matching,
-    separator_in,
-    separator_of,
-)
-from separatrix.friction.logs.names import (
-    ABSCISSAE,
-    KEYS,
-    MEANINGS,
-    MISSING,
-    header_parts,
-    looks_extreme,
-    looks_like_friction,
-    looks_like_torque,
-    plain,
-    ranks,
-    scale_of,
-    time_form,
-    torque_scale,
-)
 from separatrix.friction.logs.numbers_and_times import UnfitError, decimal_of
 from separatrix.friction.logs.raw import stated_units
 from separatrix.ground.errors import InputError
@@ -126,7 +95,7 @@ def _toml(value: object) -> str:
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draft:
+def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) -> Draft:
     """Draft of the map of a file: of its first table without questions, else of its first.
 
     `given` is what the user and a known layout state; `why` is the reason that they do not suffice, if any.
@@ -149,11 +118,11 @@ def draft_of(content: Content, given: ColumnMap, why: InputError | None) -> Draf
     return found
 
 
-def _no_table(content: Content) -> InputError:
+def _no_table(content: tables.Content) -> InputError:
     cure = "It needs a line of column names above at least two rows; a column map can state where."
     for part in content.parts:
-        signs = ((i, line, separator_of([line])[0]) for i, line in enumerate(part.lines[:500]))
-        rows = [i for i, line, sign in signs if sign and is_row(fields_of(line, sign))]
+        signs = ((i, line, tables.separator_of([line])[0]) for i, line in enumerate(part.lines[:500]))
+        rows = [i for i, line, sign in signs if sign and tables.is_row(tables.fields_of(line, sign))]
         if len(rows) == 1:
             where = f"{content.name}: {part.word} {rows[0] + 1}"
             return InputError(where, "is the only row", cure="A log has at least two.")
@@ -161,10 +130,10 @@ def _no_table(content: Content) -> InputError:
 
 
 # --- the table ------------------------------------------------------------------------------------
-def _block(part: Part, draft: Draft) -> Block | None:
+def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
     """The first table of a text, with a question on each kind of line among its rows that is not one."""
     form = draft.given.format
-    separator, others = separator_in(part, form)
+    separator, others = tables.separator_in(part, form)
     heads = _heads(part, separator, draft.given) if separator else None
     if heads is None:
         return None
@@ -174,12 +143,12 @@ def _block(part: Part, draft: Draft) -> Block | None:
     needed = [(name,) for name in names if name.strip()]
     for left in range(MOST_BREAKS, -1, -1):
         try:
-            blocks = list(blocks_of_part(part, form, needed))
+            blocks = list(tables.blocks_of_part(part, form, needed))
             if blocks or heads.line is None or form.header_line is not None:
                 break
             form, needed = replace(form, header_line=heads.line + 1), []
             asked["header_line"] = "its line of names?"
-        except BrokenError as error:
+        except tables.BrokenError as error:
             line = part.lines[error.line].strip()
             begin = "".join(takewhile(str.isprintable, line))
             if not left or not begin:
@@ -208,24 +177,24 @@ def _block(part: Part, draft: Draft) -> Block | None:
     return block
 
 
-def _heads(part: Part, separator: str, given: ColumnMap) -> Heads | None:
+def _heads(part: tables.Part, separator: str, given: ColumnMap) -> tables.Heads | None:
     """Names of the first table: at the line that is stated, or below the first with the names stated."""
     if given.format.header_line is not None:
-        return next(heads_in(part, given.format, (), separator))
+        return next(tables.heads_in(part, given.format, (), separator))
     named = [one.names for one in given.columns.values() if one.names and not one.optional]
-    lines = ((i, fields_of(line, separator)) for i, line in enumerate(part.lines) if named)
-    start = next((i for i, heads in lines if all(matching(names, heads) for names in named)), 0)
-    missing = MISSING | {one.casefold() for one in given.format.missing}
-    return first_table(part.lines, separator, missing, start)
+    lines = ((i, tables.fields_of(line, separator)) for i, line in enumerate(part.lines) if named)
+    start = next((i for i, heads in lines if all(tables.matching(names, heads) for names in named)), 0)
+    missing = naming.MISSING | {one.casefold() for one in given.format.missing}
+    return tables.first_table(part.lines, separator, missing, start)
 
 
 # --- its columns ----------------------------------------------------------------------------------
-def _draft(block: Block, draft: Draft) -> Draft:
+def _draft(block: tables.Block, draft: Draft) -> Draft:
     """What each column means: certain by name and unit, or asked."""
     if block.columns is not None:
         draft.cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
     else:
-        draft.cells = cells_of(block, range(len(block.heads)))
+        draft.cells = tables.cells_of(block, range(len(block.heads)))
     options: Options = {}
     for i, cells in enumerate(draft.cells):
         for meaning, option in _options(block, i, cells).items():
@@ -240,19 +209,21 @@ def _draft(block: Block, draft: Draft) -> Draft:
     return draft
 
 
-def _options(block: Block, i: int, cells: Sequence[str]) -> dict[str, Option]:
+def _options(block: tables.Block, i: int, cells: Sequence[str]) -> dict[str, Option]:
     """Meanings that a column may have."""
-    ways = header_parts(block.heads[i])
-    sample = [cell for cell in cells[:SAMPLE] if cell.casefold() not in MISSING]
-    clocks = [cell for cell in sample if is_clock(cell)]
+    ways = naming.header_parts(block.heads[i])
+    sample = [cell for cell in cells[:SAMPLE] if cell.casefold() not in naming.MISSING]
+    clocks = [cell for cell in sample if tables.is_clock(cell)]
     if 2 * len(clocks) > len(sample):
         stated = stated_units(block.heads[i], block.below[i], "time", {})
-        return {"time": _clock(8 if "time" in ranks(ways[0][0]) else 9, i, stated, cells, clocks)}
-    if 2 * sum(not is_number(cell) for cell in sample) > len(sample):
+        return {"time": _clock(8 if "time" in naming.ranks(ways[0][0]) else 9, i, stated, cells, clocks)}
+    if 2 * sum(not tables.is_number(cell) for cell in sample) > len(sample):
         return {}
     for name, unit in ways:
-        meanings = {} if unit.isdigit() else ranks(name.rpartition(".")[2]) | ranks(name)  # COF_2: a station
-        if looks_extreme(ways[0][0]):
+        meanings = (
+            {} if unit.isdigit() else naming.ranks(name.rpartition(".")[2]) | naming.ranks(name)
+        )  # COF_2: a station
+        if naming.looks_extreme(ways[0][0]):
             meanings = {key: rank for key, rank in meanings.items() if not re.search("friction|force", key)}
         if meanings:
             only = len(meanings) == 1
@@ -260,13 +231,13 @@ def _options(block: Block, i: int, cells: Sequence[str]) -> dict[str, Option]:
     return {}
 
 
-def _option(block: Block, i: int, meaning: str, rank: int, *, is_only: bool) -> Option:
+def _option(block: tables.Block, i: int, meaning: str, rank: int, *, is_only: bool) -> Option:
     """A column of numbers with a usual name: certain where its unit is."""
     stated = stated_units(block.heads[i], block.below[i], meaning, {})
-    scales = {scale_of(one, meaning) for one in stated}
+    scales = {naming.scale_of(one, meaning) for one in stated}
     known = (None not in scales and len(scales) == 1) or meaning == "position"
     known = known or (not stated and meaning in ("friction", "cycles") and is_only)
-    is_torque = meaning in ("friction", "tangential_force") and looks_like_torque(
+    is_torque = meaning in ("friction", "tangential_force") and naming.looks_like_torque(
         block.heads[i], block.below[i]
     )
     unit = (stated[0] if known else ", ".join(stated)) if stated else ""
@@ -275,7 +246,7 @@ def _option(block: Block, i: int, meaning: str, rank: int, *, is_only: bool) -> 
 
 def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clocks: Sequence[str]) -> Option:
     """A column of times as text, with how they are written."""
-    form = next((form for one in stated if (form := time_form(one))), "")
+    form = next((form for one in stated if (form := naming.time_form(one))), "")
     if form in ("hh:mm", "mm:ss") or all(_CLOCK.fullmatch(one) for one in clocks):
         return Option(rank, i, form if form in ("hh:mm", "mm:ss") else "clock", known=True)
     if iso := [match for one in cells if (match := _ISO.fullmatch(one))]:
@@ -304,11 +275,11 @@ def _date_format(dates: Sequence[re.Match[str]]) -> tuple[str, bool]:
 
 
 # --- the lines of the map -------------------------------------------------------------------------
-def _given(block: Block, draft: Draft) -> set[int]:
+def _given(block: tables.Block, draft: Draft) -> set[int]:
     """Columns that are stated already, with their lines; what the table does not have is asked."""
     used = set()
     for meaning, one in draft.given.columns.items():
-        places = matching(one.names, block.heads) if one.number is None else [one.number - 1]
+        places = tables.matching(one.names, block.heads) if one.number is None else [one.number - 1]
         if places and max(places) < len(block.heads):
             draft.columns[meaning] = _of_twins(draft, meaning, one, places)
             used |= set(places)
@@ -336,26 +307,30 @@ def _stated(meaning: str, one: Column) -> str:
     return f"{meaning} = {_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
 
 
-def _line(draft: Draft, block: Block, meaning: str, option: Option, unit: str = "") -> str:
+def _line(draft: Draft, block: tables.Block, meaning: str, option: Option, unit: str = "") -> str:
     """One line of [columns]: the name without its unit where that is unique, else the whole or the number."""
     head = " ".join(block.heads[option.index].split())
-    bare = header_parts(head)[0][0]
-    named = bare if bare and matching([bare], block.heads) == [option.index] else head
-    unit = unit or (option.unit if meaning == "time" and time_form(option.unit) else "")
+    bare = naming.header_parts(head)[0][0]
+    named = bare if bare and tables.matching([bare], block.heads) == [option.index] else head
+    unit = unit or (option.unit if meaning == "time" and naming.time_form(option.unit) else "")
     choice = Column(
         name=(named,) if named else option.index + 1,
         unit=unit or None,
         optional=meaning in ("temperature", "wear_depth"),
     )
-    return _of_twins(draft, meaning, choice, matching([named], block.heads) if named else [option.index])
+    return _of_twins(
+        draft, meaning, choice, tables.matching([named], block.heads) if named else [option.index]
+    )
 
 
-def _decide(block: Block, draft: Draft, options: Options, used: set[int]) -> None:
+def _decide(block: tables.Block, draft: Draft, options: Options, used: set[int]) -> None:
     """One line of the map for each meaning that is there: certain, asked, or noted as not used."""
     free = {key: [one for one in some if one.index not in used] for key, some in options.items()}
-    sure = {key: _best([one for one in free.get(key, ()) if one.known]) for key in (*MEANINGS, "position")}
+    sure = {
+        key: _best([one for one in free.get(key, ()) if one.known]) for key in (*naming.MEANINGS, "position")
+    }
     needed = _needed(block, draft, free, sure)
-    for meaning in (*MEANINGS, "position"):
+    for meaning in (*naming.MEANINGS, "position"):
         chosen = [one for one in sure[meaning] if one.index not in used]
         rest = [one for one in free.get(meaning, ()) if one.index not in used]
         if meaning in draft.columns:
@@ -373,10 +348,12 @@ def _decide(block: Block, draft: Draft, options: Options, used: set[int]) -> Non
     _shapes(block, draft, options, used)
 
 
-def _needed(block: Block, draft: Draft, free: Options, sure: Options) -> set[str]:
+def _needed(block: tables.Block, draft: Draft, free: Options, sure: Options) -> set[str]:
     """Meanings that the map must have: friction, or the forces instead; and an abscissa."""
     has_load = "normal_force" in draft.columns or sure["normal_force"] or "normal_force" in draft.stated
-    has_friction = sure["friction"] or free.get("friction") or any(map(looks_like_friction, block.heads))
+    has_friction = (
+        sure["friction"] or free.get("friction") or any(map(naming.looks_like_friction, block.heads))
+    )
     by_forces = sure["tangential_force"] if has_load else []
     by_forces = by_forces or ([] if has_friction else free.get("tangential_force", []))
     if "friction" in draft.columns:
@@ -386,8 +363,8 @@ def _needed(block: Block, draft: Draft, free: Options, sure: Options) -> set[str
         sure["friction"], free["friction"] = [], []
     else:
         needed = {"friction"}
-    if not any(name in draft.columns or sure[name] for name in ABSCISSAE):
-        needed.add(next((name for name in ABSCISSAE if free.get(name)), "time"))
+    if not any(name in draft.columns or sure[name] for name in naming.ABSCISSAE):
+        needed.add(next((name for name in naming.ABSCISSAE if free.get(name)), "time"))
     return needed
 
 
@@ -396,12 +373,14 @@ def _best(options: Sequence[Option]) -> list[Option]:
     return [one for one in options if one.rank == lowest]
 
 
-def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool) -> None:
+def _choose(
+    block: tables.Block, draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool
+) -> None:
     """The line of columns that are certain; asked where several of other names are."""
     count, words = len(draft.questions), meaning.replace("_", " ")
     line = _line(draft, block, meaning, chosen[0])
     names = list(dict.fromkeys(_toml(block.heads[one.index].strip()) for one in chosen))
-    units = {scale_of(one.unit, meaning) if one.unit else None for one in chosen}
+    units = {naming.scale_of(one.unit, meaning) if one.unit else None for one in chosen}
     if len(draft.questions) > count and not is_needed:
         del draft.questions[count:]
         draft.notes.append(f"columns {names[0]} differ, and none is used as {words}")
@@ -417,10 +396,10 @@ def _choose(block: Block, draft: Draft, meaning: str, chosen: Sequence[Option], 
     draft.columns[meaning] = line
 
 
-def _ask_unit(block: Block, draft: Draft, meaning: str, option: Option) -> None:
+def _ask_unit(block: tables.Block, draft: Draft, meaning: str, option: Option) -> None:
     """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
     head, below = block.heads[option.index], block.below[option.index]
-    if meaning == "tangential_force" and looks_like_torque(head, below):
+    if meaning == "tangential_force" and naming.looks_like_torque(head, below):
         _ask_torque(block, draft, option.index)
         return
     unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
@@ -429,9 +408,9 @@ def _ask_unit(block: Block, draft: Draft, meaning: str, option: Option) -> None:
     draft.columns[meaning] = draft.ask(line, f"column {_toml(head.strip())}: {said}")
 
 
-def _ask_torque(block: Block, draft: Draft, i: int) -> None:
-    written = (block.below[i], header_parts(block.heads[i])[0][1])
-    unit = next((one for one in written if torque_scale(one)), UNKNOWN)
+def _ask_torque(block: tables.Block, draft: Draft, i: int) -> None:
+    written = (block.below[i], naming.header_parts(block.heads[i])[0][1])
+    unit = next((one for one in written if naming.torque_scale(one)), UNKNOWN)
     line = _line(draft, block, "tangential_force", Option(0, i), unit)
     question = "a torque: write the radius of its track below [test]"
     draft.columns["tangential_force"] = draft.ask(line, question)
@@ -439,10 +418,10 @@ def _ask_torque(block: Block, draft: Draft, i: int) -> None:
         draft.test.append('track_radius = "... mm"')
 
 
-def _ask_column(block: Block, draft: Draft, meaning: str) -> None:
+def _ask_column(block: tables.Block, draft: Draft, meaning: str) -> None:
     """The line of a column that is needed and that no name shows."""
-    torque = [i for i, head in enumerate(block.heads) if looks_like_torque(head, block.below[i])]
-    near = [i for i, head in enumerate(block.heads) if looks_like_friction(head)]
+    torque = [i for i, head in enumerate(block.heads) if naming.looks_like_torque(head, block.below[i])]
+    near = [i for i, head in enumerate(block.heads) if naming.looks_like_friction(head)]
     if meaning == "normal_force":
         if "normal_force" not in draft.stated:
             draft.test.append(draft.ask('normal_force = "... N"', "the log has no normal force"))
@@ -459,19 +438,19 @@ def _ask_column(block: Block, draft: Draft, meaning: str) -> None:
         draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
 
 
-def _shapes(block: Block, draft: Draft, options: Options, used: set[int]) -> None:
+def _shapes(block: tables.Block, draft: Draft, options: Options, used: set[int]) -> None:
     """Columns in any unit that show standstill and reversals."""
     speeds = [one for key in ("slip_speed", "rotational_speed") for one in options.get(key, ())]
     speeds = [one for one in speeds if one.index not in used and one.unit.casefold() not in ("v", "a")]
     if speeds and not {"slip_speed", "rotational_speed", "motion"} & draft.columns.keys():
         draft.columns["motion"] = _line(draft, block, "motion", min(speeds, key=lambda one: one.index))
     forces = [one for one in options.get("tangential_force", ()) if one.index not in used]
-    forces = [one for one in forces if not looks_like_torque(block.heads[one.index])]
+    forces = [one for one in forces if not naming.looks_like_torque(block.heads[one.index])]
     if forces and "stroke" not in draft.columns and "friction" in draft.columns:
         draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
 
 
-def _decimal(block: Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None:
+def _decimal(block: tables.Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None:
     """A question where marks may be decimal signs or between thousands."""
     if block.columns is not None or block.word == "row" or draft.given.format.decimal:
         return
@@ -481,12 +460,14 @@ def _decimal(block: Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None
         draft.form.append(draft.ask(f'decimal = "{UNKNOWN}"', f"{error.rule}: {error.got}"))
 
 
-def _conditions(block: Block, draft: Draft) -> None:
+def _conditions(block: tables.Block, draft: Draft) -> None:
     """A question on each condition above the table whose number can be read in two ways."""
     text = "".join("".join(column[:SAMPLE]) for column in draft.cells)
     decimal = "," if "," in text else "." if "." in text or block.separator == "," else ""
     for key, value in metadata_of(block.above).items():
-        meant = [one for one, names in KEYS.items() if plain(header_parts(key)[0][0]) in names]
+        meant = [
+            one for one, names in naming.KEYS.items() if naming.plain(naming.header_parts(key)[0][0]) in names
+        ]
         if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
             question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
             draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))

@@ -151,18 +151,18 @@ def conditions_of(
     found: Found = {key: (value, MAP) for key, value in given.items()}
     pairs = metadata.items()
     notes = [note for key, text in pairs if text and (note := _from_metadata(key, text, found, decimal))]
-    for key, column in columns.items():  # the median, which a ramp at the start does not move
-        if key in QUANTITIES and np.isfinite(column).any():
-            middle = float(np.nanmedian(column if key == "temperature" else np.abs(column)))
+    for name, column in columns.items():  # the median, which a ramp at the start does not move
+        if name in QUANTITIES and np.isfinite(column).any():
+            middle = float(np.nanmedian(column if name == "temperature" else np.abs(column)))
             if middle > 0.0:
-                found.setdefault(key, (middle, MEDIAN))
+                found.setdefault(name, (middle, MEDIAN))
     _derive(found, source)
     known = {key: one for key, one in found.items() if key in Conditions.__dataclass_fields__}
     sentences = []
-    for key, (value, reason) in known.items():
-        text = printable(value, 200) if isinstance(value, str) else format_quantity(value, QUANTITIES[key])
+    for name, (value, reason) in known.items():
+        text = printable(value, 200) if isinstance(value, str) else format_quantity(value, QUANTITIES[name])
         if reason != MAP:
-            sentences.append(f"{key.replace('_', ' ')} {text}: {reason}")
+            sentences.append(f"{name.replace('_', ' ')} {text}: {reason}")
     try:
         conditions = Conditions(**{key: value for key, (value, _) in known.items()})  # type: ignore[arg-type]
     except InputError as error:

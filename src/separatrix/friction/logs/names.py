@@ -186,7 +186,8 @@ def ranks(name: str) -> dict[str, int]:
     for meaning, groups in NAMES.items():
         signs = (words.removesuffix(f" {sign}") for sign in SYMBOLS.get(meaning, ()))
         bare = next((rest for rest in signs if rest != words and len(rest) > 1), words)
-        found |= {meaning: rank for rank, group in reversed([*enumerate(groups)]) if bare in group}
+        rank = next((rank for rank, group in enumerate(groups) if bare in group), None)
+        found |= {} if rank is None else {meaning: rank}
     return found
 
 

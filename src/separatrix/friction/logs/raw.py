@@ -9,35 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from separatrix.friction.logs import log_tables as tables
+from separatrix.friction.logs import names as naming
 from separatrix.friction.logs.column_map import Column, ColumnMap
 from separatrix.friction.logs.log import ColumnRead, RawLog, conditions_of, metadata_of
-from separatrix.friction.logs.log_tables import (
-    ERROR,
-    PERCENT,
-    UNCOMPUTED,
-    Block,
-    bare_unit,
-    cells_of,
-    described_form,
-    is_clock,
-    matching,
-)
-from separatrix.friction.logs.names import (
-    ABSCISSAE,
-    KEYS,
-    MEANINGS,
-    MISSING,
-    SHAPES,
-    Scale,
-    header_parts,
-    known_units,
-    looks_extreme,
-    looks_like_force,
-    plain,
-    scale_of,
-    time_form,
-    torque_scale,
-)
 from separatrix.friction.logs.numbers_and_times import FLOAT, UnfitError, decimal_of, numbers, seconds
 from separatrix.friction.logs.sliding import Rows, Signal, sliding_rows
 from separatrix.ground.errors import InputError
@@ -68,7 +43,7 @@ class Read:
     decimal: str
 
 
-def places_of(block: Block, columns: ColumnMap, notes: list[str]) -> dict[str, list[int]]:
+def places_of(block: tables.Block, columns: ColumnMap, notes: list[str]) -> dict[str, list[int]]:
     """Columns of each meaning; several where a name stands twice."""
     found: dict[str, list[int]] = {}
     used: dict[int, str] = {}
@@ -76,7 +51,7 @@ def places_of(block: Block, columns: ColumnMap, notes: list[str]) -> dict[str, l
         words = meaning.replace("_", " ")
         if one.number is not None and one.number > len(block.heads):
             raise UnfitError(block.source, f"has {len(block.heads)} columns, not {one.number}, for {words}")
-        places = matching(one.names, block.heads) if one.number is None else [one.number - 1]
+        places = tables.matching(one.names, block.heads) if one.number is None else [one.number - 1]
         if places:
             found[meaning] = places
         elif one.optional:
@@ -97,20 +72,20 @@ def stated_units(head: str, below: str, meaning: str, spellings: Mapping[str, st
 
     Words after a name without brackets that are not a unit of the meaning are a part of the name.
     """
-    ways = header_parts(head)
+    ways = naming.header_parts(head)
     beside = [spellings.get(unit, unit) for _, unit in ways if unit]
     if len(ways) > 1 or not re.search(r"[\[(<{]", head):
-        beside = [unit for unit in beside if scale_of(unit, meaning) is not None][:1]
-    under = bare_unit(below)
+        beside = [unit for unit in beside if naming.scale_of(unit, meaning) is not None][:1]
+    under = tables.bare_unit(below)
     return [unit for unit in (spellings.get(under, under), *beside) if unit]
 
 
-def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[Scale, str]:
+def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> tuple[naming.Scale, str]:
     """Scale and unit of a column; refused where the file states none, an unknown or another one."""
     column, head = columns.columns[meaning], block.heads[i].strip()
     stated = stated_units(head, block.below[i], meaning, columns.format.spellings)
-    if meaning in SHAPES:
-        return Scale(), (stated or [""])[0]
+    if meaning in naming.SHAPES:
+        return naming.Scale(), (stated or [""])[0]
     where = f'{block.source}: column "{printable(head)}"'
 
     def cure(unit: str) -> str:
@@ -118,41 +93,47 @@ def scale_for(block: Block, i: int, meaning: str, columns: ColumnMap) -> tuple[S
             f"Below [columns] of a column map: {meaning} = {{ name = {shown(head)}, unit = {shown(unit)} }}."
         )
 
-    known = {unit: scale_of(unit, meaning) for unit in stated}
+    known = {unit: naming.scale_of(unit, meaning) for unit in stated}
     if column.unit is not None:
         for unit, scale in known.items():
             if columns.is_shipped if scale is None else not _alike(unit, column.unit, meaning):
                 rule, got = f'is in "{column.unit}" by its map', f'"{printable(unit)}" in the file'
                 raise UnfitError(where, rule, got, cure(unit))
-        return scale_of(column.unit, meaning) or Scale(), column.unit
-    if meaning == "friction" and looks_like_force(head):
+        return naming.scale_of(column.unit, meaning) or naming.Scale(), column.unit
+    if meaning == "friction" and naming.looks_like_force(head):
         rule = "is a force by its name, not a friction"
         raise InputError(where, rule, cure="Name it as tangential_force, with its unit.")
     if None in known.values() or len({*known.values()}) > 1:
-        rule = f"has a unit that is not one of the {meaning.replace('_', ' ')} ({known_units(meaning)})"
+        rule = (
+            f"has a unit that is not one of the {meaning.replace('_', ' ')} ({naming.known_units(meaning)})"
+        )
         raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure("..."))
     if not stated and meaning not in ("friction", "cycles"):
         raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure("..."))
-    return (known[stated[0]] or Scale(), stated[0]) if stated else (Scale(), "")
+    return (known[stated[0]] or naming.Scale(), stated[0]) if stated else (naming.Scale(), "")
 
 
 def _alike(unit: str, other: str, meaning: str) -> bool:
     """Whether two units have one size and are of one quantity; for times as text the map decides."""
-    if meaning == "time" and time_form(other):
+    if meaning == "time" and naming.time_form(other):
         return True
-    same = (torque_scale(unit) is None) == (torque_scale(other) is None)
-    return scale_of(unit, meaning) == scale_of(other, meaning) and same
+    same = (naming.torque_scale(unit) is None) == (naming.torque_scale(other) is None)
+    return naming.scale_of(unit, meaning) == naming.scale_of(other, meaning) and same
 
 
 def in_si(
-    block: Block, columns: ColumnMap, radius: float | None, notes: list[str], decimal: str | None = None
+    block: tables.Block,
+    columns: ColumnMap,
+    radius: float | None,
+    notes: list[str],
+    decimal: str | None = None,
 ) -> Read:
     """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
     every = [] if block.columns is not None else sorted(scales)
-    cells = dict(zip(every, cells_of(block, every), strict=True))
-    timed = {i: form for i in places.get("time", ()) if (form := time_form(scales[i][1]))}
+    cells = dict(zip(every, tables.cells_of(block, every), strict=True))
+    timed = {i: form for i in places.get("time", ()) if (form := naming.time_form(scales[i][1]))}
     if decimal is None:
         decimal = columns.format.decimal if block.word == "line" else "."
         numeric = [cells[i] for i in every if i not in timed]
@@ -182,50 +163,50 @@ def in_si(
 
 
 def _values(
-    block: Block, cells: Sequence[str], i: int, marks: Sequence[str], decimal: str, form: str
+    block: tables.Block, cells: Sequence[str], i: int, marks: Sequence[str], decimal: str, form: str
 ) -> Array:
     """Numbers or seconds of a column; refused with the row of what is neither."""
     own = {one.casefold() for one in marks}
-    missing = MISSING | own | {f"{ERROR}{one}" for one in own}
+    missing = naming.MISSING | own | {f"{tables.ERROR}{one}" for one in own}
     values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
     if not wrong:
         return values
     cell, where = cells[wrong[0]], block.at(wrong[0], i)
-    if cell == UNCOMPUTED:
+    if cell == tables.UNCOMPUTED:
         cure = "Open the workbook in a spreadsheet program and save it."
         raise InputError(where, "holds a formula without a saved value", cure=cure)
-    bare = cell.lstrip(ERROR).rstrip(PERCENT)
+    bare = cell.lstrip(tables.ERROR).rstrip(tables.PERCENT)
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
-    if cell.startswith(ERROR):
+    if cell.startswith(tables.ERROR):
         raise InputError(where, "holds an error", bare, cure)
     got = f'"{printable(bare)}"'
     if form:
         raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")
-    if is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
+    if tables.is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
         cure = f"For a column of times, add to the column map: {TIMES}."
     raise InputError(where, "must be a number", got, cure)
 
 
-def _percentages(block: Block, cells: Sequence[str], i: int, values: Array, unit: str) -> Array:
+def _percentages(block: tables.Block, cells: Sequence[str], i: int, values: Array, unit: str) -> Array:
     """Numbers of a sheet: what is shown as a percentage is saved as a fraction."""
     if block.word == "line":
         return values
-    shown_so = np.array([PERCENT in cell for cell in cells])
+    shown_so = np.array([tables.PERCENT in cell for cell in cells])
     mixed = np.flatnonzero(np.isfinite(values) & ~shown_so)
     if not (shown_so & np.isfinite(values)).any():
         return values
     if mixed.size:
-        rule, got = "is a plain number among percentages", f"{values[mixed[0]]:g}"
+        rule, got = "is a naming.plain number among percentages", f"{values[mixed[0]]:g}"
         raise InputError(block.at(int(mixed[0]), i), rule, got, "Format all cells of the column alike.")
     return values * 100.0 if unit == "%" else values
 
 
 def _scaled(
-    block: Block,
+    block: tables.Block,
     values: Array,
     i: int,
     meaning: str,
-    scale: tuple[Scale, str],
+    scale: tuple[naming.Scale, str],
     columns: ColumnMap,
     radius: float | None,
     notes: list[str],
@@ -235,7 +216,7 @@ def _scaled(
     head = block.heads[i].strip()
     where = f'{block.source}: column "{printable(head)}"'
     found = scale[0].of(values) * (-1.0 if column.sign < 0 and meaning != "time" else 1.0)
-    if meaning == "tangential_force" and torque_scale(scale[1]) is not None:
+    if meaning == "tangential_force" and naming.torque_scale(scale[1]) is not None:
         if radius is None:
             line = f'tangential_force = {{ name = {shown(head)}, unit = "{scale[1]}" }}'
             cure = f'In a column map: {line} below [columns], and track_radius = "... mm" below [test].'
@@ -253,14 +234,16 @@ def _scaled(
 
 # --- the log --------------------------------------------------------------------------------------
 def raw_log(
-    block: Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, Any]
+    block: tables.Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, Any]
 ) -> RawLog:
     """Log of one table, with the conditions that the column map states for its file."""
     force, radius = given.get("normal_force"), given.get("track_radius")
     notes = list(block.notes)
     read = in_si(block, columns, radius, notes)
     arrays = dict(read.arrays)
-    if "friction" in read.places and looks_extreme(head := block.heads[read.places["friction"]].strip()):
+    if "friction" in read.places and naming.looks_extreme(
+        head := block.heads[read.places["friction"]].strip()
+    ):
         notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
     _drop_empty(arrays, source, notes)
     _mend_sign(arrays, columns, source, notes, is_given=force is not None)
@@ -274,7 +257,7 @@ def raw_log(
     signals = [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
     kept, left_out = sliding_rows(signals, signed, arrays.get("time"), complete)
     notes += [left_out] if left_out else []
-    arrays = {meaning: column[kept] for meaning, column in arrays.items() if meaning not in SHAPES}
+    arrays = {meaning: column[kept] for meaning, column in arrays.items() if meaning not in naming.SHAPES}
     turns = (
         {"rotational_speed": np.abs(arrays.pop("rotational_speed"))} if "rotational_speed" in arrays else {}
     )
@@ -288,7 +271,7 @@ def raw_log(
     if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
         turning = turns["rotational_speed"]  # the radius of the track is in the head of the file
         arrays["slip_speed"] = turning * (conditions.slip_speed / float(np.nanmedian(turning)))
-    form = f", {described_form(block.separator, read.decimal)}" if block.word == "line" else ""
+    form = f", {tables.described_form(block.separator, read.decimal)}" if block.word == "line" else ""
     return RawLog(
         source=source,
         checksum=checksum,
@@ -303,14 +286,14 @@ def raw_log(
     )
 
 
-def _columns_read(block: Block, columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
+def _columns_read(block: tables.Block, columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
     """How each column of the file was understood."""
     meanings = {i: meaning for meaning, i in read.places.items()}
     found = []
     for i, head in enumerate(block.heads):
         meaning = meanings.get(i)
         why = columns.columns[meaning].origin if meaning else "not needed"
-        is_shape = meaning in SHAPES
+        is_shape = meaning in naming.SHAPES
         found.append(
             ColumnRead(
                 header=head.strip(),
@@ -324,7 +307,7 @@ def _columns_read(block: Block, columns: ColumnMap, read: Read) -> tuple[ColumnR
 
 def _drop_empty(arrays: Arrays, source: str, notes: list[str]) -> None:
     """Leave out abscissae without any value; one must be left."""
-    there = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    there = [meaning for meaning in naming.ABSCISSAE if meaning in arrays]
     empty = [meaning for meaning in there if np.isnan(arrays[meaning]).all()]
     if empty == there:
         raise InputError(source, f"has no value of {' or '.join(empty)} in any row")
@@ -404,9 +387,9 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
     return size
 
 
-def _complete(arrays: Arrays, block: Block, source: str) -> Rows:
+def _complete(arrays: Arrays, block: tables.Block, source: str) -> Rows:
     """Rows that have friction and every abscissa, none of which may run backwards."""
-    abscissae = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    abscissae = [meaning for meaning in naming.ABSCISSAE if meaning in arrays]
     kept: Rows = np.all([np.isfinite(arrays[name]) for name in ("friction", *abscissae)], axis=0)
     if kept.sum() < 2:
         got = f"{int(kept.sum())} of {len(kept)} rows"
@@ -417,7 +400,9 @@ def _complete(arrays: Arrays, block: Block, source: str) -> Rows:
         back = np.flatnonzero(np.diff(column) < 0.0)
         if back.size:
             i = int(back[0]) + 1
-            here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
+            here, before = (
+                format_quantity(float(column[j]), naming.MEANINGS[meaning], 8) for j in (i, i - 1)
+            )
             cure = (
                 "Split the file there; if a column numbers its tests, write below [format] of a column map:"
             )
@@ -429,11 +414,13 @@ def _complete(arrays: Arrays, block: Block, source: str) -> Rows:
 
 
 def _without_stroke_speed(
-    metadata: Mapping[str, str], block: Block, read: Read, arrays: Arrays, notes: list[str]
+    metadata: Mapping[str, str], block: tables.Block, read: Read, arrays: Arrays, notes: list[str]
 ) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
-    head = plain(block.heads[read.places["position"]]) if "position" in read.places else ""
-    speeds = [key for key in metadata if plain(header_parts(key)[0][0]) in KEYS["slip_speed"]]
+    head = naming.plain(block.heads[read.places["position"]]) if "position" in read.places else ""
+    speeds = [
+        key for key in metadata if naming.plain(naming.header_parts(key)[0][0]) in naming.KEYS["slip_speed"]
+    ]
     if not head.startswith(("linear position", "lin position")) or not (speeds or "slip_speed" in arrays):
         return dict(metadata)
     arrays.pop("slip_speed", None)
