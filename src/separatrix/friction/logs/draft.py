@@ -131,7 +131,7 @@ def _no_table(content: tables.Content) -> InputError:
 
 # --- the table ------------------------------------------------------------------------------------
 def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
-    """The first table of a text, with a question on each kind of line among its rows that is not one."""
+    """The first table of a text; how it is written goes into the draft."""
     form = draft.given.format
     separator, others = tables.separator_in(part, form)
     heads = _heads(part, separator, draft.given) if separator else None
@@ -139,6 +139,25 @@ def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
         return None
     asked = {"separator": f"or {' or '.join(map(_toml, others))}?"} if others else {}
     form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
+    blocks, form = _blocks(part, form, heads, asked)
+    for key, value in given_in(form).items():
+        line = f"{key} = {_toml(value)}"
+        draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
+    if not blocks:
+        return None
+    block = blocks[0]
+    if heads.line is None:
+        block.heads = [""] * len(block.heads)
+    if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
+        middle = block.rows[1000 : -1000 : len(block.rows) // 10_000]
+        block.rows = [*block.rows[:1000], *middle, *block.rows[-1000:]]
+    return block
+
+
+def _blocks(
+    part: tables.Part, form: TextFormat, heads: tables.Heads, asked: dict[str, str]
+) -> tuple[list[tables.Block], TextFormat]:
+    """Tables of a text and the format with which they are read, with a question on each line left out."""
     names = heads.names if heads.line is not None and form.header_line is None else []
     needed = [(name,) for name in names if name.strip()]
     for left in range(MOST_BREAKS, -1, -1):
@@ -163,18 +182,7 @@ def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
                 asked.setdefault("skip", question)
                 word = re.match(r"\D{0,30}", begin)
                 form = replace(form, skip=(*form.skip, (word and word[0].strip()) or begin[:20].strip()))
-    for key, value in given_in(form).items():
-        line = f"{key} = {_toml(value)}"
-        draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
-    if not blocks:
-        return None
-    block = blocks[0]
-    if heads.line is None:
-        block.heads = [""] * len(block.heads)
-    if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
-        middle = block.rows[1000 : -1000 : len(block.rows) // 10_000]
-        block.rows = [*block.rows[:1000], *middle, *block.rows[-1000:]]
-    return block
+    return blocks, form
 
 
 def _heads(part: tables.Part, separator: str, given: ColumnMap) -> tables.Heads | None:

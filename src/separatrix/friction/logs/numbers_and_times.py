@@ -30,15 +30,22 @@ def decimal_of(cells: Sequence[Sequence[str]], separator: str, source: str) -> s
         return "."
     found: dict[str, str] = {}
     certain = False
-    for cell in (cell for column in cells for cell in column if "," in cell or "." in cell):
-        if is_clock(cell) or cell.casefold() in MISSING or not cell[-1:].isdigit():
-            continue
-        found |= {mark: cell for mark in ",." if mark in cell}
-        certain = certain or not _GROUPED.fullmatch(cell)
-        if len(found) > 1 or cell.count(",") + cell.count(".") > 1:
-            cure = "Export the file without marks between thousands, or write below [format]: decimal = ..."
-            got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
-            raise UnfitError(source, "has points and commas in its numbers", got, cure)
+    for column in cells:
+        text = "\n".join(column)
+        marks = [mark for mark in ",." if mark in text]
+        is_plain = len(marks) == 1 and not re.search(rf"[{marks[0]}].*[{marks[0]}]", text)
+        for cell in column if marks else ():
+            here = [mark for mark in marks if mark in cell]
+            if not here or is_clock(cell) or cell.casefold() in MISSING or not cell[-1:].isdigit():
+                continue
+            found |= dict.fromkeys(here, cell)
+            certain = certain or not _GROUPED.fullmatch(cell)
+            if len(found) > 1 or sum(map(cell.count, marks)) > 1:
+                cure = "Export it without marks between thousands, or write below [format]: decimal = ..."
+                got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
+                raise UnfitError(source, "has points and commas in its numbers", got, cure)
+            if certain and is_plain:  # the others are alike
+                break
     if found and not certain:
         mark, one = next(iter(found.items()))
         rule = "does not show whether its marks are decimal signs or between thousands"

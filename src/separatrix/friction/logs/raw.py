@@ -11,7 +11,7 @@ import numpy as np
 
 from separatrix.friction.logs import log_tables as tables
 from separatrix.friction.logs import names as naming
-from separatrix.friction.logs.column_map import Column, ColumnMap
+from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import ColumnRead, RawLog, conditions_of, metadata_of
 from separatrix.friction.logs.numbers_and_times import FLOAT, UnfitError, decimal_of, numbers, seconds
 from separatrix.friction.logs.sliding import Rows, Signal, sliding_rows
@@ -212,23 +212,22 @@ def _scaled(
     notes: list[str],
 ) -> Array:
     """A column in SI units; a torque divided by the radius of the track."""
-    column: Column = columns.columns[meaning]
-    head = block.heads[i].strip()
+    head, (size, unit) = block.heads[i].strip(), scale
     where = f'{block.source}: column "{printable(head)}"'
-    found = scale[0].of(values) * (-1.0 if column.sign < 0 and meaning != "time" else 1.0)
-    if meaning == "tangential_force" and naming.torque_scale(scale[1]) is not None:
+    if meaning == "tangential_force" and naming.torque_scale(unit) is not None:
         if radius is None:
-            line = f'tangential_force = {{ name = {shown(head)}, unit = "{scale[1]}" }}'
+            line = f'tangential_force = {{ name = {shown(head)}, unit = "{unit}" }}'
             cure = f'In a column map: {line} below [columns], and track_radius = "... mm" below [test].'
             raise UnfitError(where, "is a torque, not a force", cure=cure)
         notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
-        found = found / radius
+        size = naming.Scale(factor=size.factor / radius)
+    found = size.of(values) * (-1.0 if columns.columns[meaning].sign < 0 and meaning != "time" else 1.0)
     if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
         got = f"{float(values[below[0]]):g}"
         line = f'temperature = {{ name = {shown(head)}, unit = "..." }}'
         cure = f"State its true unit below [columns] in a column map: {line}"
         cure += f'; if this is a code for a missing value, write missing = ["{got}"] below [format].'
-        raise InputError(where, "has temperatures below absolute zero", f"{got} {scale[1]}", cure)
+        raise InputError(where, "has temperatures below absolute zero", f"{got} {unit}", cure)
     return found if np.isfinite(found).all() else np.where(np.isfinite(found), found, np.nan)
 
 
