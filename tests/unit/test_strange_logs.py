@@ -8,7 +8,8 @@ import numpy as np
 import openpyxl
 import pytest
 
-from separatrix.friction.logs import read_column_map, read_log
+from separatrix.cli import main
+from separatrix.friction.logs import UnmappedError, read_column_map, read_log
 from separatrix.ground.errors import InputError
 
 ROWS = 120
@@ -62,27 +63,33 @@ EDITED = {
 
 
 def written(tmp_path, text):
-    """A log in a file, and the place of its draft."""
+    """A log in a file."""
     path = tmp_path / "log.txt"
     path.write_text(text, encoding="utf-8")
-    return path, tmp_path / "log.txt.map.toml"
+    return path
+
+
+def draft_of(path, given=None, words="open question"):
+    """The column map of the draft of a log that is not read at once, in a file."""
+    with pytest.raises(UnmappedError, match=words) as refusal:
+        read_log(path, given)
+    draft = path.with_name("map.toml")
+    draft.write_text(refusal.value.draft, encoding="utf-8")
+    return draft
 
 
 @pytest.mark.parametrize("what", FIRST)
 def test_a_plain_file_with_clear_heads_takes_one_call(tmp_path, what):
-    """Nothing is asked, and no draft is written."""
-    path, draft = written(tmp_path, FIRST[what])
-    (log,) = read_log(path)
+    """Nothing is asked."""
+    (log,) = read_log(written(tmp_path, FIRST[what]))
     np.testing.assert_allclose(log.friction, FRICTION, rtol=1e-12)  # one or two roundings of the forces
-    assert not draft.exists()
 
 
 @pytest.mark.parametrize("what", SECOND)
 def test_the_draft_as_written_reads_the_log(tmp_path, what):
-    """One line says so; every guess is marked; the second call works."""
-    path, draft = written(tmp_path, SECOND[what])
-    with pytest.raises(InputError, match=r"^log\.txt has .*open question.*--map log\.txt\.map\.toml\.$"):
-        read_log(path)
+    """Every guess is marked; the second call works."""
+    path = written(tmp_path, SECOND[what])
+    draft = draft_of(path)
     assert draft.read_text("utf-8").count("# guess, check: ") >= 1
     (log,) = read_log(path, read_column_map(draft))
     np.testing.assert_array_equal(log.friction, FRICTION)
@@ -93,9 +100,8 @@ def test_the_draft_as_written_reads_the_log(tmp_path, what):
 def test_what_no_file_states_is_left_open_in_the_draft(tmp_path, what):
     """The draft as written is refused; with the one thing that it asks for, the log is read."""
     text, edits = EDITED[what]
-    path, draft = written(tmp_path, text)
-    with pytest.raises(InputError, match="open question"):
-        read_log(path)
+    path = written(tmp_path, text)
+    draft = draft_of(path)
     with pytest.raises(InputError, match=re.escape("...")):
         read_log(path, read_column_map(draft))
     edited = draft.read_text("utf-8")
@@ -110,25 +116,34 @@ def test_what_no_file_states_is_left_open_in_the_draft(tmp_path, what):
 @pytest.mark.parametrize(("load", "comma"), [("1.000 N", True), ("1,000 N", False)])
 def test_a_load_that_may_be_one_or_a_thousand_is_asked_and_not_used(tmp_path, load, comma):
     """Its mark may be a decimal sign or between thousands: both values are in the draft, as a remark."""
-    path, draft = written(tmp_path, table(["t [s];COF"], "{t};{f}", above=[f"Load: {load}"], comma=comma))
-    with pytest.raises(InputError, match=r"1000 N or 1\.000 N"):
-        read_log(path)
-    (log,) = read_log(path, read_column_map(draft))
+    path = written(tmp_path, table(["t [s];COF"], "{t};{f}", above=[f"Load: {load}"], comma=comma))
+    (log,) = read_log(path, read_column_map(draft_of(path, words=r"1000 N or 1\.000 N")))
     assert log.conditions.normal_force is None
 
 
-def test_a_draft_keeps_what_is_stated_and_a_file_that_is_there(tmp_path):
-    """Conditions of the map given are in the draft; a draft that was edited is not written over."""
-    path, draft = written(tmp_path, SECOND["names without units"])
-    given = tmp_path / "map.toml"
-    given.write_text('[test]\nmaterial = "Armalon"\n\n[files."*.txt"]\nsample = "B3"\n')
-    with pytest.raises(InputError, match="open question"):
-        read_log(path, read_column_map(given))
+def test_another_table_behind_the_first_is_the_end_of_it(tmp_path):
+    """Its first line ends the table in the draft."""
+    more = "\nSummary\nLoad [N];Mean\n5;0.12\n6;0.13\n"
+    path = written(tmp_path, table(["t [s];COF"], "{t};{f}") + more)
+    (log,) = read_log(path, read_column_map(draft_of(path, words="begins another table")))
+    np.testing.assert_array_equal(log.friction, FRICTION)
+
+
+def test_the_command_writes_the_draft_and_keeps_what_is_stated(tmp_path, monkeypatch, capsys):
+    """Conditions of the map given are in the draft; one that was edited is not written over."""
+    path = written(tmp_path, SECOND["names without units"])
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "map.toml").write_text('[test]\nmaterial = "Armalon"\n\n[files."*.txt"]\nsample = "B3"\n')
+    assert main(["tribometer", "log.txt", "--map", "map.toml"]) == 2
+    line = capsys.readouterr().err
+    assert "has an open question" in line
+    assert line.endswith("and add: --map log.txt.map.toml.\n")
+    draft = tmp_path / "log.txt.map.toml"
     (log,) = read_log(path, read_column_map(draft))
     assert (log.conditions.material, log.conditions.sample) == ("Armalon", "B3")
     draft.write_text("# edited\n")
-    with pytest.raises(InputError, match=r"There is a file log\.txt\.map\.toml"):
-        read_log(path)
+    assert main(["tribometer", "log.txt"]) == 2
+    assert "There is a file log.txt.map.toml" in capsys.readouterr().err
     assert draft.read_text() == "# edited\n"
 
 

@@ -142,16 +142,11 @@ def test_columns_of_other_programs_are_understood(tmp_path, names, rows):
     assert log.friction.tolist() == [float(f"0.1{i:02d}") for i in range(60)]
 
 
-FORCE_ONLY = "Laps\tFrictionForce\t?\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\t{0.4}\n" for i in range(60))
+FORCE_ONLY = "Laps\tFrictionForce\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\n" for i in range(60))
 
 
-def test_a_force_without_unit_is_not_offered_as_the_friction(tmp_path):
-    """The mangled letter is; naming the force all the same is refused, with the two forces to name."""
-    with pytest.raises(InputError, match=r'the friction by its name\? There are "\?"') as refusal:
-        read(tmp_path, FORCE_ONLY)
-    assert "FrictionForce" not in str(refusal.value)
-    (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": "?"}})
-    assert set(log.friction.tolist()) == {0.4}
+def test_a_force_without_unit_is_not_taken_for_the_friction(tmp_path):
+    """Naming it all the same is refused."""
     with pytest.raises(InputError, match=r'"FrictionForce" is a force by its name'):
         read(tmp_path, FORCE_ONLY, {"columns": {"friction": "FrictionForce"}})
 

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from raw_logs import as_written
 
 from separatrix.friction.logs import described, read_log
-from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
-from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog
-from separatrix.friction.logs.names import ALIASES, NAMES, ranks, scale_of
+from separatrix.friction.logs.column_map import ColumnMap, column_map
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS
 
@@ -502,15 +502,6 @@ def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
     assert read(tmp_path, content).conditions.sample == "disk 7"
 
 
-def test_another_table_behind_the_first_is_asked(tmp_path):
-    """Of other names: the draft names it as the end of the first, which is then read."""
-    two = raw_logs.plain_csv({"temps [min]": TIME, "mu": FRICTION * 2}, separator="\t")
-    with pytest.raises(InputError, match="line 63 begins another table, which is not read"):
-        read(tmp_path, csv(separator="\t") + b"\n" + two)
-    log = read(tmp_path, csv(separator="\t") + b"\n" + two, read_column_map(tmp_path / "log.txt.map.toml"))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
 def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
     """T in sec is time, T in degrees is temperature; speed in rpm is rotation; friction in N is a force."""
     columns = {
@@ -573,8 +564,6 @@ def test_a_pattern_may_name_the_folder(tmp_path):
 def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
     """By the beginning of its first line."""
     content = csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
-    with pytest.raises(InputError, match="line 64 begins another table"):
-        read(tmp_path, content)
     log = read(tmp_path, content, column_map({"format": {"ends": ["Summary"]}}))
     np.testing.assert_array_equal(log.friction, as_written(FRICTION))
 
@@ -616,21 +605,14 @@ def test_no_name_and_unit_have_two_meanings():
     """In the published table, a name together with any unit that fits one of its meanings fits no other."""
     every = {unit for table in UNITS.values() for unit in table}
     every |= {word for table in ALIASES.values() for group in table.values() for word in group.split("; ")}
-    for group in {group for groups in NAMES.values() for group in groups}:
-        for name in group.split("; "):
-            known = ranks(name)
-            for unit in every if len(known) > 1 else ():
-                fitting = [meaning for meaning in known if scale_of(unit, meaning) is not None]
-                assert len(fitting) <= 1, (name, unit, fitting)
-
-
-def test_names_are_written_as_they_are_compared():
-    """Each name of the table is found under itself, and every meaning has names."""
-    assert set(NAMES) == set(MEANINGS)
+    assert set(NAMES) == {*MEANINGS, "position"}
     assert len(NAMES["friction"]) == 1  # no second choice: of two columns none is taken
-    for meaning, groups in NAMES.items():
-        for group in groups:
-            assert all(meaning in ranks(name) for name in group.split("; "))
+    for own, name in ((key, name) for key, groups in NAMES.items() for group in groups for name in group):
+        known = ranks(name)
+        assert own in known, f"{name} is not written as it is compared"
+        for unit in every if len(known) > 1 else ():
+            fitting = [meaning for meaning in known if scale_of(unit, meaning) is not None]
+            assert len(fitting) <= 1, (name, unit, fitting)
 
 
 def test_conditions_refuse_what_cannot_be():

@@ -101,7 +101,6 @@ WRONG = {
     "times of two numbers": (lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))), 'has an open question: column "time": minutes and seconds, or hours and minutes (hh:mm)'),
     "a force without unit": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "Load": FORCE}), 'has 2 open questions, the first: column "FrictionForce": the file states no unit'),
     "a force without unit, and no load": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE}), 'has 2 open questions, the first: column "FrictionForce": the file states no unit'),
-    "a force beside a mangled letter": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "?": FRICTION}), 'has an open question: the friction by its name? There are "?"'),
     "a second table without header": (csv() + b"second run\n" + csv().split(b"\n", 1)[1], "has an open question: line 22 is among the rows and is left out: 'second run'"),
 }  # fmt: skip
 
@@ -122,36 +121,26 @@ def test_a_wrong_log_is_refused_in_one_line(tmp_path, what):
 
 
 WRONG_MAPS = {
-
-    "an unknown section": ({"column": {}}, 'has no section of that name; got "column". Did you mean "columns"?'),
-    "an unknown meaning": ({"columns": {"friktion": "a"}}, 'got "friktion". Did you mean "friction"?'),
-    "a section that is none": ({"columns": 3}, "[columns] must be a section of the file; got 3"),
-    "a column without a name": ({"columns": {"time": {"unit": "s"}}}, "[columns] time must be the name or the number of a column. Write time ="),
+    "an unknown meaning": ({"columns": {"friktion": "a"}}, "[columns] friktion is not the meaning of a column. Did you mean friction?"),
+    "a column without a name": ({"columns": {"time": 0.5}}, "[columns] time.name must be the name or the number of a column; got 0.5. Write friction ="),
     "a column number of zero": ({"columns": {"time": 0}}, "must be the number of a column, counted from 1; got 0"),
     "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has an open question: no column "Zeit", which the column map names as time'),
     "a number beyond the columns": ({"columns": {"friction": 7}}, 'has an open question: no column "number 7", which the column map names as friction'),
     "one column for two meanings": ({"columns": {"time": "time [s]", "cycles": 1}}, 'column "time [s]" is both time and cycles in the column map'),
-    "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time unit must be a unit such as s, ms"),
+    "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time.unit must be a unit such as s, ms"),
     "a torque as a force in N": ({"columns": {"tangential_force": {"name": "M [Nm]", "unit": "N"}}, "test": {"track_radius": "20 mm"}}, 'column "M [Nm]" is in "N" by its map; got "Nm" in the file. Below [columns] of a column map: tangential_force = { name = "M [Nm]", unit = "Nm" }.'),
     "a torque without the radius": ({"columns": {"tangential_force": "M [Nm]"}}, 'column "M [Nm]" is a torque, not a force'),
     "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
     "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be one of "tab", ";", ",", "|", "blanks"'),
     "comma for both": ({"format": {"separator": ",", "decimal": ","}}, "cannot have a comma both as separator and as decimal"),
-    "an unknown encoding": ({"format": {"encoding": "ebcdic"}}, "[format] encoding must be one of"),
     "a wrong encoding": ({"format": {"encoding": "utf-16"}}, "cannot be read as utf-16 text"),
-    "a line of zero": ({"format": {"header_line": 0}}, "must be the number of a line, counted from 1; got 0"),
     "a line that is no header": ({"format": {"header_line": 900}}, "header_line = 900 must be a line above the rows; got a file of 22 lines."),
     "a line of names of other length": ({"format": {"header_line": 3, "separator": ";"}}, "has 2 open questions, the first: which column is the friction"),
-    "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs a header_line, too"),
-    "missing marks that are no list": ({"format": {"missing": "x"}}, "[format] missing must be a list of texts. Write missing ="),
+    "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs header_line"),
     "a table that is not there": ({"format": {"tables": ["step 9"]}}, 'has no table "step 9". It has one table, without a name.'),
-    "a condition without unit": ({"test": {"temperature": 77}}, '[test] temperature needs a unit of temperature; got 77. Write "77 K".'),
-    "a condition in a wrong unit": ({"test": {"slip_speed": "3 N"}}, "[test] slip_speed needs a unit of speed"),
-    "an area without unit": ({"test": {"contact_area": "3"}}, "[test] contact_area needs a unit of area (m2, cm2, mm2)"),
+    "an area without unit": ({"test": {"contact_area": "3"}}, "[test] contact_area needs a unit of area"),
     "a negative condition": ({"test": {"normal_force": "-3 N"}}, '[test] normal_force must be > 0; got "-3 N"'),
-    "an unknown condition": ({"test": {"speed": "3 m/s"}}, "has no condition of that name"),
-    "a pattern that is no section": ({"files": {"*.txt": "Armalon"}}, '[files."*.txt"] must be a section'),
-    "a pattern of nothing": ({"files": {"": {}}}, 'must be a pattern of names of files. Write "peek_*.csv".'),
+    "a pattern of nothing": ({"files": {"/": {}}}, 'must be a pattern of names of files. Write "peek_*.csv".'),
     "area and diameter": (
         {"test": {"contact_area": "3 mm2", "pin_diameter": "2 mm", "normal_force": "3 N"}},
         "cannot have both a contact_area and a pin_diameter",
@@ -160,7 +149,6 @@ WRONG_MAPS = {
         {"test": {"slip_speed": "1 m/s", "rotational_speed": "60 rpm", "track_radius": "20 mm"}},
         "has two values of slip speed that differ; got 1 m/s (column map) and 0.1257 m/s",
     ),
-    "no words for a material": ({"test": {"material": ""}}, "[test] material must be printable text"),
 }  # fmt: skip
 
 
@@ -182,17 +170,13 @@ def test_a_wrong_column_map_is_refused_in_one_line(tmp_path, what):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"[columns\n", "map.toml, line 1 is not valid TOML"),
-        (b"\xff\xfe[", "map.toml, line 1 is not UTF-8 text"),
         (b"#" * 1_000_001, "is larger than a column map can be, 256 kB"),
-        (b"a = " + b"[" * 500, "nests brackets more than 16 deep"),
-        (b"a" + b".a" * 100_000 + b" = 1", "line 1 is longer than 4000 characters"),
-        (b"[format]\nheader_line = 0x" + b"f" * 3900, "must be the number of a line"),
+        (b"[format]\nheader_line = 0x" + b"f" * 3900, "must be a whole number"),
         (b"[columns]\nfriction = 0x" + b"f" * 3900, "must be the number of a column"),
     ],
 )
 def test_a_file_that_is_no_column_map_is_refused(tmp_path, content, words):
-    """TOML in UTF-8, of a size that a person writes."""
+    """Of a size that a person writes; a number of thousands of digits is not one of a line."""
     path = tmp_path / "map.toml"
     path.write_bytes(content)
     with pytest.raises(InputError) as refusal:
@@ -226,4 +210,4 @@ def test_a_column_map_file_is_read(tmp_path):
     path.write_text(text, encoding="utf-8-sig")
     read = read_column_map(path)
     assert read.columns["normal_force"].unit == "N"
-    assert read.test["contact_area"] == pytest.approx(3e-6, rel=1e-15)  # one rounding
+    assert read.test.contact_area == pytest.approx(3e-6, rel=1e-15)  # one rounding

@@ -212,8 +212,7 @@ class ColumnMap:
         names += f" and {len(files) - 3} more" if len(files) > 3 else ""
         rule, cure = "must fit a file that is named", "Mend it, or leave it out of this column map."
         idle = [pattern for pattern in self.files if not any(_fits(path, pattern) for path in files)]
-        where = f"{self.source}: [files]"
-        return [InputError(f'{where} "{printable(one)}"', rule, names, cure) for one in idle]
+        return [InputError(f'{self.source}: [files."{printable(one)}"]', rule, names, cure) for one in idle]
 
 
 def given_in(one: Any) -> dict[str, Any]:

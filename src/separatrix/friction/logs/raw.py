@@ -196,7 +196,7 @@ def _percentages(block: tables.Block, cells: Sequence[str], i: int, values: Arra
     if not (shown_so & np.isfinite(values)).any():
         return values
     if mixed.size:
-        rule, got = "is a naming.plain number among percentages", f"{values[mixed[0]]:g}"
+        rule, got = "is a plain number among percentages", f"{values[mixed[0]]:g}"
         raise InputError(block.at(int(mixed[0]), i), rule, got, "Format all cells of the column alike.")
     return values * 100.0 if unit == "%" else values
 
