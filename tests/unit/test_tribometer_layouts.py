@@ -13,7 +13,7 @@ from separatrix.cli import main
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
 from separatrix.friction.logs.log_tables import is_clock
-from separatrix.friction.logs.numbers_and_times import seconds
+from separatrix.friction.logs.raw import seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 from separatrix.ground.errors import InputError
 
@@ -120,7 +120,7 @@ def test_rtec_without_step_and_brackets_is_read_at_once(tmp_path):
 def test_times_as_text_become_seconds(first, second, gap, form):
     """Times of day, durations, dates in the usual orders, past midnight and the end of a month."""
     assert is_clock(first)
-    assert seconds([first, second], form)[0].tolist() == [0.0, gap]
+    assert seconds([first, second], form, frozenset())[0].tolist() == [0.0, gap]
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,7 @@ from separatrix.friction.logs.draft import Draft, draft_of
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.logs.log_tables import Block, Content, blocks_of, cells_of, content_of, matching
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, time_form
-from separatrix.friction.logs.numbers_and_times import UnfitError
-from separatrix.friction.logs.raw import in_si, raw_log
+from separatrix.friction.logs.raw import UnfitError, in_si, raw_log
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import format_quantity, printable, shown, unit_of
 

@@ -13,8 +13,7 @@ from separatrix.friction.logs import log_tables as tables
 from separatrix.friction.logs import names as naming
 from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, given_in
 from separatrix.friction.logs.log import metadata_of, two_ways
-from separatrix.friction.logs.numbers_and_times import UnfitError, decimal_of
-from separatrix.friction.logs.raw import stated_units
+from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 
