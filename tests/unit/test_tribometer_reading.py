@@ -490,10 +490,11 @@ def test_rtec_metadata_and_rotation_give_the_conditions(tmp_path):
     assert log.conditions.cycle_time == pytest.approx(0.5, rel=1e-12)
 
 
-def test_two_keys_over_two_values_are_not_a_pair_of_keys(tmp_path):
-    """The sample is not "Operator"; what cannot be told apart is not used."""
-    content = b"Sample,Operator\ndisk 7,nobody\n" + raw_logs.rtec(FRICTION, TIME, metadata=False)
-    assert read(tmp_path, content).conditions.sample is None
+@pytest.mark.parametrize("keys", ["Sample,Operator\ndisk 7,nobody", "Sample\ndisk 7"])
+def test_rtec_keys_stand_above_their_values_however_few(tmp_path, keys):
+    """Two keys over two values are not the pair of the two keys: the sample is disk 7, not "Operator"."""
+    content = keys.encode() + b"\n" + raw_logs.rtec(FRICTION, TIME, metadata=False)
+    assert read(tmp_path, content).conditions.sample == ("disk 7" if "," in keys else None)
 
 
 def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):

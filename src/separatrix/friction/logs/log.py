@@ -183,14 +183,17 @@ def two_ways(text: str, decimal: str) -> list[str]:
     return [f"{re.sub('[.,]', '', match[1])}{unit}", f"{match[1].replace(',', '.')}{unit}"]
 
 
-def metadata_of(lines: Sequence[str]) -> dict[str, str]:
-    """Pairs in the lines: ``key: value``, ``key = value``, or a row of keys over one of values."""
+def metadata_of(lines: Sequence[str], *, keys_above: bool = False) -> dict[str, str]:
+    """Pairs in the lines: ``key: value``, ``key = value``, or a row of keys over one of values.
+
+    Two lines of two fields are taken as two pairs, unless the layout is known for its row of keys.
+    """
     pairs: dict[str, str] = {}
     skip = False
     for line, below in zip(lines, [*lines, ""][1:], strict=True):
         if skip:
             skip = False
-        elif rows := _keys_over_values(line, below):
+        elif rows := _keys_over_values(line, below, 1 if keys_above else 2):
             pairs |= rows
             skip = True
         elif found := _NUMBERED.match(line) or _PAIR.match(line):
@@ -198,11 +201,11 @@ def metadata_of(lines: Sequence[str]) -> dict[str, str]:
     return {key[:100]: value[:200] for key, value in list(pairs.items())[:MOST_PAIRS]}
 
 
-def _keys_over_values(line: str, below: str) -> dict[str, str]:
-    """Two rows of as many commas, semicolons or tabs, two at least, the upper of words alone."""
+def _keys_over_values(line: str, below: str, least: int) -> dict[str, str]:
+    """Two rows of as many commas, semicolons or tabs, the upper of words alone."""
     for separator in "\t;,":
         count = line.count(separator)
-        if line.rstrip(separator).count(separator) > 1 and below.count(separator) == count:
+        if line.rstrip(separator).count(separator) >= least and below.count(separator) == count:
             keys, values = line.split(separator), below.split(separator)
             if not any(re.match(r"\s*[+-]?\d", key) for key in keys):
                 pairs = [(_clean(key), _clean(value)) for key, value in zip(keys, values, strict=True)]

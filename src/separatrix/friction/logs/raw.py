@@ -377,7 +377,7 @@ def raw_log(
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
-    metadata = metadata_of(block.above)
+    metadata = metadata_of(block.above, keys_above=columns.format.keys_above)
     useful = _without_stroke_speed(metadata, block, read, arrays, notes)
     decimal = read.decimal if block.word == "line" or block.columns is not None else ""
     conditions, measured, sentences = conditions_of(given, useful, arrays | turns, source, decimal)
