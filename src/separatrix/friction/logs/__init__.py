@@ -95,9 +95,8 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
     """The log of each table that the column map names, or of all; the same numbers again are not a test."""
     parts = [part for block in _tests(content, columns) for part in _by_step(block, columns)]
     if not parts:
-        listed = ", ".join(
-            f'"{one.names[0]}"' for one in columns.columns.values() if one.names and not one.optional
-        )
+        needed = [one.names[0] for one in columns.columns.values() if one.names and not one.optional]
+        listed = ", ".join(map(shown, needed))
         rule = "has no table with the columns that the column map needs"
         cure = f"They are {listed or 'given by number'}; under them, two rows of numbers."
         raise UnfitError(content.name, rule, cure=cure)
@@ -117,9 +116,7 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
             wrong = wrong or error
     if wrong is not None and found and not isinstance(wrong, UnfitError):
         names = ", ".join(shown(name) for name, _ in found)
-        raise wrong.at(
-            wrong.path, cure=f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
-        )
+        wrong.cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
     if wrong is not None:
         raise wrong
     return tuple(_once(found, content, parts))
@@ -130,9 +127,7 @@ def _named(parts: Sequence[Block], content: Content, columns: ColumnMap) -> list
     sheets = {part.sheet for part in content.parts} - {""}
     for name in columns.format.tables:
         if name not in sheets and name not in {part.name for part in parts}:
-            there = ", ".join(
-                f'"{printable(one)}"' for one in (*sheets, *(part.name for part in parts)) if one
-            )
+            there = ", ".join(shown(one) for one in (*sheets, *(part.name for part in parts)) if one)
             cure = f"It has {there}." if there else "It has one table, without a name."
             raise InputError(content.name, f'has no table "{printable(name)}"', cure=cure)
     wanted = set(columns.format.tables) - sheets
@@ -143,9 +138,7 @@ def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence
     """Logs without those of the same numbers, and with a note on sheets that are not read."""
     kept: dict[bytes, RawLog] = {}
     for _, log in found:
-        numbers = b"".join(
-            one.tobytes() for one in (log.friction, *(getattr(log, name) for name in log.abscissae))
-        )
+        numbers = b"".join(getattr(log, name).tobytes() for name in ("friction", *log.abscissae))
         if numbers in kept:
             note = f"{log.source} has the same numbers and is left out"
             log = replace(kept[numbers], notes=(*kept[numbers].notes, note))
@@ -183,11 +176,8 @@ def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
     except InputError:
         return False
     clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""
-    return all(
-        0.0 <= np.diff(one)[0] < (43_200.0 if clock else np.inf)
-        for one in arrays.values()
-        if np.isfinite(one).all()
-    )
+    most = 43_200.0 if clock else np.inf
+    return all(0.0 <= np.diff(one)[0] < most for one in arrays.values() if np.isfinite(one).all())
 
 
 def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:

@@ -151,11 +151,11 @@ def tdms_groups(path: Path) -> list[Block]:
             _check_segments(file, size, label)
             with nptdms.TdmsFile.open(file) as content:
                 groups = content.groups()
-                for holder in (content, *groups, *(one for group in groups for one in group.channels())):
-                    number = holder.properties.get("NI_Number_Of_Scales", 0)
-                    if not 0 <= int(number) <= MOST_SCALES:  # npTDMS would count up to it
-                        rule = f"must have at most {MOST_SCALES} scalings a channel"
-                        raise InputError(label, rule, shown(number))
+                holders = (content, *groups, *(one for group in groups for one in group.channels()))
+                number = max(int(one.properties.get("NI_Number_Of_Scales", 0)) for one in holders)
+                if number > MOST_SCALES:  # npTDMS would count up to it
+                    rule = f"must have at most {MOST_SCALES} scalings a channel"
+                    raise InputError(label, rule, shown(number))
                 tables = [table for group in groups for table in _tables(group, content, label, size)]
     except OSError as error:
         raise unreadable(label, error) from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -247,6 +247,7 @@ def in_si(
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
     every = [] if block.columns is not None else sorted(scales)
     cells = dict(zip(every, tables.cells_of(block, every), strict=True))
+    notes += _cut_off(block, cells.get(len(block.heads) - 1, []))
     timed = {i: form for i in places.get("time", ()) if (form := naming.time_form(scales[i][1]))}
     if decimal is None:
         decimal = columns.format.decimal if block.word == "line" else "."
@@ -274,6 +275,14 @@ def in_si(
         arrays[meaning] = made[0]
     first = {meaning: some[0] for meaning, some in places.items()}
     return Read(arrays, first, {meaning: scales[i][1] for meaning, i in first.items()}, decimal)
+
+
+def _cut_off(block: tables.Block, cells: Sequence[str]) -> Iterator[str]:
+    """A note where the last value of the last column looks cut off."""
+    digits = [len(re.split("[.,]", cell)[-1]) for cell in cells]
+    if len(digits) > 2 and digits[-1] < min(digits[:-1]):
+        head = printable(block.heads[-1].strip())
+        yield f'the last value of column "{head}" has fewer digits than all others: it may be cut off'
 
 
 def _values(
@@ -353,27 +362,12 @@ def raw_log(
     force, radius = given.get("normal_force"), given.get("track_radius")
     notes = list(block.notes)
     read = in_si(block, columns, radius, notes)
-    arrays = dict(read.arrays)
-    if "friction" in read.places and naming.looks_extreme(
-        head := block.heads[read.places["friction"]].strip()
-    ):
+    head = block.heads[read.places["friction"]].strip() if "friction" in read.places else ""
+    if naming.looks_extreme(head):
         notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
-    _drop_empty(arrays, source, notes)
-    _mend_sign(arrays, columns, source, notes, is_given=force is not None)
-    signed = _friction(arrays, force, source, notes)
-    arrays["friction"] = _magnitude(signed, source, notes)
-    complete = _complete(arrays, block, source)
-    missing = int((~complete).sum())
-    if missing:
-        notes.append(f"{missing} of {complete.size} rows are left out: friction or its abscissa is missing")
-    there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
-    signals = [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
-    kept, left_out = sliding_rows(signals, signed, arrays.get("time"), complete)
-    notes += [left_out] if left_out else []
-    arrays = {meaning: column[kept] for meaning, column in arrays.items() if meaning not in naming.SHAPES}
-    turns = (
-        {"rotational_speed": np.abs(arrays.pop("rotational_speed"))} if "rotational_speed" in arrays else {}
-    )
+    arrays, missing = _steady(block, read, columns, force, source, notes)
+    turning = arrays.pop("rotational_speed", None)
+    turns = {} if turning is None else {"rotational_speed": np.abs(turning)}
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
@@ -382,8 +376,8 @@ def raw_log(
     decimal = read.decimal if block.word == "line" or block.columns is not None else ""
     conditions, measured, sentences = conditions_of(given, useful, arrays | turns, source, decimal)
     if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
-        turning = turns["rotational_speed"]  # the radius of the track is in the head of the file
-        arrays["slip_speed"] = turning * (conditions.slip_speed / float(np.nanmedian(turning)))
+        speed = turns["rotational_speed"]  # the radius of the track is in the head of the file
+        arrays["slip_speed"] = speed * (conditions.slip_speed / float(np.nanmedian(speed)))
     form = f", {tables.described_form(block.separator, read.decimal)}" if block.word == "line" else ""
     return RawLog(
         source=source,
@@ -397,6 +391,26 @@ def raw_log(
         notes=(*notes, *sentences),
         **arrays,  # type: ignore[arg-type]
     )
+
+
+def _steady(
+    block: tables.Block, read: Read, columns: ColumnMap, force: float | None, source: str, notes: list[str]
+) -> tuple[Arrays, int]:
+    """Columns in the complete rows of steady sliding, friction as magnitude; and how many are incomplete."""
+    arrays = dict(read.arrays)
+    _drop_empty(arrays, source, notes)
+    _mend_sign(arrays, columns, source, notes, is_given=force is not None)
+    signed = _friction(arrays, force, source, notes)
+    arrays["friction"] = _magnitude(signed, source, notes)
+    complete = _complete(arrays, block, source)
+    missing = int((~complete).sum())
+    if missing:
+        notes.append(f"{missing} of {complete.size} rows are left out: friction or its abscissa is missing")
+    there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
+    signals = [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
+    kept, left_out = sliding_rows(signals, signed, arrays.get("time"), complete)
+    notes += [left_out] if left_out else []
+    return {name: column[kept] for name, column in arrays.items() if name not in naming.SHAPES}, missing
 
 
 def _columns_read(block: tables.Block, columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
