@@ -437,6 +437,12 @@ def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
         np.testing.assert_array_equal(second.time, as_written(TIME))
 
 
+def test_a_last_value_that_may_be_cut_off_is_noted(tmp_path):
+    """With fewer digits than all others; a whole file has no such note."""
+    notes = [read(tmp_path, content).notes for content in (csv(), csv()[:-4])]
+    assert [any("may be cut off" in note for note in one) for one in notes] == [False, True]
+
+
 def test_friction_is_tangential_over_normal_force(tmp_path):
     """Where no coefficient is logged, the magnitude of the ratio, row by row."""
     load = 10.0 + 0.1 * np.cos(TIME)
