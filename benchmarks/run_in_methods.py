@@ -10,7 +10,7 @@ none: nothing is cut. mser5: the marginal standard error of means of five rows i
 (White 1997; White, Cobb and Spratt 2000). geweke: tenths are cut until the first tenth agrees with the last
 half at 1.96 (Geweke 1992). chodera: most effective samples are left (Chodera 2016), by Geyer's positive
 sequence. cusum: the largest excursion of the cumulative sum, one change point in the first half.
-ours: `separatrix.friction.reduction.steady`, and the same without the rest of the fall in the error.
+ours: `separatrix.friction.steady`, and the same without the rest of the fall in the error.
 """
 # ruff: noqa: E402  the makers of logs are found beside the tests
 
@@ -28,7 +28,7 @@ sys.path[:0] = [str(ROOT / "tests" / "physics")]
 
 from synthetic_friction import RUN_INS, Made, made, recipes
 
-from separatrix.friction.reduction.steady import half_width, run_in, steady_mean
+from separatrix.friction.steady import half_width, run_in, steady_mean
 from separatrix.ground.units import Array
 
 SPANS = 256

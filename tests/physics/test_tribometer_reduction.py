@@ -10,9 +10,10 @@ import running_in
 from scipy.stats import binom
 from synthetic_friction import Recipe, made, recipes
 
+from separatrix.friction import steady
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.reduction import reduce_log, steady
-from separatrix.friction.reduction.steady import run_in
+from separatrix.friction.reduction import reduce_log
+from separatrix.friction.steady import run_in
 
 LOGS = 200
 CHANCE = 1e-4

@@ -227,7 +227,7 @@ def test_a_column_map_says_where_running_in_ends_in_each_file(logs, capsys):
 @pytest.mark.parametrize(
     ("end", "words"),
     [
-        ('"5"', 'map.toml: [files."b.csv"] run_in_end must be a time, a distance'),
+        ('"5"', "[files] b.csv.run_in_end must be a time, a distance"),
         ("5.0", "run_in_end must be a time, a distance"),
         ('"5 h"', "b.csv: the end of running-in must lie before the end of the test"),
         ('"5 m"', "b.csv needs a column of distance"),

@@ -65,8 +65,8 @@ def study(folder, text=SMALL, ranking=""):
 
 def sentences():
     """Every flag, in the longest form of its source: 30 characters a number, the longer of two words."""
-    for name in ("", ".flags", ".cycles", ".conditions"):
-        module = import_module(f"separatrix.friction.reduction{name}")
+    for name in ("reduction", "cycles"):
+        module = import_module(f"separatrix.friction.{name}")
         for function in ast.walk(ast.parse(inspect.getsource(module))):
             if not isinstance(function, ast.FunctionDef):
                 continue

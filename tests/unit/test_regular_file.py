@@ -6,7 +6,7 @@ import pytest
 
 import separatrix
 from separatrix.cli import main
-from separatrix.friction.logs.binary import tdms_tables
+from separatrix.friction.logs.binary import tdms_groups
 from separatrix.ground.errors import InputError
 from separatrix.ground.input_files import size_of
 from separatrix.ground.sheet import refuse_unsafe
@@ -76,7 +76,7 @@ def test_neither_an_ending_nor_a_folder_nor_a_device_makes_a_difference(capsys, 
 
 @pytest.mark.parametrize(
     "read",
-    [separatrix.load, refuse_unsafe, tdms_tables],
+    [separatrix.load, refuse_unsafe, tdms_groups],
     ids=["load", "refuse_unsafe", "read_tables"],
 )
 def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder, read):

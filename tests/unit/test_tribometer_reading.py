@@ -14,8 +14,8 @@ from raw_logs import as_written
 
 from separatrix.friction.logs import described, read_log
 from separatrix.friction.logs.column_map import ColumnMap, column_map
-from separatrix.friction.logs.log import MEANINGS, Conditions, RawLog
-from separatrix.friction.logs.names import ALIASES, NAMES, ranks, scale_of
+from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS
 
@@ -339,18 +339,10 @@ def test_what_stands_beside_the_numbers_is_kept(tmp_path):
     assert read(tmp_path, csv(separator=";", head=LONG_HEAD)).metadata["key 39"] == "value 39"
     assert read(tmp_path, csv(head=["# material: Armalon"])).conditions.material == "Armalon"
     assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
-    assert "comma between quotes, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
+    assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     temperature = np.where(np.arange(ROWS) < 5, np.nan, 20.0)
     log = read(tmp_path, csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}))
     assert (log.rows, np.isnan(log.temperature).sum(), log.conditions.temperature) == (ROWS, 5, 293.15)
-    log = read(
-        tmp_path,
-        *(
-            csv({"time [s]": TIME, "COF": FRICTION, "mu": FRICTION}),
-            column_map({"columns": {"friction": "mu"}}),
-        ),
-    )
-    assert [one.why for one in log.columns if one.header == "COF"] == ["another column is the friction"]
 
 
 SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
@@ -445,6 +437,12 @@ def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
         np.testing.assert_array_equal(second.time, as_written(TIME))
 
 
+def test_a_last_value_that_may_be_cut_off_is_noted(tmp_path):
+    """With fewer digits than all others; a whole file has no such note."""
+    notes = [read(tmp_path, content).notes for content in (csv(), csv()[:-4])]
+    assert [any("may be cut off" in note for note in one) for one in notes] == [False, True]
+
+
 def test_friction_is_tangential_over_normal_force(tmp_path):
     """Where no coefficient is logged, the magnitude of the ratio, row by row."""
     load = 10.0 + 0.1 * np.cos(TIME)
@@ -511,16 +509,6 @@ def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
     assert read(tmp_path, content).conditions.sample == "disk 7"
 
 
-def test_several_tables_in_a_file_are_several_logs(tmp_path):
-    """Each with its own header; named by their order where the file does not name them."""
-    one = csv(separator="\t")
-    two = raw_logs.plain_csv({"temps [min]": TIME, "mu": FRICTION * 2}, separator="\t")
-    first, second = read_all(tmp_path, one + b"\n" + two)
-    assert first.source == "log.txt, table 1"
-    assert second.source == "log.txt, table 2"
-    np.testing.assert_array_equal(second.time, as_written(TIME) * 60.0)
-
-
 def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
     """T in sec is time, T in degrees is temperature; speed in rpm is rotation; friction in N is a force."""
     columns = {
@@ -581,13 +569,9 @@ def test_a_pattern_may_name_the_folder(tmp_path):
 
 
 def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
-    """The refusal holds the line that leaves it out, and with that line the others are read."""
-    content = csv()
-    content += b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
-    with pytest.raises(InputError, match="has no column that is known to be the friction") as refusal:
-        read_all(tmp_path, content)
-    assert str(refusal.value).endswith('Or leave it out, below [format]: tables = ["table 1"].')
-    log = read(tmp_path, content, column_map({"format": {"tables": ["table 1"]}}))
+    """By the beginning of its first line."""
+    content = csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
+    log = read(tmp_path, content, column_map({"format": {"ends": ["Summary"]}}))
     np.testing.assert_array_equal(log.friction, as_written(FRICTION))
 
 
@@ -618,32 +602,24 @@ def test_description_shows_columns_units_and_reasons(tmp_path):
     """What is shown before it is trusted."""
     text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))
     assert "Bruker UMT text (utf-8, comma, decimal point), 60 rows, sha256" in text
-    assert 'friction: column "COF" (its name)' in text
-    assert 'time: column "T" in sec (its name)' in text
-    assert 'not used: column "Fx" in g (another column is the tangential force)' in text
+    assert 'friction: column "COF" (its layout)' in text
+    assert 'time: column "T" in sec (its layout)' in text
+    assert 'not used: "Z"' in text
     assert "time from 0 s to 14.75 s" in text
-    assert "note: the normal force is negative in the file" in text
 
 
 def test_no_name_and_unit_have_two_meanings():
     """In the published table, a name together with any unit that fits one of its meanings fits no other."""
     every = {unit for table in UNITS.values() for unit in table}
     every |= {word for table in ALIASES.values() for group in table.values() for word in group.split("; ")}
-    for group in {group for groups in NAMES.values() for group in groups}:
-        for name in group.split("; "):
-            known = ranks(name)
-            for unit in every if len(known) > 1 else ():
-                fitting = [meaning for meaning in known if scale_of(unit, meaning) is not None]
-                assert len(fitting) <= 1, (name, unit, fitting)
-
-
-def test_names_are_written_as_they_are_compared():
-    """Each name of the table is found under itself, and every meaning has names."""
-    assert set(NAMES) == set(MEANINGS)
+    assert set(NAMES) == {*MEANINGS, "position"}
     assert len(NAMES["friction"]) == 1  # no second choice: of two columns none is taken
-    for meaning, groups in NAMES.items():
-        for group in groups:
-            assert all(meaning in ranks(name) for name in group.split("; "))
+    for own, name in ((key, name) for key, groups in NAMES.items() for group in groups for name in group):
+        known = ranks(name)
+        assert own in known, f"{name} is not written as it is compared"
+        for unit in every if len(known) > 1 else ():
+            fitting = [meaning for meaning in known if scale_of(unit, meaning) is not None]
+            assert len(fitting) <= 1, (name, unit, fitting)
 
 
 def test_conditions_refuse_what_cannot_be():

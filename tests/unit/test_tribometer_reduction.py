@@ -10,10 +10,11 @@ from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.figures.tribometer import heading, page
+from separatrix.friction import steady
+from separatrix.friction.cycles import oscillation
 from separatrix.friction.file import place
 from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.reduction import TestFriction, reduce_log, reduction, steady
-from separatrix.friction.reduction.cycles import oscillation
+from separatrix.friction.reduction import TestFriction, reduce_log, reduction
 from separatrix.present.tribometer import page_data
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}

@@ -33,21 +33,11 @@ def with_row(row, value):
 
 ENDS = [
     ("no unit", "200", "must be a time, a distance or a number of cycles"),
-    ("an unknown unit", "200 parsec", 'Write it like "10 min"'),
     ("a force", "200 N", 'got "200 N"'),
-    ("nothing", "", "must be a time, a distance"),
-    ("only a unit", "min", "must be one number and one unit"),
     ("a number", 200.0, "got 200.0"),
-    ("a decimal comma", "1,5 min", "needs a decimal point, not a comma"),
     ("a negative time", "-5 s", "must not be negative"),
-    ("a negative distance", "-5 m", "must not be negative"),
-    ("negative cycles", "-5 cycles", "must be a time, a distance"),
-    ("an expression", "2*30 min", "must be one number and one unit"),
-    ("no number", "nan s", "must be a time, a distance"),
     ("an endless one", "inf cycles", "must be a time, a distance"),
-    ("too large a number", "1e999 s", "must be a number that a computer can hold"),
     ("too long a text", "1" * 100 + " s", "must be a time, a distance"),
-    ("control characters", "5\n min", "must be"),
 ]
 
 LOGS = [

@@ -16,6 +16,7 @@ from separatrix.ground.staged import refuse_existing, staged, writable_folder
 from separatrix.ground.units import parse, printable, shown
 
 if TYPE_CHECKING:
+    from separatrix.friction.logs import UnmappedError
     from separatrix.friction.tribometer import ReducedLogs
     from separatrix.present.text.materials import Shown
 
@@ -58,18 +59,22 @@ def tribometer(
         for one in (to and to.parent, pages):
             if one is not None:
                 folders.enter_context(writable_folder(one))
+        from separatrix.friction.logs import UnmappedError
         from separatrix.friction.tribometer import tribometer as reduced  # before the work is timed
 
         with progress_bar("tribometer", quiet=quiet) as progress:
-            found = reduced(
-                files,
-                column_map=column_map,
-                run_in=run_in,
-                join=join,
-                complete=to is not None,
-                jobs=count,
-                progress=progress,
-            )
+            try:
+                found = reduced(
+                    files,
+                    column_map=column_map,
+                    run_in=run_in,
+                    join=join,
+                    complete=to is not None,
+                    jobs=count,
+                    progress=progress,
+                )
+            except UnmappedError as error:
+                raise _with_draft_written(error) from None
         if pages is not None:
             _draw_pages(found, pages, quiet=quiet)
         if to is not None and found.friction_tests is not None:
@@ -86,6 +91,23 @@ def tribometer(
         else:
             answer(in_words(found, written=written, plots=None if pages is None else str(pages)))
     return 0
+
+
+def _with_draft_written(error: UnmappedError) -> InputError:
+    """The refusal, its draft written beside the log and named in its cure; a file there is kept."""
+    name = printable(error.place.name, 150)
+    others = error.cure.partition("beside the log.")[2]
+    cure = f"Look at the draft {name} beside the log, and add: --map {name}."
+    try:
+        with error.place.open("x", encoding="utf-8") as file:
+            file.write(error.draft)
+    except FileExistsError:
+        cure = (
+            f"There is a file {name}: look at it, and add: --map {name}. Without it, a new draft is written."
+        )
+    except OSError as fault:
+        cure = f"A draft of a column map could not be written beside the log: {fault.strerror}."
+    return error.at(error.path, cure=f"{cure}{others}")
 
 
 def _refuse_out(out: Path) -> None:

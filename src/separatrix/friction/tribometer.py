@@ -72,8 +72,8 @@ def tribometer(
     cut = None if run_in is None else place(run_in, RUN_IN_END)
     pool = ThreadPoolExecutor(jobs)
     try:
-        read = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
-        tests = _tests_of(list(zip(files, read, strict=True)), join=join, complete=complete)
+        logs = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
+        tests = _tests_of(list(zip(files, logs, strict=True)), join=join, complete=complete)
         reduced = _each(pool, lambda test: _reduced(*test, chosen, cut), tests, progress, 500)
     finally:  # nothing new is begun once the work is interrupted
         pool.shutdown(wait=True, cancel_futures=True)
@@ -146,10 +146,9 @@ def _each(
 def _with_others(wrong: Sequence[InputError]) -> InputError:
     """The first refusal, and how many other files are refused."""
     first, others = wrong[0], len(wrong) - 1
-    if not others:
-        return first
-    more = f"{others} other file{'s are' if others > 1 else ' is'} refused too."
-    return first.at(first.path, cure=f"{first.cure} {more}".strip())
+    if others:
+        first.cure += f" {others} other file{'s are' if others > 1 else ' is'} refused too."
+    return first
 
 
 def _tests_of(
@@ -195,9 +194,7 @@ def _tests_of(
 
 def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Cut | None) -> Reduction:
     try:
-        if cut is None and (text := chosen.run_in_end(path)) is not None:
-            cut = place(text, RUN_IN_END)
-        return reduction(log, cut)
+        return reduction(log, cut or chosen.conditions(path).get("run_in_end"))
     except InputError as error:
         if error.path != RUN_IN_END:
             raise

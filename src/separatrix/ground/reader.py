@@ -374,7 +374,7 @@ class Reading:
         """Value of a path and its source; `_NOTHING` where it was refused."""
         if len(self.faults) > MOST_FAULTS:
             return _NOTHING
-        text = "" if isinstance(raw, dict | list) else shown(raw)
+        text = raw if isinstance(raw, str) else "" if isinstance(raw, dict | list) else shown(raw)
         self.sources[path] = Source(Origin.GIVEN, self.document.place(path), text)
         try:
             return self.convert(hint, one, raw, path)

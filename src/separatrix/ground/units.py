@@ -37,6 +37,7 @@ Metre = Annotated[float, "m"]
 PerSecond = Annotated[float, "1/s"]
 PerMetre = Annotated[float, "1/m"]
 PerMetre2 = Annotated[float, "1/m2"]
+SquareMetre = Annotated[float, "m2"]
 Second = Annotated[float, "s"]
 Hertz = Annotated[float, "Hz"]
 Radian = Annotated[float, "rad"]
@@ -80,6 +81,7 @@ QUANTITIES = {
     "Hz": "frequency",
     "kg": "mass",
     "N": "force",
+    "m2": "area",
     "N m": "moment",
     "N/m": "stiffness",
     "N s/m": "damping",
@@ -98,6 +100,7 @@ QUANTITIES = {
 
 UNITS: dict[str, dict[str, str]] = {
     "m": {"m": "1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6", "nm": "1e-9", "in": "0.0254"},
+    "m2": {"m2": "1", "cm2": "1e-4", "mm2": "1e-6"},
     "s": {"s": "1", "ms": "1e-3", "us": "1e-6", "min": "60", "h": "3600"},
     # The scales of angles and rotational speeds are in turns of pi wherever the text ends in "pi".
     "rad": {"rad": "1", "mrad": "1e-3", "deg": "1/180 pi", "°": "1/180 pi", "arcmin": "1/10800 pi"},

@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from separatrix.friction import steady
 from separatrix.friction.fit import FrictionFit
 from separatrix.friction.law import in_words as range_words
 from separatrix.friction.logs import described
-from separatrix.friction.logs.log import MEANINGS
-from separatrix.friction.reduction import Reduction, TestFriction, steady
+from separatrix.friction.logs.names import MEANINGS
+from separatrix.friction.reduction import Reduction, TestFriction
 from separatrix.friction.tribometer import ReducedLogs
 from separatrix.ground.units import Array
 from separatrix.present.arrays import variable

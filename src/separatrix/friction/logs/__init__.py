@@ -1,29 +1,43 @@
-"""Reading tribometer logs: the format is detected from its content, not from its name."""
+"""Reading tribometer logs through column maps; what a file holds shows in its content, not in its name.
+
+A file is read by the map that is named, by that of a known layout, or by its heads where these leave no
+question. Else a draft of a map is made, for the user to look at: nothing is guessed in silence.
+"""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from separatrix.friction.logs.column_map import ColumnMap, column_map, read_column_map
-from separatrix.friction.logs.columns import Understood, understand
-from separatrix.friction.logs.dialect import CLOCK, text_of
-from separatrix.friction.logs.header import Layout, layout_of
-from separatrix.friction.logs.log import ColumnRead, RawLog, RawTable
-from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
-from separatrix.friction.logs.raw import raw_log
-from separatrix.friction.logs.sliding import motion_columns
+from separatrix.friction.logs.column_map import (
+    ColumnMap,
+    column_map,
+    column_map_of,
+    read_column_map,
+    shipped_maps,
+)
+from separatrix.friction.logs.draft import Draft, draft_of
+from separatrix.friction.logs.log import ColumnRead, RawLog
+from separatrix.friction.logs.log_tables import Block, Content, blocks_of, cells_of, content_of, matching
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, time_form
+from separatrix.friction.logs.raw import UnfitError, in_si, raw_log
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import size_of, unreadable
 from separatrix.ground.units import format_quantity, printable, shown, unit_of
 
-__all__ = ["column_map", "described", "read_column_map", "read_log"]
-LARGEST = 2_000_000_000  # bytes that a log may have
+__all__ = ["UnmappedError", "column_map", "described", "read_column_map", "read_log"]
+
+
+class UnmappedError(InputError):
+    """A log with open questions: it has a draft of its column map."""
+
+    draft: str = ""
+    place: Path = Path()
+    """Where the draft is to be written."""
 
 
 def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:
@@ -32,212 +46,172 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     Parameters
     ----------
     path : str or Path
-        Anton Paar, Rtec, Bruker UMT, PCS, LabVIEW or Phoenix Compend text, plain CSV or TSV, ``.xlsx`` or
-        ``.tdms``.
+        Text of a tribometer or table in text, ``.xlsx`` or ``.tdms``.
     column_map : ColumnMap, optional
         What the file does not state itself, from `read_column_map`.
 
     Raises
     ------
     InputError
-        What cannot be read or decided: file, line, and what to write in a column map. Nothing is guessed.
+        What cannot be read or decided: file, line, and what to write. If the columns are not
+        certain, it is an `UnmappedError` with the text of a draft.
     """
-    path = Path(path)
-    name = printable(path.name or str(path), 150)
-    size = size_of(path, name)
-    if size > LARGEST:
-        cure = "Split it, or log at a lower rate."
-        raise InputError(name, "is too large: at most 2 GB", f"{size / 1e9:.1f} GB", cure)
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise unreadable(name, error) from None
-    chosen = column_map or ColumnMap()
-    file = _File(path, name, hashlib.sha256(raw).hexdigest(), chosen, chosen.conditions(path))
-    if raw.startswith(b"PK\x03\x04"):
-        return _logs(_tables_of_workbook(file), file, "Excel workbook")
-    if raw.startswith(b"TDSm"):
-        from separatrix.friction.logs.binary import tdms_tables
-
-        return _logs(tdms_tables(path), file, "LabVIEW TDMS")
-    text, encoding = text_of(raw, name, chosen.format.encoding)
-    if not text[:65536].strip():
-        raise InputError(name, "is empty")
-    tables, words = _tables_of_text(text, file)
-    layout = tables[0].layout
-    logs = _logs(tables, file, f"{layout.name} ({encoding}, {words})")
-    series = layout.series(_head(text))
-    if not series:
-        return logs
-    # parts of one test share the words of the head, and settings of the step but for the sign
-    same = [" ".join([series, *(log.metadata.get(k, "").lstrip("+-") for k in layout.same)]) for log in logs]
-    return tuple(replace(log, series=one) for log, one in zip(logs, same, strict=True))
-
-
-@dataclass(frozen=True, slots=True)
-class _File:
-    """A file that is read, and what the user states about it."""
-
-    path: Path
-    name: str
-    checksum: str
-    chosen: ColumnMap
-    given: Mapping[str, str | float]  # its conditions by the column map
-
-    def understood(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> Understood | None:
-        """What the columns mean; None for a table that is not a log, which `raw_log` refuses."""
-        radius = self.given.get("track_radius")
+    given = column_map or ColumnMap()
+    content = content_of(Path(path), given.format)
+    if given.is_complete:
+        return _logs(content, given)
+    fitting = [one for one in shipped_maps() if all(text in content.beginning for text in one.signature)]
+    known = given.over(fitting[0]) if fitting else given
+    why: InputError | None = None
+    if known.is_complete:
         try:
-            return understand(
-                *(headers, units, self.name, self.chosen, layout),
-                constant_force="normal_force" in self.given,
-                track_radius=radius if isinstance(radius, float) else None,
-            )
-        except InputError:
-            return None
-
-    def wanted(self, headers: Sequence[str], units: Sequence[str], layout: Layout) -> list[int]:
-        """Numbers of the columns of a table that are to be read."""
-        found = self.understood(headers, units, layout)
-        if found is None:
-            return []
-        used = {column.index for column in found.used.values()}
-        twins = {i for places in found.twins.values() for i in places}
-        return sorted({*used, *twins, *motion_columns(headers, units), *_step_column(headers, layout)})
+            return _logs(content, replace(known, is_shipped=True))
+        except UnfitError as error:
+            why = error
+    draft = draft_of(content, known, why)
+    text = draft.text(content.name)
+    if draft.questions:
+        raise _unmapped(content, draft, text, why)
+    columns = column_map_of(text, f"{content.name}, its heads").by("its name")
+    stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
+    name = fitting[0].name if fitting else "plain text"
+    columns = replace(columns, columns={**columns.columns, **stated}, name=name)
+    return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
 
 
-def _head(text: bytes) -> str:
-    return text[:20_000].decode(errors="ignore")
+def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> UnmappedError:
+    first, count = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions)
+    like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
+    rule = f"{like}has {count} open questions, the first: {first}"
+    rule = rule if count > 1 else f"{like}has an open question: {first}"
+    place = content.path.with_name(f"{content.path.name}.map.toml")
+    cure = "Write a column map; `separatrix tribometer` writes a draft of it beside the log."
+    error = UnmappedError(content.name, rule, cure=cure)
+    error.draft, error.place = text, place
+    return error
 
 
-def _tables_of_text(text: bytes, file: _File, sheet: str = "") -> tuple[list[RawTable], str]:
-    """Tables of a text, those of one test as one, and the words for how it is written."""
-    from separatrix.friction.logs.text import read_tables
-
-    layout, form = layout_of(_head(text)), file.chosen.format
-    source = f"{file.name}, sheet {printable(sheet)}" if sheet else file.name
-    if sheet:
-        form = replace(form, separator="\t", decimal=".")
-    headless = any(choice.number is not None for choice in file.chosen.columns.values())
-    tables, dialect = read_tables(
-        text, source, form, layout, lambda h, u: file.wanted(h, u, layout), headless=headless
-    )
-    tests: list[list[RawTable]] = []
-    for table in tables:
-        if tests and _goes_on(tests[-1][-1], table, file):
-            tests[-1].append(table)
-        else:
-            tests.append([table])
-    found = []
-    for parts in tests:
-        if len(parts) > 1:
-            columns = [np.concatenate(same) for same in zip(*(part.columns for part in parts), strict=True)]
-            lines = np.concatenate([np.asarray(part.lines) for part in parts])
-            parts[0] = replace(parts[0], columns=columns, lines=lines)
-        found.append(parts[0])
-    if len({table.name for table in found}) < len(found):
-        found = [replace(table, name=f"table {i}") for i, table in enumerate(found, 1)]
-    return found, dialect.words
-
-
-def _goes_on(before: RawTable, table: RawTable, file: _File) -> bool:
-    """Whether a table under repeated headers goes on where the one before it ends: one test."""
-    if (before.headers, before.units) != (table.headers, table.units) or table.metadata or table.name:
-        return False
-    found = file.understood(table.headers, table.units, table.layout)
-    columns = [found.used[name].index for name in ABSCISSAE if name in found.used] if found else []
-    return bool(columns) and all(table.columns[i][0] >= before.columns[i][-1] for i in columns)
-
-
-def _tables_of_workbook(file: _File) -> list[RawTable]:
-    """Tables of all sheets, or of those that the column map names."""
-    from separatrix.friction.logs.binary import checked, odd_cells, sheets_as_text
-
-    texts, form = sheets_as_text(file.path, file.name), file.chosen.format
-    given = "".join(choice.unit or "" for choice in file.chosen.columns.values())
-    found = []
-    for sheet, text in texts.items():
-        if form.tables and set(form.tables) <= texts.keys() and sheet not in form.tables:
-            continue
-        try:
-            tables, _ = _tables_of_text(text, file, sheet)
-        except InputError as error:
-            raise error.at(error.path.replace(": line ", ": row ", 1)) from None
-        odd = None
-        for table in tables:
-            if read := file.wanted(table.headers, table.units, table.layout):
-                odd = odd or odd_cells(file.path, sheet, file.name)
-                percent = [i for i in read if "%" in f"{given}{table.headers[i]}{table.units[i]}"]
-                where = f"{file.name}, sheet {printable(sheet)}"
-                table = checked(table, odd, where, read, percent, form)
-            found.append(replace(table, name=f"{sheet}, {table.name}" if table.name else sheet))
-    return found
-
-
-def _step_column(headers: Sequence[str], layout: Layout) -> list[int]:
-    """Number of the column whose change begins a new test; none where the format has no such column."""
-    names = [header.strip().casefold() for header in headers]
-    return [names.index(name.casefold()) for name in layout.split_by if name.casefold() in names][:1]
-
-
-def _by_step(table: RawTable) -> Iterator[RawTable]:
-    """The table, or one for each step in it; a step of a single row is left out, for it is not a log."""
-    found = _step_column(table.headers, table.layout)
-    steps = table.columns[found[0]] if found else np.zeros(1)
-    bounds = [0, *(np.flatnonzero(np.diff(steps) != 0.0) + 1).tolist(), len(steps)]
-    pieces = [slice(a, b) for a, b in pairwise(bounds) if b - a >= 2]
-    if len(bounds) == 2 or not pieces:
-        yield table
-        return
-    names: list[str] = []
-    for piece in pieces:
-        names.append(f"step {steps[piece.start]:g}")
-        again = names.count(names[-1])
-        name = names[-1] if again == 1 else f"{names[-1]}, again {again}"
-        yield replace(
-            table,
-            name=f"{table.name}, {name}" if table.name else name,
-            columns=[column[piece] for column in table.columns],
-            lines=table.lines[piece] if table.lines is not None else None,
-        )
-
-
-def _logs(tables: Sequence[RawTable], file: _File, format_name: str) -> tuple[RawLog, ...]:
-    """The log of each table that the column map names, or of all; the same numbers again are not a test.
-
-    Where only some are logs, the refusal states how to leave out the others.
-    """
-    parts = [part for whole in tables for part in _by_step(whole)]
-    by_name = {part.name: part for part in parts}
-    for name in file.chosen.format.tables:
-        if name not in by_name:
-            there = ", ".join(f'"{printable(table)}"' for table in by_name if table)
-            cure = f"It has {there}." if there else "It has one table, without a name."
-            raise InputError(file.name, f'has no table "{printable(name)}"', cure=cure)
+def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
+    """The log of each table that the column map names, or of all; the same numbers again are not a test."""
+    parts = [part for block in _tests(content, columns) for part in _by_step(block, columns)]
+    if not parts:
+        needed = [one.names[0] for one in columns.columns.values() if one.names and not one.optional]
+        listed = ", ".join(map(shown, needed))
+        rule = "has no table with the columns that the column map needs"
+        cure = f"They are {listed or 'given by number'}; under them, two rows of numbers."
+        raise UnfitError(content.name, rule, cure=cure)
+    if len({(part.source, part.name) for part in parts}) < len(parts):
+        sheets = {part.source: part.name for part in parts if content.parts and content.parts[0].sheet}
+        named = [f"{name}, " if (name := sheets.get(part.source)) else "" for part in parts]
+        parts = [replace(part, name=f"{named[i]}table {i + 1}") for i, part in enumerate(parts)]
     found: list[tuple[str, RawLog]] = []
     wrong: InputError | None = None
-    for part in [by_name[name] for name in file.chosen.format.tables] or parts:
-        source = f"{file.name}, {part.name}" if part.name else file.name
+    stated = columns.conditions(content.path)
+    for part in _named(parts, content, columns):
+        source = f"{content.name}, {printable(part.name)}" if part.name else content.name
         try:
-            log = raw_log(part, source, file.checksum, format_name, file.chosen, file.given)
-            found.append((part.name, log))
+            log = raw_log(part, source, content.checksum, content.words, columns, stated)
+            found.append((part.name, replace(log, series=_series(part, content, columns))))
         except InputError as error:
             wrong = wrong or error
-    if wrong is not None and found:
+    if wrong is not None and found and not isinstance(wrong, UnfitError):
         names = ", ".join(shown(name) for name, _ in found)
-        cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
-        raise wrong.at(wrong.path, cure=cure)
+        wrong.cure = f"{wrong.cure} Or leave it out, below [format]: tables = [{names}].".strip()
     if wrong is not None:
         raise wrong
+    return tuple(_once(found, content, parts))
+
+
+def _named(parts: Sequence[Block], content: Content, columns: ColumnMap) -> list[Block]:
+    """Tables that the map names, by their names or those of their sheets; all where it names none."""
+    sheets = {part.sheet for part in content.parts} - {""}
+    for name in columns.format.tables:
+        if name not in sheets and name not in {part.name for part in parts}:
+            there = ", ".join(shown(one) for one in (*sheets, *(part.name for part in parts)) if one)
+            cure = f"It has {there}." if there else "It has one table, without a name."
+            raise InputError(content.name, f'has no table "{printable(name)}"', cure=cure)
+    wanted = set(columns.format.tables) - sheets
+    return [part for part in parts if not wanted or part.name in wanted]
+
+
+def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence[Block]) -> Iterator[RawLog]:
+    """Logs without those of the same numbers, and with a note on sheets that are not read."""
     kept: dict[bytes, RawLog] = {}
     for _, log in found:
-        columns = [log.friction, *(getattr(log, name) for name in log.abscissae)]
-        numbers = b"".join(column.tobytes() for column in columns)
+        numbers = b"".join(getattr(log, name).tobytes() for name in ("friction", *log.abscissae))
         if numbers in kept:
             note = f"{log.source} has the same numbers and is left out"
             log = replace(kept[numbers], notes=(*kept[numbers].notes, note))
         kept[numbers] = log
-    return tuple(kept.values())
+    read_from = {part.source for part in parts}
+    others = [printable(part.sheet) for part in content.parts if part.source not in read_from]
+    others += [printable(group.name) for group in content.groups if group.source not in read_from]
+    unread = (f"without these columns, and not read: {', '.join(others)}",) if others else ()
+    yield from (replace(log, notes=(*log.notes, *unread)) for log in kept.values())
+
+
+def _tests(content: Content, columns: ColumnMap) -> list[Block]:
+    """Tables of two rows or more; one under repeated names goes on with the test before it, if time does."""
+    tests: list[Block] = []
+    for block in blocks_of(content, columns):
+        if tests and _goes_on(tests[-1], block, columns):
+            tests[-1].rows += block.rows
+            tests[-1].lines = [*tests[-1].lines, *block.lines]
+        elif len(block.lines) > 1:
+            tests.append(block)
+    return tests
+
+
+def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
+    """Whether a table under repeated names goes on where the one before it ends: a page of one test."""
+    parts = [(one.source, one.name, one.heads, one.below) for one in (before, block)]
+    if parts[0] != parts[1] or any(line.strip() for line in block.above) or block.columns is not None:
+        return False
+    abscissae = {name: one for name, one in columns.columns.items() if name in ABSCISSAE}
+    rows, lines = before.rows[-1:] + block.rows[:1], [before.lines[-1], block.lines[0]]
+    joint = replace(before, rows=rows, lines=lines)
+    decimal = "," if "," in "".join(rows) and block.separator != "," else "."
+    try:
+        arrays = in_si(joint, replace(columns, columns=abscissae), None, [], decimal).arrays
+    except InputError:
+        return False
+    clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""
+    most = 43_200.0 if clock else np.inf
+    return all(0.0 <= np.diff(one)[0] < most for one in arrays.values() if np.isfinite(one).all())
+
+
+def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
+    """The table, or one for each step in it; a step of a single row is left out, for it is not a log."""
+    place = next((i for name in columns.format.tests for i in matching([name], block.heads)), None)
+    if place is None or block.columns is not None:
+        yield block
+        return
+    (texts,) = cells_of(block, [place])
+    cells = [re.sub(r"[.,]0*$", "", text) for text in texts]  # 1.000 and 1,0 are one step
+    bounds = [0, *(i for i in range(1, len(cells)) if cells[i] != cells[i - 1]), len(cells)]
+    names: list[str] = []
+    single = [f"{block.heads[place].strip()} {cells[a]}" for a, b in pairwise(bounds) if b - a == 1]
+    note = [f"steps of a single row are left out: {printable(', '.join(single), 80)}"] if single else []
+    for start, stop in pairwise(bounds):
+        if len(bounds) == 2:
+            yield block
+        elif stop - start >= 2:
+            names.append(f"step {printable(cells[start])}")
+            again = names.count(names[-1])
+            name = names[-1] if again == 1 else f"{names[-1]}, again {again}"
+            name = f"{block.name}, {name}" if block.name else name
+            rows, lines = block.rows[start:stop], block.lines[start:stop]
+            yield replace(block, name=name, rows=rows, lines=lines, notes=note)
+
+
+def _series(block: Block, content: Content, columns: ColumnMap) -> str:
+    """What the lines above a table state about the test of which it is a part; empty for nothing."""
+    head = [line for part in content.parts for line in part.lines[:100]] if columns.format.series else []
+    found = []
+    for pattern in columns.format.series:
+        matches = [match for line in (*reversed(block.above), *head) if (match := re.search(pattern, line))]
+        found.append(matches[0][1] if matches else "")
+    return " ".join(found).strip() if found and found[0] else ""
 
 
 def described(log: RawLog) -> list[str]:
@@ -263,5 +237,5 @@ def described(log: RawLog) -> list[str]:
 
 def _column(column: ColumnRead) -> str:
     unit = f" in {column.unit}" if column.unit.strip("- ") else ""
-    unit = ", clock times," if column.unit == CLOCK else unit
+    unit = ", clock times," if column.meaning == "time" and time_form(column.unit) else unit
     return f'column "{printable(column.header)}"{unit} ({column.why})'

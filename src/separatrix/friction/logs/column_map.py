@@ -1,97 +1,211 @@
-"""A column map: a small TOML file with what a log does not state (docs/reference/tribometer-logs.md)."""
+"""A column map: a TOML file with what logs of one layout do not state (docs/reference/tribometer-logs.md)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
+from dataclasses import field, replace
+from functools import cache
+from importlib.resources import files as files_of
 from pathlib import Path, PurePosixPath
+from typing import Any, ClassVar, Literal
 
-from separatrix.friction.file import place
-from separatrix.friction.logs.dialect import ENCODINGS, SEPARATORS
-from separatrix.friction.logs.names import MEANINGS, known_units, scale_of, torque_scale
-from separatrix.ground import units
+from separatrix.friction.file import Place, place
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, SHAPES, known_units, scale_of
 from separatrix.ground.errors import InputError
-from separatrix.ground.toml import Kind, build, quantity, read_toml
-from separatrix.ground.units import printable, shown
+from separatrix.ground.reader import Document, read_document, read_text
+from separatrix.ground.schema import Fault, Faults, between, check, key, keys_of, positive, record
+from separatrix.ground.toml import Kind, label_of, nearest, parsed
+from separatrix.ground.toml import read_text as text_of
+from separatrix.ground.units import (
+    Kelvin,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    Pascal,
+    RadianPerSecond,
+    Second,
+    SquareMetre,
+    printable,
+    shown,
+)
 
-KIND = Kind(noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".')
-MOST = 1_000_000_000  # number of a column or a line, at most
-
-QUANTITIES = {
-    "temperature": "K",
-    "slip_speed": "m/s",
-    "pressure": "Pa",
-    "normal_force": "N",
-    "cycle_time": "s",
-    "contact_area": "m2",
-    "pin_diameter": "m",
-    "track_radius": "m",
-    "rotational_speed": "rad/s",
-}
-"""Conditions that are a number with a unit."""
-
-TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
-RUN_IN_END = "run_in_end"  # where running-in ends: not a condition, but stated with them
-_AREAS = {"m2": 1.0, "cm2": 1e-4, "mm2": 1e-6}
-_DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
+LAST = between(1, 1_000_000_000)  # numbers of columns and lines
+SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
+DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ColumnChoice:
-    """One line of `[columns]`: which column, by its name or its number from 1, and its unit."""
+def _one_of(known: Mapping[str, str]) -> Any:
+    """Reader of a text that stands for a character."""
 
-    name: str | None = None
-    number: int | None = None
-    unit: str | None = None
-    sign: int = 1  # -1 where compression counts negative
+    def read(raw: object, *_: object) -> str:
+        if not isinstance(raw, str) or raw not in known:
+            names = ", ".join(f'"{name}"' for name in known if name.isprintable() and name.strip())
+            raise InputError("", f"must be one of {names}", shown(raw))
+        return known[raw]
+
+    return read
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TextFormat:
-    """`[format]`: how the text is written; None where that is detected."""
+def _column_name(raw: object, *_: object) -> tuple[str, ...] | int:
+    if isinstance(raw, int) and not isinstance(raw, bool):
+        if LAST.low <= raw <= LAST.high:
+            return raw
+        raise InputError("", "must be the number of a column, counted from 1", shown(raw))
+    names = raw if isinstance(raw, list) and raw else [raw]
+    if not all(isinstance(one, str) and one.strip() for one in names):
+        cure = 'Write friction = "COF", or normal_force = { name = "Fz", unit = "N" }.'
+        raise InputError("", "must be the name or the number of a column", shown(raw), cure)
+    return tuple(names)
 
-    separator: str | None = None
-    decimal: str | None = None
-    encoding: str | None = None
-    header_line: int | None = None
-    units_line: int | None = None
-    missing: frozenset[str] = frozenset()
-    """Texts that mean a missing value besides `MISSING`, in small letters."""
-    tables: tuple[str, ...] = ()  # names of the tables (sheets, steps) to read; all of them if empty
+
+@record
+class Column:
+    """Which column, by one of its names or by its number from 1, and its unit."""
+
+    SHORT: ClassVar = "name"
+
+    name: tuple[str, ...] | int = key(read=_column_name)
+    unit: str | None = key(default=None, without="as the file states it")
+    sign: Literal[1, -1] = key(default=1)
+    """-1 where compression counts negative."""
+
+    optional: bool = key(default=False)
+    """In the map of a layout whose files do not all have it."""
+
+    origin: str = "column map"
+    """Who states it."""
 
     @property
-    def begin(self) -> int:
-        """Lines above the rows, where the line of the header is given."""
-        return max(self.header_line or 0, self.units_line or 0)
+    def names(self) -> tuple[str, ...]:
+        """Its names; empty where it has a number."""
+        return self.name if isinstance(self.name, tuple) else ()
+
+    @property
+    def number(self) -> int | None:
+        """Its number; None where it has names."""
+        return self.name if isinstance(self.name, int) else None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
+class TextFormat:
+    """How the table is written; what is not given the file shows."""
+
+    separator: Literal["\t", ";", ",", "|", " "] | None = key(default=None, read=_one_of(SEPARATORS))
+    decimal: Literal[".", ","] | None = key(default=None, read=_one_of(DECIMALS))
+    encoding: (
+        Literal["utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk"]
+        | None
+    ) = key(default=None)
+    header_line: int | None = key(LAST, default=None)
+    units_line: int | None = key(LAST, default=None, needs=("header_line", "its place is not known"))
+    units_below: bool = key(default=False)
+    """Whether the line below the names is that of the units."""
+
+    keys_above: bool = key(default=False)
+    """Whether a line of keys stands above one of their values, even of two."""
+
+    missing: tuple[str, ...] = key(default=())
+    """Texts that mean a missing value, besides the usual ones."""
+
+    tables: tuple[str, ...] = key(default=())
+    """Names of the tables (sheets, steps) to read; all of them if empty."""
+
+    skip: tuple[str, ...] = key(default=())
+    """Beginnings of lines among the rows that are not rows."""
+
+    ends: tuple[str, ...] = key(default=())
+    """Beginnings of lines behind which there are no rows."""
+
+    tests: tuple[str, ...] = key(default=())
+    """Columns; a change in the first of them that is there begins another test."""
+
+    series: tuple[str, ...] = key(default=())
+    """Patterns of lines above a table, whose groups all parts of a test share."""
+
+    spellings: Mapping[str, str] = key(default={})
+    """What the layout means by a unit: g = "gf"."""
+
+
+@check(TextFormat)
+def _commas(separator: str, decimal: str) -> Faults:
+    if separator == decimal == ",":
+        yield Fault("", "cannot have a comma both as separator and as decimal sign", got="")
+
+
+@record
+class Stated:
+    """What is stated about a test."""
+
+    material: str | None = key(default=None)
+    counterface: str | None = key(default=None)
+    medium: str | None = key(default=None)
+    sample: str | None = key(default=None)
+    test: str | None = key(default=None)
+    temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
+    slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
+    pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
+    normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
+    cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
+    contact_area: SquareMetre | None = key(positive(1e-18, 1e3), default=None)
+    pin_diameter: Metre | None = key(positive(1e-9, 1e2), default=None)
+    track_radius: Metre | None = key(positive(1e-9, 1e2), default=None)
+    rotational_speed: RadianPerSecond | None = key(positive(1e-9, 1e6), default=None)
+    run_in_end: Place | None = key(default=None, read=lambda raw, *_: place(raw, ""))
+    """Where running-in ends."""
+
+
+QUANTITIES = {name: one.unit for name, one in keys_of(Stated).items() if one.unit}
+"""Conditions that are a number, and the SI unit of each."""
+
+TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
+
+
+@record
 class ColumnMap:
-    """What a user states about the files: columns, text format, conditions for all and by file pattern."""
+    """What is stated about files: their columns, text format, conditions for all and by file pattern."""
 
-    columns: Mapping[str, ColumnChoice] = field(default_factory=dict)
-    format: TextFormat = field(default_factory=TextFormat)
-    test: Mapping[str, str | float] = field(default_factory=dict)
-    """Conditions in SI units, by the keys of `QUANTITIES` and `TEXTS`, and `RUN_IN_END` as written."""
-    files: Mapping[str, Mapping[str, str | float]] = field(default_factory=dict)
+    FILE: ClassVar = Kind(
+        noun="a column map", empty='Write for instance [columns], and below it: friction = "COF".'
+    )
+
+    name: str = key(default="column map")
+    signature: tuple[str, ...] = key(default=())
+    """Texts that the beginning of each file of a shipped layout has."""
+
+    columns: Mapping[str, Column] = key(default={})
+    format: TextFormat = key(default=TextFormat())
+    test: Stated = key(default=Stated())
+    files: Mapping[str, Stated] = key(default={})
     source: str = ""
+    as_written: Mapping[str, Any] = field(default_factory=dict)
+    """Sections of the file, for a draft."""
 
-    def conditions(self, path: Path) -> dict[str, str | float]:
-        """Conditions of one file, in SI units: `[test]`, then every matching pattern in the order written."""
-        found = self._stated(path)
-        found.pop(RUN_IN_END, None)
-        return found
+    is_shipped: bool = False
 
-    def run_in_end(self, path: Path) -> str | None:
-        """Where running-in ends in one file; None to find it."""
-        found = self._stated(path).get(RUN_IN_END)
-        return None if found is None else str(found)
+    @property
+    def is_complete(self) -> bool:
+        """Whether it names all columns that a log needs."""
+        has_friction = "friction" in self.columns or "tangential_force" in self.columns
+        return has_friction and any(name in self.columns for name in ABSCISSAE)
 
-    def _stated(self, path: Path) -> dict[str, str | float]:
-        found = dict(self.test)
-        for pattern, given in self.files.items():
-            found |= given if _fits(path, pattern) else {}
+    def by(self, origin: str) -> ColumnMap:
+        """Return this map, its columns stated by somebody else than the user."""
+        columns = {meaning: replace(one, origin=origin) for meaning, one in self.columns.items()}
+        return replace(self, columns=columns)
+
+    def over(self, base: ColumnMap) -> ColumnMap:
+        """Return this map, with what it does not state from another."""
+        columns = dict(base.columns)
+        if "tangential_force" in self.columns and "friction" not in self.columns:
+            columns.pop("friction", None)  # forces that are named go before a coefficient
+        form = replace(base.format, **given_in(self.format))
+        return replace(self, columns={**columns, **self.columns}, format=form, name=base.name)
+
+    def conditions(self, path: Path) -> dict[str, Any]:
+        """What is stated about one file: `[test]`, then every matching pattern in the order written."""
+        found = given_in(self.test)
+        for pattern, stated in self.files.items():
+            found |= given_in(stated) if _fits(path, pattern) else {}
         return found
 
     def unused(self, paths: Iterable[Path]) -> list[InputError]:
@@ -101,7 +215,12 @@ class ColumnMap:
         names += f" and {len(files) - 3} more" if len(files) > 3 else ""
         rule, cure = "must fit a file that is named", "Mend it, or leave it out of this column map."
         idle = [pattern for pattern in self.files if not any(_fits(path, pattern) for path in files)]
-        return [InputError(_section(self.source, pattern), rule, names, cure) for pattern in idle]
+        return [InputError(f'{self.source}: [files."{printable(one)}"]', rule, names, cure) for one in idle]
+
+
+def given_in(one: Any) -> dict[str, Any]:
+    """Keys of a record that have another value than none."""
+    return {name: value for name in keys_of(type(one)) if (value := getattr(one, name))}
 
 
 def _fits(path: Path, pattern: str) -> bool:
@@ -109,8 +228,23 @@ def _fits(path: Path, pattern: str) -> bool:
     return PurePosixPath(path.absolute().as_posix()).match(pattern)
 
 
-def _section(source: str, pattern: str) -> str:
-    return f'{source}: [files."{printable(pattern)}"]'
+@check(ColumnMap)
+def _meanings_and_units(columns: Mapping[str, Column]) -> Faults:
+    known = (*MEANINGS, *SHAPES)
+    for meaning, one in columns.items():
+        if meaning not in known:
+            yield Fault(("columns", meaning), "is not the meaning of a column", nearest(meaning, known), "")
+        elif one.unit is not None and scale_of(one.unit, meaning) is None:
+            cure = "The draft asks for it: write the true one." if one.unit == "..." else ""
+            rule = f"must be a unit such as {known_units(meaning)}"
+            yield Fault(("columns", meaning, "unit"), rule, cure, shown(one.unit))
+
+
+@check(ColumnMap)
+def _patterns(files: Mapping[str, Stated]) -> Faults:
+    for pattern in files:
+        if not PurePosixPath(pattern).name:
+            yield Fault(("files", pattern), "must be a pattern of names of files", 'Write "peek_*.csv".', "")
 
 
 def read_column_map(path: str | Path) -> ColumnMap:
@@ -119,124 +253,28 @@ def read_column_map(path: str | Path) -> ColumnMap:
     Raises
     ------
     InputError
-        The file, section and key that is wrong, and how to write it.
+        Everything that is wrong with it, a line each: place, key, rule, value, cure.
     """
-    path = Path(path)
-    document, _ = read_toml(path, KIND)
-    return column_map(document, printable(path.name or str(path), 100))
+    label = label_of(Path(path))
+    return column_map_of(text_of(Path(path), ColumnMap.FILE), label)
 
 
-def column_map(document: Mapping[str, object], source: str = "column map") -> ColumnMap:
+def column_map_of(text: str, label: str) -> ColumnMap:
+    """Column map of the text of a file."""
+    made = read_text(ColumnMap, text, label).value
+    return replace(made, source=label, as_written=parsed(text, label, ColumnMap.FILE)[0])
+
+
+def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
     """Column map of a parsed TOML document."""
-    sections = ("columns", "format", "test", "files")
-    _known(document, sections, source, "section")
-    parts = {key: _table(document.get(key, {}), f"{source}: [{key}]") for key in sections}
-    where = f"{source}: [columns]"
-    _known(parts["columns"], tuple(MEANINGS), where, "column")
-    files = {}
-    for pattern, given in parts["files"].items():
-        section = _section(source, pattern)
-        if not PurePosixPath(pattern).name:
-            raise InputError(section, "must be a pattern of names of files", cure='Write "peek_*.csv".')
-        files[pattern] = _conditions(_table(given, section), section)
-    return ColumnMap(
-        columns={name: _choice(name, value, f"{where} {name}") for name, value in parts["columns"].items()},
-        format=_format(parts["format"], f"{source}: [format]"),
-        test=_conditions(parts["test"], f"{source}: [test]"),
-        files=files,
-        source=source,
-    )
+    made = read_document(ColumnMap, Document(source, document, {})).value
+    return replace(made, source=source, as_written=document)
 
 
-def _known(given: Mapping[str, object], names: tuple[str, ...], where: str, kind: str) -> None:
-    for name in given:
-        if name not in names:
-            near = get_close_matches(name, names, 1, 0.6)
-            cure = f'Did you mean "{near[0]}"?' if near else f"There are {', '.join(names)}."
-            raise InputError(where, f"has no {kind} of that name", shown(name), cure)
-
-
-def _table(value: object, where: str) -> Mapping[str, object]:
-    if not isinstance(value, dict):
-        raise InputError(where, "must be a section of the file", shown(value))
-    return value
-
-
-def _fits_meaning(unit: str, meaning: str) -> bool:
-    """Whether a column of that meaning may have the unit; a torque becomes a tangential force."""
-    is_torque = meaning == "tangential_force" and torque_scale(unit) is not None
-    return is_torque or scale_of(unit, meaning) is not None
-
-
-def _choice(meaning: str, value: object, where: str) -> ColumnChoice:
-    table = value if isinstance(value, dict) else {"name": value}
-    _known(table, ("name", "unit", "sign"), where, "key")
-    name, unit, sign = table.get("name"), table.get("unit"), table.get("sign", 1)
-    if isinstance(name, bool) or not isinstance(name, (str, int)) or name == "":
-        got = "" if name is None else shown(name)
-        cure = f'Write {meaning} = "Fz", or {meaning} = {{ name = "Fz", unit = "N" }}.'
-        raise InputError(where, "must be the name or the number of a column", got, cure)
-    if isinstance(name, int) and not 1 <= name <= MOST:
-        raise InputError(where, "must be the number of a column, counted from 1", shown(name))
-    if sign not in (1, -1) or isinstance(sign, bool):
-        raise InputError(f"{where} sign", "must be 1 or -1", shown(sign))
-    if unit is not None and not (isinstance(unit, str) and _fits_meaning(unit, meaning)):
-        raise InputError(f"{where} unit", f"must be a unit such as {known_units(meaning)}", shown(unit))
-    if isinstance(name, str):
-        return ColumnChoice(name=name, unit=unit, sign=sign)
-    return ColumnChoice(number=name, unit=unit, sign=sign)
-
-
-def _format(given: Mapping[str, object], where: str) -> TextFormat:
-    _known(given, tuple(f.name for f in fields(TextFormat)), where, "key")
-    options = {"separator": SEPARATORS, "decimal": _DECIMALS, "encoding": {name: name for name in ENCODINGS}}
-    found: dict[str, object] = {}
-    for key, value in given.items():
-        if key in options:
-            if not isinstance(value, str) or value not in options[key]:
-                names = [f'"{name}"' for name in options[key] if name.isprintable() and name.strip()]
-                raise InputError(f"{where} {key}", f"must be one of {', '.join(names)}", shown(value))
-            found[key] = options[key][value]
-        elif key in ("header_line", "units_line"):
-            if type(value) is not int or not 1 <= value <= MOST:
-                rule = "must be the number of a line, counted from 1"
-                raise InputError(f"{where} {key}", rule, shown(value))
-            found[key] = value
-        elif not isinstance(value, list) or not all(isinstance(text, str) for text in value):
-            raise InputError(f"{where} {key}", "must be a list of texts", cure=f'Write {key} = ["..."].')
-        elif key == "tables":
-            found[key] = tuple(value)
-        else:
-            found[key] = frozenset(text.casefold() for text in value)
-    if found.get("separator") == found.get("decimal") == ",":
-        raise InputError(where, "cannot have a comma both as separator and as decimal sign")
-    if found.get("units_line") and not found.get("header_line"):
-        raise InputError(f"{where} units_line", "needs a header_line, too")
-    return build(TextFormat, found, where)
-
-
-def _conditions(given: Mapping[str, object], where: str) -> dict[str, str | float]:
-    _known(given, (*TEXTS, *QUANTITIES, RUN_IN_END), where, "condition")
-    return {key: _condition(key, value, f"{where} {key}") for key, value in given.items()}
-
-
-def _condition(key: str, value: object, where: str) -> str | float:
-    if key in TEXTS:
-        if not isinstance(value, str) or not 0 < len(value) <= 200 or not value.isprintable():
-            raise InputError(where, "must be printable text of 1 to 200 characters", shown(value))
-        return value
-    if key == RUN_IN_END:
-        place(value, where)
-        return str(value)
-    if key == "contact_area":  # no study has one, so its units are here
-        text = value if isinstance(value, str) else ""
-        written, _, unit = text.strip().replace("\u00b2", "2").replace("^", "").partition(" ")
-        if unit.strip() not in _AREAS:
-            rule = f"needs a unit of area ({', '.join(_AREAS)})"
-            raise InputError(where, rule, shown(value), 'Write "3 mm2".')
-        number = units.parse(f"{written} m", "m", where) * _AREAS[unit.strip()]
-    else:
-        number = quantity(QUANTITIES[key])(value, where)
-    if number <= 0.0:
-        raise InputError(where, "must be > 0", shown(value))
-    return number
+@cache
+def shipped_maps() -> tuple[ColumnMap, ...]:
+    """Maps of known layouts; one with a longer signature goes before a shorter."""
+    maps = sorted(files_of(__package__).joinpath("maps").iterdir(), key=lambda one: one.name)
+    found = [column_map_of(one.read_text("utf-8"), one.name) for one in maps if one.name.endswith(".toml")]
+    found = [replace(one.by("its layout"), is_shipped=True) for one in found]
+    return tuple(sorted(found, key=lambda one: -len(one.signature)))

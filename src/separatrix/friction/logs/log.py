@@ -12,11 +12,9 @@ from typing import Any
 import numpy as np
 
 from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
-from separatrix.friction.logs.header import PLAIN, Layout
-from separatrix.friction.logs.names import ABSCISSAE, header_parts, plain, scale_in
-from separatrix.friction.logs.names import MEANINGS as MEANINGS
-from separatrix.ground import bounds as _check
+from separatrix.friction.logs.names import ABSCISSAE, KEYS, MEANINGS, header_parts, plain, scale_in
 from separatrix.ground.errors import InputError
+from separatrix.ground.schema import key, positive, record
 from separatrix.ground.units import (
     Array,
     Kelvin,
@@ -31,28 +29,39 @@ from separatrix.ground.units import (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@record
 class Conditions:
     """Under which one test was run; None where that is not known."""
 
-    material: str | None = None  # of the sample
-    counterface: str | None = None  # what the sample slides on
-    medium: str | None = None  # in which it slides
-    sample: str | None = None  # name of the piece; tests of one piece share it
-    test: str | None = None  # name of the test
-    temperature: Kelvin | None = field(default=None, metadata=_check.must(_check.positive, 0.1, 3000.0))
-    """Of the test."""
-    slip_speed: MetrePerSecond | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e3))
-    """Of the test."""
-    pressure: Pascal | None = field(default=None, metadata=_check.must(_check.positive, 1e-3, 1e12))
-    """Mean contact pressure."""
-    normal_force: Newton | None = field(default=None, metadata=_check.must(_check.positive, 1e-9, 1e7))
-    """Of the test."""
-    cycle_time: Second | None = field(default=None, metadata=_check.must(_check.positive, 1e-6, 1e7))
-    """Of one revolution or of one stroke there and back."""
+    material: str | None = key(default=None)
+    """Of the sample."""
 
-    def __post_init__(self) -> None:
-        _check.settle(*(_check.printable_text(self, name) for name in TEXTS), _check.each_field(self))
+    counterface: str | None = key(default=None)
+    """What the sample slides on."""
+
+    medium: str | None = key(default=None)
+    """In which it slides."""
+
+    sample: str | None = key(default=None)
+    """Name of the piece; tests of one piece share it."""
+
+    test: str | None = key(default=None)
+    """Name of the test."""
+
+    temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
+    """Of the test."""
+
+    slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
+    """Of the test."""
+
+    pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
+    """Mean contact pressure."""
+
+    normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
+    """Of the test."""
+
+    cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
+    """Of one revolution or of one stroke there and back."""
 
     @property
     def environment(self) -> str | None:
@@ -70,21 +79,6 @@ class ColumnRead:
     meaning: str | None  # A key of `MEANINGS`; None where the column is not used
     unit: str  # as the file or the column map writes it; empty where there is none
     why: str  # for instance ``"its name"`` or ``"column map"``
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class RawTable:
-    """One table of a file, before its columns have a meaning."""
-
-    name: str  # of the sheet, channel group or section; empty where the file has one table only
-    headers: tuple[str, ...]
-    units: tuple[str, ...]  # as written; empty where the table has none
-    columns: list[Array]
-    """One per header, shape (row,) each, in the units written; NaN where the file has nothing."""
-    metadata: Mapping[str, str] = field(default_factory=dict)
-    lines: Sequence[int] | Array | None = None
-    """Line of the file (from 1) of each row, for messages; None where it has no lines."""
-    layout: Layout = PLAIN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,19 +107,14 @@ class RawLog:
     notes: tuple[str, ...] = ()  # what the reading did that a user should know, a sentence each
 
     def __post_init__(self) -> None:
-        problems = []
         if not self.abscissae:
-            problems.append(InputError(self.source, f"needs one of {', '.join(ABSCISSAE)}"))
+            raise InputError(self.source, f"needs one of {', '.join(ABSCISSAE)}")
         if self.rows < 2:
-            problems.append(
-                InputError(self.source, "needs at least two rows with a friction", str(self.rows))
-            )
-        for name in sorted(MEANINGS.keys() & {f.name for f in fields(self)}):
+            raise InputError(self.source, "needs at least two rows with a friction", str(self.rows))
+        for name in MEANINGS.keys() & {f.name for f in fields(self)}:
             column = getattr(self, name)
             if column is not None and len(column) != self.rows:
-                rule = "must have as many rows as friction"
-                problems.append(InputError(f"RawLog.{name}", rule, str(len(column))))
-        _check.settle(problems)
+                raise InputError(f"RawLog.{name}", "must have as many rows as friction", str(len(column)))
 
     @property
     def rows(self) -> int:
@@ -138,30 +127,6 @@ class RawLog:
         return tuple(name for name in ABSCISSAE if getattr(self, name) is not None)
 
 
-KEYS: dict[str, str] = {
-    "normal_force": "normal load; normal force; load; set force; applied load; normalkraft; last; "
-    "charge normale; force normale",
-    "slip_speed": "lin speed; linear speed; sliding speed; max lin speed; max linear speed; speed; velocity; "
-    "gleitgeschwindigkeit; geschwindigkeit; lin geschw; vitesse; vit lin; vitesse lineaire; "
-    "vitesse de glissement",
-    "rotational_speed": "rotational speed; rotation speed; spindle speed; speed; velocity; drehzahl; "
-    "vitesse de rotation",
-    "track_radius": "radius; track radius; wear track radius; spurradius; radius der spur; rayon; "
-    "rayon de piste; rayon de la piste",
-    "pressure": "mean contact pressure; nominal contact pressure; mittlere flachenpressung; flachenpressung; "
-    "pression moyenne de contact",
-    "pin_diameter": "pin diameter; stiftdurchmesser; diametre du pion",
-    "temperature": "temperature; temp; test temperature; temperatur; versuchstemperatur; temperature d essai",
-    "material": "material; pin material; cage material; pin; werkstoff; stiftwerkstoff; materiau; "
-    "materiau du pion",
-    "counterface": "counterface; counter body; counterbody; disk material; disc material; disk; disc; "
-    "gegenkorper; scheibe; contre piece; antagoniste; disque",
-    "medium": "medium; atmosphere; environment; atmosphare; umgebungsmedium; milieu",
-    "sample": "sample; sample name; sample id; specimen; specimen id; probe; probenname; echantillon",
-    "test": "test; test name; test id; test no; versuch; essai",
-}
-"""Keys of metadata that are conditions, in English, German and French."""
-
 AGREE = 0.01
 """Share by which two values of one condition may differ: set points are written with two or three digits."""
 
@@ -170,11 +135,19 @@ TURNED, OVER_AREA = "rotational speed times radius of the track", "normal force 
 _VALUE = re.compile(
     r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*[\[(]?\s*([^\d\s\[\]()][^\[\]()]*?)?\s*[\])]?"
 )
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}([.,])[0-9]{3}")
+_PAIR = re.compile(r"[\s#%]*([^:=\t;]{1,60}?)\s*(?:[:=\t;]\s*)+(\S.*?)[\s;,]*$")
+_NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)\s*(\d+)\s*$", re.IGNORECASE)
+MOST_PAIRS = 400  # kept of one table
 Found = dict[str, tuple[str | float, str]]  # value of each condition, and where it comes from
 
 
 def conditions_of(
-    given: Mapping[str, str | float], metadata: Mapping[str, str], columns: Mapping[str, Array], source: str
+    given: Mapping[str, str | float],
+    metadata: Mapping[str, str],
+    columns: Mapping[str, Array],
+    source: str,
+    decimal: str,
 ) -> tuple[Conditions, frozenset[str], tuple[str, ...]]:
     """Conditions of a log, which of them are measured, and a sentence on each that the map does not state.
 
@@ -182,19 +155,20 @@ def conditions_of(
     turn, and the pressure the normal force over the area of the pin, where these are known.
     """
     found: Found = {key: (value, MAP) for key, value in given.items()}
-    notes = [note for key, text in metadata.items() if text and (note := _from_metadata(key, text, found))]
-    for key, column in columns.items():  # the median, which a ramp at the start does not move
-        if key in QUANTITIES and np.isfinite(column).any():
-            middle = float(np.nanmedian(column if key == "temperature" else np.abs(column)))
+    pairs = metadata.items()
+    notes = [note for key, text in pairs if text and (note := _from_metadata(key, text, found, decimal))]
+    for name, column in columns.items():  # the median, which a ramp at the start does not move
+        if name in QUANTITIES and np.isfinite(column).any():
+            middle = float(np.nanmedian(column if name == "temperature" else np.abs(column)))
             if middle > 0.0:
-                found.setdefault(key, (middle, MEDIAN))
+                found.setdefault(name, (middle, MEDIAN))
     _derive(found, source)
     known = {key: one for key, one in found.items() if key in Conditions.__dataclass_fields__}
     sentences = []
-    for key, (value, reason) in known.items():
-        text = printable(value, 200) if isinstance(value, str) else format_quantity(value, QUANTITIES[key])
+    for name, (value, reason) in known.items():
+        text = printable(value, 200) if isinstance(value, str) else format_quantity(value, QUANTITIES[name])
         if reason != MAP:
-            sentences.append(f"{key.replace('_', ' ')} {text}: {reason}")
+            sentences.append(f"{name.replace('_', ' ')} {text}: {reason}")
     try:
         conditions = Conditions(**{key: value for key, (value, _) in known.items()})  # type: ignore[arg-type]
     except InputError as error:
@@ -205,16 +179,60 @@ def conditions_of(
     return conditions, frozenset(measured & known.keys()), (*sentences, *notes)
 
 
+def two_ways(text: str, decimal: str) -> list[str]:
+    """The two values of a text whose mark may be a decimal sign or between thousands; else empty."""
+    match = _VALUE.fullmatch(text.strip())
+    group = match and _GROUPED.fullmatch(match[1])
+    if not match or not group or group[1] == decimal:
+        return []
+    unit = f" {match[2].strip()}" if match[2] else ""
+    return [f"{re.sub('[.,]', '', match[1])}{unit}", f"{match[1].replace(',', '.')}{unit}"]
+
+
+def metadata_of(lines: Sequence[str], *, keys_above: bool = False) -> dict[str, str]:
+    """Pairs in the lines: ``key: value``, ``key = value``, or a row of keys over one of values.
+
+    Two lines of two fields are taken as two pairs, unless the layout is known for its row of keys.
+    """
+    pairs: dict[str, str] = {}
+    skip = False
+    for line, below in zip(lines, [*lines, ""][1:], strict=True):
+        if skip:
+            skip = False
+        elif rows := _keys_over_values(line, below, 1 if keys_above else 2):
+            pairs |= rows
+            skip = True
+        elif found := _NUMBERED.match(line) or _PAIR.match(line):
+            pairs[_clean(found[1])] = _clean(found[2])
+    return {key[:100]: value[:200] for key, value in list(pairs.items())[:MOST_PAIRS]}
+
+
+def _keys_over_values(line: str, below: str, least: int) -> dict[str, str]:
+    """Two rows of as many commas, semicolons or tabs, the upper of words alone."""
+    for separator in "\t;,":
+        count = line.count(separator)
+        if line.rstrip(separator).count(separator) >= least and below.count(separator) == count:
+            keys, values = line.split(separator), below.split(separator)
+            if not any(re.match(r"\s*[+-]?\d", key) for key in keys):
+                pairs = [(_clean(key), _clean(value)) for key, value in zip(keys, values, strict=True)]
+                return {key: value for key, value in pairs if key and value}
+    return {}
+
+
+def _clean(text: str) -> str:
+    return "".join(c if c.isprintable() else " " for c in text).strip().strip('"').strip()
+
+
 def of_log(error: InputError, source: str) -> InputError:
     """The first refusal of a record as one of its log: its field in words in place of its class."""
     first = (error.problems or (error,))[0]
     return first.at(f"{source}: {first.path.rpartition('.')[2].replace('_', ' ')}")
 
 
-def _from_metadata(key: str, text: str, found: Found) -> str:
+def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
     """Keep the first condition whose unit the value has; return a note on a value that is not used."""
     name, beside = header_parts(key)[0]
-    conditions = [condition for condition, names in KEYS.items() if plain(name) in names.split("; ")]
+    conditions = [condition for condition, names in KEYS.items() if plain(name) in names]
     if not conditions:
         return ""
     first, reason = conditions[0], f'"{printable(key)}" in the file'
@@ -222,6 +240,10 @@ def _from_metadata(key: str, text: str, found: Found) -> str:
         found.setdefault(first, (text, reason))
         return ""
     match = _VALUE.fullmatch(text.strip())
+    if ways := two_ways(text, decimal):
+        return (
+            f'{printable(key)} {printable(text)} may be {" or ".join(ways)}; put {first} = "..." under [test]'
+        )
     unit = (match[2] or beside).strip() if match else ""
     for condition in conditions:
         scale = scale_in(unit, QUANTITIES[condition])

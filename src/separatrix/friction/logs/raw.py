@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from separatrix.friction.logs import log_tables as tables
+from separatrix.friction.logs import names as naming
 from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.columns import Meant, Understood, understand
-from separatrix.friction.logs.dialect import is_number
-from separatrix.friction.logs.log import KEYS, RawLog, RawTable, conditions_of
-from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, header_parts, looks_extreme, plain
-from separatrix.friction.logs.sliding import Rows, sliding_rows
+from separatrix.friction.logs.log import ColumnRead, RawLog, conditions_of, metadata_of
+from separatrix.friction.logs.sliding import Rows, Signal, sliding_rows
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, format_quantity, printable, shown
 
@@ -21,138 +23,427 @@ HIGHEST = 5.0
 FEW = 0.1  # share of the rows up to which such values are left out; with more the column is refused
 ONE_SIGN = 0.9  # share of the rows in which the normal force must have one sign to be that of compression
 Arrays = dict[str, Array]  # columns by their meaning, shape (row,) each, in SI units
+_SIGNALS = {
+    **dict.fromkeys(("slip_speed", "rotational_speed", "motion"), "speed"),
+    **dict.fromkeys(("tangential_force", "stroke"), "force"),
+    "position": "position",
+}
+TIMES = 'unit = "clock" for 10:00:01.5, "iso" for 2026-02-01 10:00:01, "mm:ss", "hh:mm", "%d.%m.%Y %H:%M:%S"'
 
 
-def raw_log(
-    table: RawTable,
-    source: str,
-    checksum: str,
-    format_name: str,
+# --- numbers and times: nothing is repaired --------------------------------------------------------
+FLOAT = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eEdD][+-]?[0-9]{1,3})?")
+_GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:[.,][0-9]{3})+")
+_PLAIN = frozenset("0123456789+-.eE\n")
+_ZONE = re.compile(r"[T ]\d{1,2}:.*(?:Z|[+-]\d{2}:?\d{2})$")
+_TIME = re.compile(r"(\d{1,4}):(\d{1,2})(?::(\d{1,2}(?:[.,:]\d+)?))?\s*([AaPp])?\.?[Mm]?\.?")
+DAY = 86_400.0
+
+
+class UnfitError(InputError):
+    """A table that its map does not fit: it lacks a column, or states another unit."""
+
+
+def decimal_of(cells: Sequence[Sequence[str]], separator: str, source: str) -> str:
+    """The decimal sign of the numbers; empty where none has one. Marks between thousands are refused."""
+    if separator == "," and not any("," in cell for column in cells for cell in column):
+        return "."
+    found: dict[str, str] = {}
+    certain = False
+    for column in cells:
+        text = "\n".join(column)
+        marks = [mark for mark in ",." if mark in text]
+        is_plain = len(marks) == 1 and not re.search(rf"[{marks[0]}].*[{marks[0]}]", text)
+        for cell in column if marks else ():
+            here = [mark for mark in marks if mark in cell]
+            if (
+                not here
+                or tables.is_clock(cell)
+                or cell.casefold() in naming.MISSING
+                or not cell[-1:].isdigit()
+            ):
+                continue
+            found |= dict.fromkeys(here, cell)
+            certain = certain or not _GROUPED.fullmatch(cell)
+            if len(found) > 1 or sum(map(cell.count, marks)) > 1:
+                cure = "Export it without marks between thousands, or write below [format]: decimal = ..."
+                got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
+                raise UnfitError(source, "has points and commas in its numbers", got, cure)
+            if certain and is_plain:  # the others are alike
+                break
+    if found and not certain:
+        mark, one = next(iter(found.items()))
+        rule = "does not show whether its marks are decimal signs or between thousands"
+        cure = f'Add to the column map, below [format]: decimal = "{mark}".'
+        raise UnfitError(source, rule, f'"{printable(one)}"', cure)
+    return next(iter(found), "")
+
+
+def numbers(cells: Sequence[str], decimal: str, missing: frozenset[str]) -> tuple[Array, list[int]]:
+    """Numbers of a column, NaN for what is missing, and the rows of what is neither."""
+    text = "\n".join(cells)
+    if decimal == "," and "." not in text:
+        text = text.replace(",", ".")
+    if text and set(text) <= _PLAIN:
+        try:
+            return np.array(text.split("\n"), dtype=float), []
+        except ValueError:  # an empty cell, or `1-2`
+            pass
+    found, wrong = np.full(len(cells), np.nan), []
+    for i, cell in enumerate(cells):
+        one = cell.rstrip(tables.PERCENT)
+        plain_number = one.replace(",", ".") if decimal == "," and "." not in one else one
+        if FLOAT.fullmatch(plain_number):
+            found[i] = float(plain_number.replace("d", "e").replace("D", "e"))
+        elif one.casefold() not in missing:
+            wrong.append(i)
+    return np.where(np.isfinite(found), found, np.nan), wrong
+
+
+def seconds(
+    cells: Sequence[str], form: str, missing: frozenset[str] = naming.MISSING
+) -> tuple[Array, list[int]]:
+    """Seconds since the first time, NaN for what is missing, and the rows of what is not a time.
+
+    A clock that falls back by more than half a day has passed midnight. Zones of dates count; where
+    only some dates have one, the others are wrong.
+    """
+    texts = ["" if cell.casefold() in missing else cell for cell in cells]
+    there = np.array([bool(text) for text in texts])
+    found = np.full(len(texts), np.nan)
+    if form == "iso" or "%" in form:
+        import pandas as pd
+
+        zones = np.array([bool(_ZONE.search(text)) for text in texts])
+        if zones.any() and not zones[there].all():
+            return found, np.flatnonzero(there & ~zones).tolist()
+        dates = pd.Series([text.replace(",", ".") for text in texts], dtype="str")
+        moments = pd.to_datetime(
+            dates, format="ISO8601" if form == "iso" else form, errors="coerce", utc=True
+        )
+        fits = moments.notna().to_numpy()
+        if fits.any():
+            found[fits] = (moments[fits] - moments[fits].iloc[0]).dt.total_seconds()
+    else:
+        for i in np.flatnonzero(there):
+            found[i] = _time(texts[i], form)
+        fit = np.flatnonzero(np.isfinite(found))
+        found[fit[1:]] += DAY * np.cumsum(np.diff(found[fit]) < -DAY / 2.0)
+        found -= found[fit[0]] if fit.size else 0.0
+    return np.round(found, 9), np.flatnonzero(there & ~np.isfinite(found)).tolist()
+
+
+def _time(text: str, form: str) -> float:
+    """Seconds of a time of day; NaN where it is not one of that form."""
+    match = _TIME.fullmatch(text)
+    if match is None or (match[3] is None and form == "clock"):
+        return float("nan")
+    first, second = float(match[1]), float(match[2])
+    if match[3] is None and form == "mm:ss":
+        return 60.0 * first + second
+    if match[4]:
+        first = first % 12.0 + (12.0 if match[4] in "pP" else 0.0)
+    return 3600.0 * first + 60.0 * second + float(re.sub("[,:]", ".", match[3] or "0"))
+
+
+# --- columns --------------------------------------------------------------------------------------
+@dataclass(frozen=True, slots=True)
+class Read:
+    """Columns of a table in SI units, where they are, their units, and the decimal sign of the numbers."""
+
+    arrays: Arrays
+    places: Mapping[str, int]
+    units: Mapping[str, str]
+    decimal: str
+
+
+def places_of(block: tables.Block, columns: ColumnMap, notes: list[str]) -> dict[str, list[int]]:
+    """Columns of each meaning; several where a name stands twice."""
+    found: dict[str, list[int]] = {}
+    used: dict[int, str] = {}
+    for meaning, one in columns.columns.items():
+        words = meaning.replace("_", " ")
+        if one.number is not None and one.number > len(block.heads):
+            raise UnfitError(block.source, f"has {len(block.heads)} columns, not {one.number}, for {words}")
+        places = tables.matching(one.names, block.heads) if one.number is None else [one.number - 1]
+        if places:
+            found[meaning] = places
+        elif one.optional:
+            notes.append(f'no column "{printable(one.names[0])}": without it the {words} is not known')
+        else:
+            listed = ", ".join(f'"{printable(head)}"' for head in block.heads[:12] if head)
+            rule = f'has no column "{printable(one.names[0])}", which the column map names as {meaning}'
+            raise UnfitError(block.source, rule, cure=f"It has {listed}.")
+        for i in places:
+            if used.setdefault(i, meaning) != meaning:
+                rule = f'column "{printable(block.heads[i].strip())}" is both {used[i]} and {meaning}'
+                raise InputError(block.source, f"{rule} in the column map")
+    return found
+
+
+def stated_units(head: str, below: str, meaning: str, spellings: Mapping[str, str]) -> list[str]:
+    """Units that the file writes for a column, in its head and in the line below; also unknown ones.
+
+    Words after a name without brackets that are not a unit of the meaning are a part of the name.
+    """
+    ways = naming.header_parts(head)
+    beside = [spellings.get(unit, unit) for _, unit in ways if unit]
+    if len(ways) > 1 or not re.search(r"[\[(<{]", head):
+        beside = [unit for unit in beside if naming.scale_of(unit, meaning) is not None][:1]
+    under = tables.bare_unit(below)
+    return [unit for unit in (spellings.get(under, under), *beside) if unit]
+
+
+def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> tuple[naming.Scale, str]:
+    """Scale and unit of a column; refused where the file states none, an unknown or another one."""
+    column, head = columns.columns[meaning], block.heads[i].strip()
+    stated = stated_units(head, block.below[i], meaning, columns.format.spellings)
+    if meaning in naming.SHAPES:
+        return naming.Scale(), (stated or [""])[0]
+    where = f'{block.source}: column "{printable(head)}"'
+
+    def cure(unit: str) -> str:
+        return (
+            f"Below [columns] of a column map: {meaning} = {{ name = {shown(head)}, unit = {shown(unit)} }}."
+        )
+
+    known = {unit: naming.scale_of(unit, meaning) for unit in stated}
+    if column.unit is not None:
+        for unit, scale in known.items():
+            if columns.is_shipped if scale is None else not _alike(unit, column.unit, meaning):
+                rule, got = f'is in "{column.unit}" by its map', f'"{printable(unit)}" in the file'
+                raise UnfitError(where, rule, got, cure(unit))
+        return naming.scale_of(column.unit, meaning) or naming.Scale(), column.unit
+    if meaning == "friction" and naming.looks_like_force(head):
+        rule = "is a force by its name, not a friction"
+        raise InputError(where, rule, cure="Name it as tangential_force, with its unit.")
+    if None in known.values() or len({*known.values()}) > 1:
+        rule = (
+            f"has a unit that is not one of the {meaning.replace('_', ' ')} ({naming.known_units(meaning)})"
+        )
+        raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure("..."))
+    if not stated and meaning not in ("friction", "cycles"):
+        raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure("..."))
+    return (known[stated[0]] or naming.Scale(), stated[0]) if stated else (naming.Scale(), "")
+
+
+def _alike(unit: str, other: str, meaning: str) -> bool:
+    """Whether two units have one size and are of one quantity; for times as text the map decides."""
+    if meaning == "time" and naming.time_form(other):
+        return True
+    same = (naming.torque_scale(unit) is None) == (naming.torque_scale(other) is None)
+    return naming.scale_of(unit, meaning) == naming.scale_of(other, meaning) and same
+
+
+def in_si(
+    block: tables.Block,
     columns: ColumnMap,
-    given: Mapping[str, str | float],
+    radius: float | None,
+    notes: list[str],
+    decimal: str | None = None,
+) -> Read:
+    """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
+    places = places_of(block, columns, notes)
+    scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
+    every = [] if block.columns is not None else sorted(scales)
+    cells = dict(zip(every, tables.cells_of(block, every), strict=True))
+    notes += _cut_off(block, cells.get(len(block.heads) - 1, []))
+    timed = {i: form for i in places.get("time", ()) if (form := naming.time_form(scales[i][1]))}
+    if decimal is None:
+        decimal = columns.format.decimal if block.word == "line" else "."
+        numeric = [cells[i] for i in every if i not in timed]
+        decimal = decimal or decimal_of(numeric, block.separator, block.source)
+    absent = [float(one) for one in columns.format.missing if FLOAT.fullmatch(one)]
+    arrays: Arrays = {}
+    for meaning, some in places.items():
+        made = []
+        for i in some:
+            if block.columns is not None:
+                values = block.columns[i]
+            else:
+                values = _values(block, cells[i], i, columns.format.missing, decimal, timed.get(i, ""))
+                values = values if i in timed else _percentages(block, cells[i], i, values, scales[i][1])
+            values = np.where(np.isin(values, absent), np.nan, values) if absent else values
+            made.append(_scaled(block, values, i, meaning, scales[i], columns, radius, notes))
+        both = np.isfinite(made).all(axis=0)
+        if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
+            listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
+            which = " or ".join(str(i + 1) for i in some)
+            cure = f"State which below [columns] in a column map: {meaning} = {which}."
+            rule = f"has {len(some)} columns that could be the {meaning.replace('_', ' ')}"
+            raise UnfitError(block.source, rule, f"columns {listed}", cure)
+        arrays[meaning] = made[0]
+    first = {meaning: some[0] for meaning, some in places.items()}
+    return Read(arrays, first, {meaning: scales[i][1] for meaning, i in first.items()}, decimal)
+
+
+def _cut_off(block: tables.Block, cells: Sequence[str]) -> Iterator[str]:
+    """A note where the last value of the last column looks cut off."""
+    digits = [len(re.split("[.,]", cell)[-1]) for cell in cells]
+    if len(digits) > 2 and digits[-1] < min(digits[:-1]):
+        head = printable(block.heads[-1].strip())
+        yield f'the last value of column "{head}" has fewer digits than all others: it may be cut off'
+
+
+def _values(
+    block: tables.Block, cells: Sequence[str], i: int, marks: Sequence[str], decimal: str, form: str
+) -> Array:
+    """Numbers or seconds of a column; refused with the row of what is neither."""
+    own = {one.casefold() for one in marks}
+    missing = naming.MISSING | own | {f"{tables.ERROR}{one}" for one in own}
+    values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
+    if not wrong:
+        return values
+    cell, where = cells[wrong[0]], block.at(wrong[0], i)
+    if cell == tables.UNCOMPUTED:
+        cure = "Open the workbook in a spreadsheet program and save it."
+        raise InputError(where, "holds a formula without a saved value", cure=cure)
+    bare = cell.lstrip(tables.ERROR).rstrip(tables.PERCENT)
+    cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
+    if cell.startswith(tables.ERROR):
+        raise InputError(where, "holds an error", bare, cure)
+    got = f'"{printable(bare)}"'
+    if form:
+        raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")
+    if tables.is_clock(bare) or re.match(r"\d{1,4}([-/.])\d{1,2}\1\d", bare):
+        cure = f"For a column of times, add to the column map: {TIMES}."
+    raise InputError(where, "must be a number", got, cure)
+
+
+def _percentages(block: tables.Block, cells: Sequence[str], i: int, values: Array, unit: str) -> Array:
+    """Numbers of a sheet: what is shown as a percentage is saved as a fraction."""
+    if block.word == "line":
+        return values
+    shown_so = np.array([tables.PERCENT in cell for cell in cells])
+    mixed = np.flatnonzero(np.isfinite(values) & ~shown_so)
+    if not (shown_so & np.isfinite(values)).any():
+        return values
+    if mixed.size:
+        rule, got = "is a plain number among percentages", f"{values[mixed[0]]:g}"
+        raise InputError(block.at(int(mixed[0]), i), rule, got, "Format all cells of the column alike.")
+    return values * 100.0 if unit == "%" else values
+
+
+def _scaled(
+    block: tables.Block,
+    values: Array,
+    i: int,
+    meaning: str,
+    scale: tuple[naming.Scale, str],
+    columns: ColumnMap,
+    radius: float | None,
+    notes: list[str],
+) -> Array:
+    """A column in SI units; a torque divided by the radius of the track."""
+    head, (size, unit) = block.heads[i].strip(), scale
+    where = f'{block.source}: column "{printable(head)}"'
+    if meaning == "tangential_force" and naming.torque_scale(unit) is not None:
+        if radius is None:
+            line = f'tangential_force = {{ name = {shown(head)}, unit = "{unit}" }}'
+            cure = f'In a column map: {line} below [columns], and track_radius = "... mm" below [test].'
+            raise UnfitError(where, "is a torque, not a force", cure=cure)
+        notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
+        size = naming.Scale(factor=size.factor / radius)
+    found = size.of(values) * (-1.0 if columns.columns[meaning].sign < 0 and meaning != "time" else 1.0)
+    if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
+        got = f"{float(values[below[0]]):g}"
+        line = f'temperature = {{ name = {shown(head)}, unit = "..." }}'
+        cure = f"State its true unit below [columns] in a column map: {line}"
+        cure += f'; if this is a code for a missing value, write missing = ["{got}"] below [format].'
+        raise InputError(where, "has temperatures below absolute zero", f"{got} {unit}", cure)
+    return found if np.isfinite(found).all() else np.where(np.isfinite(found), found, np.nan)
+
+
+# --- the log --------------------------------------------------------------------------------------
+def raw_log(
+    block: tables.Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, Any]
 ) -> RawLog:
     """Log of one table, with the conditions that the column map states for its file."""
-    constant = given.get("normal_force")
-    force = constant if isinstance(constant, float) else None
-    of_track = given.get("track_radius")
-    radius = of_track if isinstance(of_track, float) else None
-    understood = understand(
-        *(table.headers, table.units, source, columns, table.layout),
-        constant_force=force is not None,
-        track_radius=radius,
-    )
-    _check_twins(table, understood, source)
-    notes: list[str] = []
-    mean = understood.used.get("friction")
-    if mean is not None and looks_extreme(header := table.headers[mean.index].strip()):
-        notes.append(f'the column of friction, "{printable(header)}", is not a mean friction by its name')
-    arrays = _in_si(table, understood, columns, source, notes)
-    _mend_sign(arrays, understood, source, notes, is_given=force is not None)
-    signed = _friction(arrays, force, notes)
-    arrays["friction"] = _magnitude(signed, source, notes)
-    kept = _complete(arrays, table, source)
-    missing = int(len(kept) - kept.sum())
-    if missing:
-        notes.append(f"{missing} of {len(kept)} rows are left out: friction or its abscissa is missing")
-    kept, left_out = sliding_rows(table, signed, arrays.get("time"), kept)
-    notes += [left_out] if left_out else []
-    if not kept.all():
-        arrays = {meaning: column[kept] for meaning, column in arrays.items()}
-    rotation = arrays.pop("rotational_speed", None)
-    turns = {} if rotation is None else {"rotational_speed": np.abs(rotation)}
+    force, radius = given.get("normal_force"), given.get("track_radius")
+    notes = list(block.notes)
+    read = in_si(block, columns, radius, notes)
+    head = block.heads[read.places["friction"]].strip() if "friction" in read.places else ""
+    if naming.looks_extreme(head):
+        notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
+    arrays, missing = _steady(block, read, columns, force, source, notes)
+    turning = arrays.pop("rotational_speed", None)
+    turns = {} if turning is None else {"rotational_speed": np.abs(turning)}
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
-    metadata = _without_stroke_speed(table, arrays, notes)
-    conditions, measured, sentences = conditions_of(given, metadata, arrays | turns, source)
+    metadata = metadata_of(block.above, keys_above=columns.format.keys_above)
+    useful = _without_stroke_speed(metadata, block, read, arrays, notes)
+    decimal = read.decimal if block.word == "line" or block.columns is not None else ""
+    conditions, measured, sentences = conditions_of(given, useful, arrays | turns, source, decimal)
     if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
-        turning = turns["rotational_speed"]  # the radius of the track is in the head of the file
-        arrays["slip_speed"] = turning * (conditions.slip_speed / float(np.nanmedian(turning)))
+        speed = turns["rotational_speed"]  # the radius of the track is in the head of the file
+        arrays["slip_speed"] = speed * (conditions.slip_speed / float(np.nanmedian(speed)))
+    form = f", {tables.described_form(block.separator, read.decimal)}" if block.word == "line" else ""
     return RawLog(
         source=source,
         checksum=checksum,
-        format=format_name,
+        format=f"{columns.name} ({words}{form})",
         missing=missing,
-        columns=understood.columns,
-        metadata=dict(table.metadata),
+        columns=_columns_read(block, columns, read),
+        metadata=metadata,
         conditions=conditions,
         measured=measured,
         notes=(*notes, *sentences),
-        friction=arrays["friction"],
-        time=arrays.get("time"),
-        distance=arrays.get("distance"),
-        cycles=arrays.get("cycles"),
-        normal_force=arrays.get("normal_force"),
-        tangential_force=arrays.get("tangential_force"),
-        temperature=arrays.get("temperature"),
-        wear_depth=arrays.get("wear_depth"),
-        slip_speed=arrays.get("slip_speed"),
+        **arrays,  # type: ignore[arg-type]
     )
 
 
-def _check_twins(table: RawTable, understood: Understood, source: str) -> None:
-    """Refuse columns of one name with different numbers, where one of them is needed."""
-    for meaning, others in understood.twins.items():
-        if meaning not in understood.used:
-            continue
-        places = [understood.used[meaning].index, *others]
-        columns = [table.columns[i] for i in places]
-        both = np.isfinite(columns).all(axis=0)
-        if any(not np.array_equal(columns[0][both], one[both]) for one in columns[1:]):
-            header = table.headers[places[0]].strip()
-            rule = f"has {len(places)} columns that could be the {meaning.replace('_', ' ')}"
-            listed = ", ".join(f'"{printable(header)}"' for _ in places)
-            numbers = " or ".join(str(i + 1) for i in places)
-            cure = f"State which below [columns] in a column map: {meaning} = {numbers}."
-            raise InputError(source, rule, f"columns {listed}", cure)
+def _steady(
+    block: tables.Block, read: Read, columns: ColumnMap, force: float | None, source: str, notes: list[str]
+) -> tuple[Arrays, int]:
+    """Columns in the complete rows of steady sliding, friction as magnitude; and how many are incomplete."""
+    arrays = dict(read.arrays)
+    _drop_empty(arrays, source, notes)
+    _mend_sign(arrays, columns, source, notes, is_given=force is not None)
+    signed = _friction(arrays, force, source, notes)
+    arrays["friction"] = _magnitude(signed, source, notes)
+    complete = _complete(arrays, block, source)
+    missing = int((~complete).sum())
+    if missing:
+        notes.append(f"{missing} of {complete.size} rows are left out: friction or its abscissa is missing")
+    there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
+    signals = [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
+    kept, left_out = sliding_rows(signals, signed, arrays.get("time"), complete)
+    notes += [left_out] if left_out else []
+    return {name: column[kept] for name, column in arrays.items() if name not in naming.SHAPES}, missing
 
 
-def _in_si(
-    table: RawTable, understood: Understood, columns: ColumnMap, source: str, notes: list[str]
-) -> Arrays:
-    """Columns in SI units; NaN for what is not finite or a number that means a missing value."""
-    absent = [float(word) for word in columns.format.missing if is_number(word) and "," not in word]
-    arrays = {}
-    for meaning, one in understood.used.items():
-        column = table.columns[one.index]
-        if absent:
-            column = np.where(np.isin(column, absent), np.nan, column)
-        if one.scale is not None:
-            column = one.scale.of(column)
-        if one.sign < 0:
-            column = -column
-        if meaning == "temperature":
-            _check_absolute_zero(column, table, one, source)
-        arrays[meaning] = (
-            column if np.isfinite(column).all() else np.where(np.isfinite(column), column, np.nan)
+def _columns_read(block: tables.Block, columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
+    """How each column of the file was understood."""
+    meanings = {i: meaning for meaning, i in read.places.items()}
+    found = []
+    for i, head in enumerate(block.heads):
+        meaning = meanings.get(i)
+        why = columns.columns[meaning].origin if meaning else "not needed"
+        is_shape = meaning in naming.SHAPES
+        found.append(
+            ColumnRead(
+                header=head.strip(),
+                meaning=None if is_shape else meaning,
+                unit=read.units[meaning] if meaning else block.below[i],
+                why=f"{meaning}, {why}" if is_shape else why,
+            )
         )
-    there = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    return tuple(found)
+
+
+def _drop_empty(arrays: Arrays, source: str, notes: list[str]) -> None:
+    """Leave out abscissae without any value; one must be left."""
+    there = [meaning for meaning in naming.ABSCISSAE if meaning in arrays]
     empty = [meaning for meaning in there if np.isnan(arrays[meaning]).all()]
     if empty == there:
         raise InputError(source, f"has no value of {' or '.join(empty)} in any row")
     for meaning in empty:
         del arrays[meaning]
         notes.append(f"the column of {meaning} is empty and not used")
-    return arrays
 
 
-def _check_absolute_zero(column: Array, table: RawTable, one: Meant, source: str) -> None:
-    """Refuse temperatures below absolute zero: the unit is another, or they mean a missing value."""
-    below = np.flatnonzero(column < -1e-9)
-    if below.size:
-        name = shown(table.headers[one.index].strip())
-        line = f'temperature = {{ name = {name}, unit = "..." }}'
-        got = f"{float(table.columns[one.index][below[0]]):g} {one.unit}"
-        cure = (
-            f"State its true unit below [columns] in a column map: {line}; if this is a code for a missing "
-            f'value, write missing = ["{got.split()[0]}"] below [format].'
-        )
-        raise InputError(f"{source}: column {name}", "has temperatures below absolute zero", got, cure)
-
-
-def _mend_sign(
-    arrays: Arrays, understood: Understood, source: str, notes: list[str], *, is_given: bool
-) -> None:
+def _mend_sign(arrays: Arrays, columns: ColumnMap, source: str, notes: list[str], *, is_given: bool) -> None:
     """Make compression positive: the sign of nearly all rows, or that of the column map.
 
     A column without any force gives way to the constant force of the column map, if there is one.
@@ -166,7 +457,7 @@ def _mend_sign(
         del arrays["normal_force"]
         notes.append("the column of normal force has no load in any row and is not used")
         return
-    if column is None or understood.used["normal_force"].sign < 0:
+    if column is None or columns.columns["normal_force"].sign < 0:
         return
     negative, positive = int((column < 0.0).sum()), int((column > 0.0).sum())
     if negative > ONE_SIGN * (negative + positive):
@@ -175,20 +466,21 @@ def _mend_sign(
     elif "friction" not in arrays and positive <= ONE_SIGN * (negative + positive):
         rule = "has a normal force of both signs, so that the sign of compression is not certain"
         got = f"{positive} rows above zero, {negative} below"
-        cure = "Below [columns] in a column map, add to normal_force: sign = 1 (or -1)."
-        if understood.used["normal_force"].why != "column map":
-            raise InputError(source, rule, got, cure)
+        cure = "Below [columns] in a column map, add to normal_force: sign = -1 if compression is negative."
+        raise InputError(source, rule, got, cure)
 
 
-def _friction(arrays: Arrays, force: float | None, notes: list[str]) -> Array:
+def _friction(arrays: Arrays, force: float | None, source: str, notes: list[str]) -> Array:
     """Friction with its sign as logged, or tangential over normal force."""
     if "friction" in arrays:
         return arrays["friction"]
     tangential = np.abs(arrays["tangential_force"])
     if "normal_force" not in arrays:
-        normal = np.nan if force is None else force
-        notes.append(f"friction is |tangential force| / {format_quantity(normal, 'N')}, the constant given")
-        return np.asarray(tangential / normal)
+        if force is None:
+            cure = 'In a map, below [columns]: normal_force = "..."; below [test]: normal_force = "... N".'
+            raise UnfitError(source, "has a tangential force but no normal force", cure=cure)
+        notes.append(f"friction is |tangential force| / {format_quantity(force, 'N')}, the constant given")
+        return np.asarray(tangential / force)
     notes.append("friction is |tangential force| / normal force, row by row")
     normal_force = arrays["normal_force"]
     released = int((normal_force <= 0.0).sum())
@@ -222,9 +514,9 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
     return size
 
 
-def _complete(arrays: Arrays, table: RawTable, source: str) -> Rows:
+def _complete(arrays: Arrays, block: tables.Block, source: str) -> Rows:
     """Rows that have friction and every abscissa, none of which may run backwards."""
-    abscissae = [meaning for meaning in ABSCISSAE if meaning in arrays]
+    abscissae = [meaning for meaning in naming.ABSCISSAE if meaning in arrays]
     kept: Rows = np.all([np.isfinite(arrays[name]) for name in ("friction", *abscissae)], axis=0)
     if kept.sum() < 2:
         got = f"{int(kept.sum())} of {len(kept)} rows"
@@ -233,26 +525,34 @@ def _complete(arrays: Arrays, table: RawTable, source: str) -> Rows:
     for meaning in abscissae:
         column = arrays[meaning][kept]
         back = np.flatnonzero(np.diff(column) < 0.0)
-        if len(back):
+        if back.size:
             i = int(back[0]) + 1
-            row = f"table row {rows[i] + 1}" if table.lines is None else f"line {table.lines[rows[i]]}"
-            here, before = (format_quantity(float(column[j]), MEANINGS[meaning], 8) for j in (i, i - 1))
-            cure = "Split the file there; or, if this column has another meaning, state it in a column map."
-            rule = f"{meaning} must not run backwards"
-            raise InputError(f"{source}: {row}", rule, f"{here} after {before}", cure)
+            here, before = (
+                format_quantity(float(column[j]), naming.MEANINGS[meaning], 8) for j in (i, i - 1)
+            )
+            cure = (
+                "Split the file there; if a column numbers its tests, write below [format] of a column map:"
+            )
+            cure += ' tests = ["..."]; if this column has another meaning, state it there.'
+            raise InputError(
+                block.at(int(rows[i])), f"{meaning} must not run backwards", f"{here} after {before}", cure
+            )
     return kept
 
 
-def _without_stroke_speed(table: RawTable, arrays: Arrays, notes: list[str]) -> dict[str, str]:
+def _without_stroke_speed(
+    metadata: Mapping[str, str], block: tables.Block, read: Read, arrays: Arrays, notes: list[str]
+) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
-    strokes = any(plain(header).startswith(("linear position", "lin position")) for header in table.headers)
-    names = KEYS["slip_speed"].split("; ")
-    speeds = [key for key in table.metadata if plain(header_parts(key)[0][0]) in names]
-    if not strokes or not (speeds or "slip_speed" in arrays):
-        return dict(table.metadata)
+    head = naming.plain(block.heads[read.places["position"]]) if "position" in read.places else ""
+    speeds = [
+        key for key in metadata if naming.plain(naming.header_parts(key)[0][0]) in naming.KEYS["slip_speed"]
+    ]
+    if not head.startswith(("linear position", "lin position")) or not (speeds or "slip_speed" in arrays):
+        return dict(metadata)
     arrays.pop("slip_speed", None)
     notes.append(
         "these are strokes there and back: the file has their greatest speed, which is not used; write "
         "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
     )
-    return {key: value for key, value in table.metadata.items() if key not in speeds}
+    return {key: value for key, value in metadata.items() if key not in speeds}

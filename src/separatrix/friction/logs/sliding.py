@@ -8,25 +8,15 @@ and does not fluctuate where nothing slides.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from separatrix.friction.logs.log import RawTable
-from separatrix.friction.logs.names import header_parts, plain, ranks
-from separatrix.ground.units import Array, format_number, printable
+from separatrix.ground.units import Array, format_number
 
 Rows = NDArray[np.bool_]
-SPEEDS = ("slip_speed", "rotational_speed")  # meanings of a column of speed; its unit does not matter here
-POSITIONS = frozenset(
-    {"position", "linear position", "lin position", "rotary position", "angular position", "x position"}
-    | {"y position", "lateral position", "slide position", "stroke position", "stroke", "angle"}
-    | {"pos", "x pos", "y pos", "lin pos", "linear pos", "travel", "carriage position"}
-    | {"rotation angle", "winkel", "drehwinkel", "hubposition", "position lineaire", "angle de rotation"}
-)
-"""Names of a column of position along the track."""
-
 STILL = 0.1  # share of the usual speed below which nothing slides
 SLOW = 0.5  # share of the usual speed below which a stroke reverses
 TURNING = 0.8  # share of the usual friction below which it still turns, from where its sign changes
@@ -41,31 +31,25 @@ WINDOW = 7  # rows of the running median of such steps
 FEWEST = 0.2  # share of the rows that must slide, or the column does not show it
 
 
-def _kind(header: str, unit: str) -> str:
-    """What a column shows of the motion by its name: speed, position or force; empty for nothing."""
-    name = header.strip().rpartition(".")[2] or header  # without what loggers put before it: Rotary.Position
-    names = {plain(part) for part, _ in header_parts(name)}
-    meanings = {meaning for part in names for meaning in ranks(part)}
-    if unit.casefold() in ("v", "a"):
-        return ""
-    if names & POSITIONS:
-        return "position"
-    return "speed" if meanings & {*SPEEDS} else "force" if "tangential_force" in meanings else ""
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A column that may show which rows slide, in any unit."""
+
+    kind: str  # speed, position or force
+    name: str
+    values: Array  # shape (row,)
 
 
-def motion_columns(headers: Sequence[str], units: Sequence[str]) -> list[int]:
-    """Numbers of the columns that may show which rows slide: speeds, positions, forces with a sign."""
-    return [i for i, one in enumerate(zip(headers, units, strict=True)) if _kind(*one)]
-
-
-def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> tuple[Rows, str]:
+def sliding_rows(
+    signals: Sequence[Signal], friction: Array, time: Array | None, kept: Rows
+) -> tuple[Rows, str]:
     """Rows of steady sliding of those kept, and a sentence on the others; empty where all rows slide.
 
     Friction has its sign if the log has one, shape (row,); time is in s, shape (row,).
     """
-    rows, words = next(_signals(table, friction, time, kept), (None, ""))
+    rows, words = next(_shown(signals, friction, time, kept), (None, ""))
     if rows is None:
-        return kept, _coarse(table, kept)
+        return kept, _coarse(signals, kept)
     out = int(kept.sum() - (kept & rows).sum())
     if not out:
         return kept, ""
@@ -73,33 +57,33 @@ def sliding_rows(table: RawTable, friction: Array, time: Array | None, kept: Row
     return kept & rows, f"{share} are left out: standstill, reversals or ramps by {words}"
 
 
-def _signals(table: RawTable, friction: Array, time: Array | None, kept: Rows) -> Iterator[tuple[Rows, str]]:
+def _shown(
+    signals: Sequence[Signal], friction: Array, time: Array | None, kept: Rows
+) -> Iterator[tuple[Rows, str]]:
     """Yield which rows slide, and by what; the most reliable first."""
-    kinds = [_kind(*one) for one in zip(table.headers, table.units, strict=True)]
     for wanted in ("speed", "position"):
-        for kind, column, header in zip(kinds, table.columns, table.headers, strict=True):
-            if kind != wanted or not np.isfinite(column[kept]).all() or not kept.any():
+        for one in signals:
+            if one.kind != wanted or not np.isfinite(one.values[kept]).all() or not kept.any():
                 continue
-            speed = column if wanted == "speed" else _slope(column, time, kept)
+            speed = one.values if wanted == "speed" else _slope(one.values, time, kept)
             if speed is not None and (rows := _by_speed(speed, kept)) is not None:
-                yield rows, f'the {wanted} in column "{printable(header.strip())}"'
-    signed = [column for kind, column in zip(kinds, table.columns, strict=True) if kind == "force"]
-    for column in (friction, *signed):
+                yield rows, f'the {wanted} in column "{one.name}"'
+    for column in (friction, *(one.values for one in signals if one.kind == "force")):
         if (rows := _by_force(column, np.abs(friction), kept)) is not None:
             yield rows, "the sign and the fluctuation of the friction"
 
 
-def _coarse(table: RawTable, kept: Rows) -> str:
+def _coarse(signals: Sequence[Signal], kept: Rows) -> str:
     """Sentence on a position that reverses too often for its rows; empty where there is none."""
-    for header, unit, column in zip(table.headers, table.units, table.columns, strict=True):
-        if _kind(header, unit) != "position":
+    for one in signals:
+        if one.kind != "position":
             continue
-        steps = np.diff(column[kept])
+        steps = np.diff(one.values[kept])
         turns = int((np.diff(np.sign(steps[steps != 0.0])) != 0.0).sum())
         if turns * STROKE > steps.size:
             rows = format_number(steps.size / turns, 2)
             return (
-                f'the position in column "{printable(header.strip())}" reverses once in {rows} rows, fewer '
+                f'the position in column "{one.name}" reverses once in {rows} rows, fewer '
                 f"than {STROKE}: reversals cannot be found, and none are left out"
             )
     return ""

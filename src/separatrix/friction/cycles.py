@@ -14,7 +14,7 @@ from scipy.signal import welch
 from scipy.special import gammaincc
 
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.reduction.steady import ROUNDING
+from separatrix.friction.steady import ROUNDING
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Ratio, format_number
 

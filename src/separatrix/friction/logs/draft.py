@@ -1,0 +1,480 @@
+"""A draft of a column map: what a log shows, with a question at all that it does not state for certain."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import takewhile
+from typing import Any
+
+from separatrix.friction.logs import log_tables as tables
+from separatrix.friction.logs import names as naming
+from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, given_in
+from separatrix.friction.logs.log import metadata_of, two_ways
+from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import printable
+
+CHECK = "# guess, check"
+UNKNOWN = "..."  # is refused until it is edited
+USUAL = {"time": "s", "distance": "m", "temperature": "degC", "wear_depth": "um"} | dict.fromkeys(
+    ("friction", "cycles"), "-"
+)
+"""Units that a draft offers where the file states none, to be checked; of others N."""
+
+MOST_BREAKS = 20  # kinds of lines among the rows
+MOST_ROWS = 20_000  # of which a column is looked at in all
+SAMPLE = 50  # rows of a column that are looked at
+_CLOCK = re.compile(r"\d{1,4}:\d{1,2}:\d{1,2}(?:[.,:]\d+)?\s*(?:[AaPp]\.?[Mm]\.?)?")
+_ISO = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(Z|[+-]\d{2}:?\d{2})?")
+_DATE = re.compile(
+    r"(\d{1,2})([./-])(\d{1,2}|[A-Za-z]{3})\2(\d{4}|\d{2})(\D{1,2})(\d{1,2}):\d{2}(:\d{2})?([.,]\d+)?"
+    r"( ?[AaPp][Mm])?"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """A column that may have a meaning: how usual its name is, its unit, and whether that is certain."""
+
+    rank: int
+    index: int
+    unit: str = ""  # as the file states it; empty for none
+    known: bool = False
+    question: str = ""
+
+
+Options = dict[str, list[Option]]  # by meaning
+
+
+@dataclass(slots=True)
+class Draft:
+    """Lines of a column map, what has to be looked at, and what is not used."""
+
+    given: ColumnMap
+    stated: Mapping[str, Any]  # conditions of the file
+    form: list[str] = field(default_factory=list)
+    columns: dict[str, str] = field(default_factory=dict)  # by meaning
+    test: list[str] = field(default_factory=list)
+    cells: list[list[str]] = field(default_factory=list)  # of each column
+    seen: list[str] = field(default_factory=list)
+    questions: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def ask(self, line: str, question: str) -> str:
+        """Return a line with its question, which is noted."""
+        self.questions.append(question)
+        return f"{line}  {CHECK}: {printable(question, 200)}"
+
+    def text(self, name: str) -> str:
+        """The map, ready to be looked at."""
+        lines = [
+            f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.',
+            f"name = {_toml(f'map of {name}'[:200])}",
+            *("", "[format]", *self.form, "", "[columns]", *self.columns.values(), "", "[test]"),
+        ]
+        written = self.given.as_written
+        lines += [*(f"{key} = {_toml(value)}" for key, value in written.get("test", {}).items()), *self.test]
+        for pattern, section in written.get("files", {}).items():
+            lines += ["", f"[files.{_toml(pattern)}]"]
+            lines += [f"{key} = {_toml(value)}" for key, value in section.items()]
+        about = "# The columns, with their first, middle and last values:"
+        return "\n".join([*lines, "", about, *self.seen, ""])
+
+
+def _toml(value: object) -> str:
+    """A value in TOML."""
+    if isinstance(value, Mapping):
+        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml(key) for key in value}
+        return "{ " + ", ".join(f"{keys[key]} = {_toml(one)}" for key, one in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_toml, value))}]"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) -> Draft:
+    """Draft of the map of a file: of its first table without questions, else of its first.
+
+    `given` is what the user and a known layout state; `why` is the reason that they do not suffice, if any.
+    """
+    stated = given.conditions(content.path)
+    drafts = [(group.name, _draft(group, Draft(given, stated))) for group in content.groups]
+    for part in content.parts:
+        draft = Draft(given, stated)
+        if (block := _block(part, draft)) is not None:
+            drafts.append((part.sheet, _draft(block, draft)))
+    if not drafts:
+        raise _no_table(content)
+    name, found = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
+    if len(drafts) > 1 and found.questions and not given.format.tables:
+        listed = ", ".join(_toml(one) for one, _ in drafts)
+        found.form.append(found.ask(f"tables = [{_toml(name)}]", f"one of {listed}?"))
+    if why is not None:
+        question = f"the map of this layout does not fit: {why.rule} {why.got}"
+        found.form.insert(0, found.ask(f"# {given.name}", question))
+    return found
+
+
+def _no_table(content: tables.Content) -> InputError:
+    cure = "It needs a line of column names above at least two rows; a column map can state where."
+    for part in content.parts:
+        signs = ((i, line, tables.separator_of([line])[0]) for i, line in enumerate(part.lines[:500]))
+        rows = [i for i, line, sign in signs if sign and tables.is_row(tables.fields_of(line, sign))]
+        if len(rows) == 1:
+            where = f"{content.name}: {part.word} {rows[0] + 1}"
+            return InputError(where, "is the only row", cure="A log has at least two.")
+    return InputError(content.name, "has no table of numbers with two columns or more", cure=cure)
+
+
+# --- the table ------------------------------------------------------------------------------------
+def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
+    """The first table of a text; how it is written goes into the draft."""
+    form = draft.given.format
+    separator, others = tables.separator_in(part, form)
+    heads = _heads(part, separator, draft.given) if separator else None
+    if heads is None:
+        return None
+    asked = {"separator": f"or {' or '.join(map(_toml, others))}?"} if others else {}
+    form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
+    blocks, form = _blocks(part, form, heads, asked)
+    for key, value in given_in(form).items():
+        line = f"{key} = {_toml(value)}"
+        draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
+    if not blocks:
+        return None
+    block = blocks[0]
+    if heads.line is None:
+        block.heads = [""] * len(block.heads)
+    if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
+        middle = block.rows[1000 : -1000 : len(block.rows) // 10_000]
+        block.rows = [*block.rows[:1000], *middle, *block.rows[-1000:]]
+    return block
+
+
+def _blocks(
+    part: tables.Part, form: TextFormat, heads: tables.Heads, asked: dict[str, str]
+) -> tuple[list[tables.Block], TextFormat]:
+    """Tables of a text and the format with which they are read, with a question on each line left out."""
+    names = heads.names if heads.line is not None and form.header_line is None else []
+    needed = [(name,) for name in names if name.strip()]
+    for left in range(MOST_BREAKS, -1, -1):
+        try:
+            blocks = list(tables.blocks_of_part(part, form, needed))
+            if blocks or heads.line is None or form.header_line is not None:
+                break
+            form, needed = replace(form, header_line=heads.line + 1), []
+            asked["header_line"] = "its line of names?"
+        except tables.BrokenError as error:
+            line = part.lines[error.line].strip()
+            begin = "".join(takewhile(str.isprintable, line))
+            if not left or not begin:
+                raise
+            if error.names is not None:
+                got = part.lines[error.names].strip()[:60]
+                question = f"{part.word} {error.names + 1} begins another table, which is not read: {got!r}"
+                asked.setdefault("ends", question)
+                form = replace(form, ends=(*form.ends, begin[:60].strip()))
+            else:
+                question = f"{part.word} {error.line + 1} is among the rows and is left out: {line[:60]!r}"
+                asked.setdefault("skip", question)
+                word = re.match(r"\D{0,30}", begin)
+                form = replace(form, skip=(*form.skip, (word and word[0].strip()) or begin[:20].strip()))
+    return blocks, form
+
+
+def _heads(part: tables.Part, separator: str, given: ColumnMap) -> tables.Heads | None:
+    """Names of the first table: at the line that is stated, or below the first with the names stated."""
+    if given.format.header_line is not None:
+        return next(tables.heads_in(part, given.format, (), separator))
+    named = [one.names for one in given.columns.values() if one.names and not one.optional]
+    lines = ((i, tables.fields_of(line, separator)) for i, line in enumerate(part.lines) if named)
+    start = next((i for i, heads in lines if all(tables.matching(names, heads) for names in named)), 0)
+    missing = naming.MISSING | {one.casefold() for one in given.format.missing}
+    return tables.first_table(part.lines, separator, missing, start)
+
+
+# --- its columns ----------------------------------------------------------------------------------
+def _draft(block: tables.Block, draft: Draft) -> Draft:
+    """What each column means: certain by name and unit, or asked."""
+    if block.columns is not None:
+        draft.cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
+    else:
+        draft.cells = tables.cells_of(block, range(len(block.heads)))
+    options: Options = {}
+    for i, cells in enumerate(draft.cells):
+        for meaning, option in _options(block, i, cells).items():
+            options.setdefault(meaning, []).append(option)
+        values = ", ".join(cells[k] for k in (0, len(cells) // 2, -1)) if cells else ""
+        beside = f" {block.below[i]}" if block.below[i] else ""
+        draft.seen.append(printable(f"# {i + 1:3d} {_toml(block.heads[i])}{beside}: {values}", 150))
+    used = _given(block, draft)
+    _decide(block, draft, options, used)
+    _decimal(block, draft, [draft.cells[i] for i in sorted(used)])
+    _conditions(block, draft)
+    return draft
+
+
+def _options(block: tables.Block, i: int, cells: Sequence[str]) -> dict[str, Option]:
+    """Meanings that a column may have."""
+    ways = naming.header_parts(block.heads[i])
+    sample = [cell for cell in cells[:SAMPLE] if cell.casefold() not in naming.MISSING]
+    clocks = [cell for cell in sample if tables.is_clock(cell)]
+    if 2 * len(clocks) > len(sample):
+        stated = stated_units(block.heads[i], block.below[i], "time", {})
+        return {"time": _clock(8 if "time" in naming.ranks(ways[0][0]) else 9, i, stated, cells, clocks)}
+    if 2 * sum(not tables.is_number(cell) for cell in sample) > len(sample):
+        return {}
+    for name, unit in ways:
+        meanings = (
+            {} if unit.isdigit() else naming.ranks(name.rpartition(".")[2]) | naming.ranks(name)
+        )  # COF_2: a station
+        if naming.looks_extreme(ways[0][0]):
+            meanings = {key: rank for key, rank in meanings.items() if not re.search("friction|force", key)}
+        if meanings:
+            only = len(meanings) == 1
+            return {one: _option(block, i, one, rank, is_only=only) for one, rank in meanings.items()}
+    return {}
+
+
+def _option(block: tables.Block, i: int, meaning: str, rank: int, *, is_only: bool) -> Option:
+    """A column of numbers with a usual name: certain where its unit is."""
+    stated = stated_units(block.heads[i], block.below[i], meaning, {})
+    scales = {naming.scale_of(one, meaning) for one in stated}
+    known = (None not in scales and len(scales) == 1) or meaning == "position"
+    known = known or (not stated and meaning in ("friction", "cycles") and is_only)
+    is_torque = meaning in ("friction", "tangential_force") and naming.looks_like_torque(
+        block.heads[i], block.below[i]
+    )
+    unit = (stated[0] if known else ", ".join(stated)) if stated else ""
+    return Option(rank, i, unit, known and not is_torque)
+
+
+def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clocks: Sequence[str]) -> Option:
+    """A column of times as text, with how they are written."""
+    form = next((form for one in stated if (form := naming.time_form(one))), "")
+    if form in ("hh:mm", "mm:ss") or all(_CLOCK.fullmatch(one) for one in clocks):
+        return Option(rank, i, form if form in ("hh:mm", "mm:ss") else "clock", known=True)
+    if iso := [match for one in cells if (match := _ISO.fullmatch(one))]:
+        zones = list(dict.fromkeys(match[1] or "no zone" for match in iso))
+        question = f"its time zone changes: {', '.join(zones[:3])}" if len(zones) > 1 else ""
+        return Option(rank, i, "iso", known=True, question=question)
+    if dates := [match for one in cells if (match := _DATE.fullmatch(one))]:
+        form, is_certain = _date_format(dates)
+        return Option(rank, i, form, True, "" if is_certain else "is the day before the month?")
+    if all(re.fullmatch(r"\d{1,4}:\d{1,2}(?:[.,]\d+)?", one) for one in clocks):
+        return Option(rank, i, question="minutes and seconds, or hours and minutes (hh:mm)?")
+    return Option(rank, i, UNKNOWN)
+
+
+def _date_format(dates: Sequence[re.Match[str]]) -> tuple[str, bool]:
+    """Format of dates, and whether their numbers show which of them is the day."""
+    one = dates[0]
+    order, is_certain = ("%d", "%b"), True
+    if not one[3].isalpha():
+        first, second = (max(int(match[k]) for match in dates) for k in (1, 3))
+        order, is_certain = (("%m", "%d") if second > 12 else ("%d", "%m")), max(first, second) > 12
+    date = one[2].join((*order, "%Y" if len(one[4]) == 4 else "%y"))
+    time = ("%I" if one[9] else "%H") + ":%M" + (":%S" if one[7] else "") + (".%f" if one[8] else "")
+    half = "" if not one[9] else " %p" if one[9][0] == " " else "%p"
+    return f"{date}{one[5]}{time}{half}", is_certain
+
+
+# --- the lines of the map -------------------------------------------------------------------------
+def _given(block: tables.Block, draft: Draft) -> set[int]:
+    """Columns that are stated already, with their lines; what the table does not have is asked."""
+    used = set()
+    for meaning, one in draft.given.columns.items():
+        places = tables.matching(one.names, block.heads) if one.number is None else [one.number - 1]
+        if places and max(places) < len(block.heads):
+            draft.columns[meaning] = _of_twins(draft, meaning, one, places)
+            used |= set(places)
+        elif not one.optional:
+            name = one.names[0] if one.names else f"number {one.number}"
+            draft.questions.append(f"no column {_toml(name)}, which the column map names as {meaning}")
+    return used
+
+
+def _of_twins(draft: Draft, meaning: str, one: Column, places: Sequence[int]) -> str:
+    """The line of columns of one name; asked by number where their numbers differ."""
+    if all(draft.cells[i] == draft.cells[places[0]] for i in places[1:]):
+        return _stated(meaning, one)
+    numbers = " or ".join(str(i + 1) for i in places[1:])
+    question = (
+        f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {numbers}?"
+    )
+    return draft.ask(_stated(meaning, replace(one, name=places[0] + 1)), question)
+
+
+def _stated(meaning: str, one: Column) -> str:
+    name = one.names[0] if len(one.names) == 1 else one.name
+    more = ({"unit": one.unit} if one.unit else {}) | ({"sign": -1} if one.sign < 0 else {})
+    more |= {"optional": True} if one.optional else {}
+    return f"{meaning} = {_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
+
+
+def _line(draft: Draft, block: tables.Block, meaning: str, option: Option, unit: str = "") -> str:
+    """One line of [columns]: the name without its unit where that is unique, else the whole or the number."""
+    head = " ".join(block.heads[option.index].split())
+    bare = naming.header_parts(head)[0][0]
+    named = bare if bare and tables.matching([bare], block.heads) == [option.index] else head
+    unit = unit or (option.unit if meaning == "time" and naming.time_form(option.unit) else "")
+    choice = Column(
+        name=(named,) if named else option.index + 1,
+        unit=unit or None,
+        optional=meaning in ("temperature", "wear_depth"),
+    )
+    return _of_twins(
+        draft, meaning, choice, tables.matching([named], block.heads) if named else [option.index]
+    )
+
+
+def _decide(block: tables.Block, draft: Draft, options: Options, used: set[int]) -> None:
+    """One line of the map for each meaning that is there: certain, asked, or noted as not used."""
+    free = {key: [one for one in some if one.index not in used] for key, some in options.items()}
+    sure = {
+        key: _best([one for one in free.get(key, ()) if one.known]) for key in (*naming.MEANINGS, "position")
+    }
+    needed = _needed(block, draft, free, sure)
+    for meaning in (*naming.MEANINGS, "position"):
+        chosen = [one for one in sure[meaning] if one.index not in used]
+        rest = [one for one in free.get(meaning, ()) if one.index not in used]
+        if meaning in draft.columns:
+            continue
+        if chosen:
+            _choose(block, draft, meaning, chosen, is_needed=meaning in needed or meaning == "time")
+            used |= {one.index for one in chosen}
+        elif rest and meaning in needed:
+            _ask_unit(block, draft, meaning, _best(rest)[0])
+        elif rest and meaning in ("temperature", "wear_depth", "normal_force", "distance"):
+            head, words = printable(block.heads[rest[0].index].strip()), meaning.replace("_", " ")
+            draft.notes.append(f'column "{head}" has no known unit and is not used as {words}')
+    for meaning in sorted(needed - draft.columns.keys()):
+        _ask_column(block, draft, meaning)
+    _shapes(block, draft, options, used)
+
+
+def _needed(block: tables.Block, draft: Draft, free: Options, sure: Options) -> set[str]:
+    """Meanings that the map must have: friction, or the forces instead; and an abscissa."""
+    has_load = "normal_force" in draft.columns or sure["normal_force"] or "normal_force" in draft.stated
+    has_friction = (
+        sure["friction"] or free.get("friction") or any(map(naming.looks_like_friction, block.heads))
+    )
+    by_forces = sure["tangential_force"] if has_load else []
+    by_forces = by_forces or ([] if has_friction else free.get("tangential_force", []))
+    if "friction" in draft.columns:
+        needed = {"friction"}
+    elif "tangential_force" in draft.columns or (by_forces and not sure["friction"]):
+        needed = {"tangential_force", "normal_force"}
+        sure["friction"], free["friction"] = [], []
+    else:
+        needed = {"friction"}
+    if not any(name in draft.columns or sure[name] for name in naming.ABSCISSAE):
+        needed.add(next((name for name in naming.ABSCISSAE if free.get(name)), "time"))
+    return needed
+
+
+def _best(options: Sequence[Option]) -> list[Option]:
+    lowest = min((one.rank for one in options), default=0)
+    return [one for one in options if one.rank == lowest]
+
+
+def _choose(
+    block: tables.Block, draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool
+) -> None:
+    """The line of columns that are certain; asked where several of other names are."""
+    count, words = len(draft.questions), meaning.replace("_", " ")
+    line = _line(draft, block, meaning, chosen[0])
+    names = list(dict.fromkeys(_toml(block.heads[one.index].strip()) for one in chosen))
+    units = {naming.scale_of(one.unit, meaning) if one.unit else None for one in chosen}
+    if len(draft.questions) > count and not is_needed:
+        del draft.questions[count:]
+        draft.notes.append(f"columns {names[0]} differ, and none is used as {words}")
+        return
+    if len(names) > 1 or len(units) > 1:
+        if not is_needed:
+            draft.notes.append(f"columns {', '.join(names)} could all be the {meaning}, and none is used")
+            return
+        others = [f"{_toml(block.heads[one.index].strip())} (column {one.index + 1})" for one in chosen[1:]]
+        line = draft.ask(line, f"{names[0]}, or {' or '.join(others)}?")
+    elif chosen[0].question:
+        line = draft.ask(line, f"column {names[0]}: {chosen[0].question}")
+    draft.columns[meaning] = line
+
+
+def _ask_unit(block: tables.Block, draft: Draft, meaning: str, option: Option) -> None:
+    """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
+    head, below = block.heads[option.index], block.below[option.index]
+    if meaning == "tangential_force" and naming.looks_like_torque(head, below):
+        _ask_torque(block, draft, option.index)
+        return
+    unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
+    said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
+    line = _line(draft, block, meaning, option, unit)
+    draft.columns[meaning] = draft.ask(line, f"column {_toml(head.strip())}: {said}")
+
+
+def _ask_torque(block: tables.Block, draft: Draft, i: int) -> None:
+    written = (block.below[i], naming.header_parts(block.heads[i])[0][1])
+    unit = next((one for one in written if naming.torque_scale(one)), UNKNOWN)
+    line = _line(draft, block, "tangential_force", Option(0, i), unit)
+    question = "a torque: write the radius of its track below [test]"
+    draft.columns["tangential_force"] = draft.ask(line, question)
+    if "track_radius" not in draft.stated:
+        draft.test.append('track_radius = "... mm"')
+
+
+def _ask_column(block: tables.Block, draft: Draft, meaning: str) -> None:
+    """The line of a column that is needed and that no name shows."""
+    torque = [i for i, head in enumerate(block.heads) if naming.looks_like_torque(head, block.below[i])]
+    near = [i for i, head in enumerate(block.heads) if naming.looks_like_friction(head)]
+    if meaning == "normal_force":
+        if "normal_force" not in draft.stated:
+            draft.test.append(draft.ask('normal_force = "... N"', "the log has no normal force"))
+    elif meaning == "friction" and torque and not near:
+        _ask_torque(block, draft, torque[0])
+        if "normal_force" not in draft.columns:
+            _ask_column(block, draft, "normal_force")
+    elif meaning == "friction" and near:
+        names = ", ".join(_toml(block.heads[i].strip()) for i in near[:4])
+        line = _line(draft, block, meaning, Option(0, near[0]), "-")
+        draft.columns[meaning] = draft.ask(line, f"the friction by its name? There are {names}")
+    else:
+        line = f"{meaning} = {_toml({'name': UNKNOWN if any(block.heads) else 1, 'unit': UNKNOWN})}"
+        draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
+
+
+def _shapes(block: tables.Block, draft: Draft, options: Options, used: set[int]) -> None:
+    """Columns in any unit that show standstill and reversals."""
+    speeds = [one for key in ("slip_speed", "rotational_speed") for one in options.get(key, ())]
+    speeds = [one for one in speeds if one.index not in used and one.unit.casefold() not in ("v", "a")]
+    if speeds and not {"slip_speed", "rotational_speed", "motion"} & draft.columns.keys():
+        draft.columns["motion"] = _line(draft, block, "motion", min(speeds, key=lambda one: one.index))
+    forces = [one for one in options.get("tangential_force", ()) if one.index not in used]
+    forces = [one for one in forces if not naming.looks_like_torque(block.heads[one.index])]
+    if forces and "stroke" not in draft.columns and "friction" in draft.columns:
+        draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
+
+
+def _decimal(block: tables.Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None:
+    """A question where marks may be decimal signs or between thousands."""
+    if block.columns is not None or block.word == "row" or draft.given.format.decimal:
+        return
+    try:
+        decimal_of(cells, block.separator, block.source)
+    except UnfitError as error:
+        draft.form.append(draft.ask(f'decimal = "{UNKNOWN}"', f"{error.rule}: {error.got}"))
+
+
+def _conditions(block: tables.Block, draft: Draft) -> None:
+    """A question on each condition above the table whose number can be read in two ways."""
+    text = "".join("".join(column[:SAMPLE]) for column in draft.cells)
+    decimal = "," if "," in text else "." if "." in text or block.separator == "," else ""
+    for key, value in metadata_of(block.above).items():
+        meant = [
+            one for one, names in naming.KEYS.items() if naming.plain(naming.header_parts(key)[0][0]) in names
+        ]
+        if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
+            question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
+            draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
