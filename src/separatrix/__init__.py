@@ -44,7 +44,7 @@ _PUBLIC = {
     "present": "dataset document save to_dataframe to_xarray",
     "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
-    "KinematicModel Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
+    "KinematicModel Kinematics Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
     "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn shipped_studies",
     "verdict.judgement": "Judgement Verdict judge wilson_interval",
     "verdict.reasons": "CageMotion",

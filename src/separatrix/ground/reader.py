@@ -193,7 +193,7 @@ def document_of(schema: type, path: Path, above: tuple[Path, ...] = ()) -> Docum
         document = read_sheets(schema, path)
     else:
         document = _document_of_text(schema, toml.read_text(path, kind), toml.label_of(path))
-    folders = {(): path.parent}
+    folders: dict[KeyPath, Path] = {(): path.parent}
     for name, one in document.data.items():
         folders |= {(name, key): path.parent for key in one} if isinstance(one, dict) else {}
     document = document._replace(folders=folders, chain=((path, document.data),), files={})
