@@ -23,8 +23,7 @@ from separatrix.answers import (
 from separatrix.chain.contacts import BearingState
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case
 from separatrix.explore.sweep import Sweep
-from separatrix.ground.errors import ValidityWarning
-from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.errors import ValidityWarning, grouped, noted_warnings
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.questions import computed, verb_named
 from separatrix.study.reading import read_study, require

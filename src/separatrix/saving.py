@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.ground.messages import harmless, json_text
-from separatrix.ground.staged import staged
+from separatrix.ground.errors import harmless, json_text
+from separatrix.ground.files import staged
 from separatrix.present import in_words
 
 if TYPE_CHECKING:

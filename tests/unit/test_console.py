@@ -21,9 +21,8 @@ from separatrix.cli import console
 from separatrix.cli.console import Interruptible, one_line
 from separatrix.ground.compiled import part
 from separatrix.ground.compiling import COMPILING
-from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ground.messages import noted_warnings
-from separatrix.ground.staged import staged, writable_folder
+from separatrix.ground.errors import InputError, ValidityWarning, noted_warnings
+from separatrix.ground.files import staged, writable_folder
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
@@ -217,7 +216,7 @@ def write_half(folder: Path) -> None:
 
 KILLED = """
 import os, pathlib, signal, sys
-from separatrix.ground.staged import staged
+from separatrix.ground.files import staged
 with staged(pathlib.Path(sys.argv[1])) as stage:
     (stage / "half").write_text("written")
     print(stage.name, flush=True)

@@ -8,7 +8,7 @@ import separatrix
 from separatrix.cli import main
 from separatrix.friction.logs.binary import tdms_groups
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import size_of
+from separatrix.ground.files import size_of
 from separatrix.ground.sheet import refuse_unsafe
 
 LOG = "time (s),friction coefficient\n" + "".join(f"{t},0.{10 + t % 2}\n" for t in range(100))

@@ -16,9 +16,8 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
-from separatrix.ground.errors import DataError, InputError
-from separatrix.ground.input_files import is_inside, reading_only_in
-from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.errors import DataError, InputError, grouped, noted_warnings
+from separatrix.ground.files import is_inside, reading_only_in
 from separatrix.ground.reader import Document, document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown

@@ -23,7 +23,7 @@ from separatrix import __version__
 from separatrix.app.jobs import Jobs
 from separatrix.comparing.saved import arrays
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import is_inside
+from separatrix.ground.files import is_inside
 from separatrix.ground.toml import read_text
 from separatrix.ground.units import format_quantity, printable, shown
 from separatrix.questions import VERBS

@@ -171,8 +171,8 @@ def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None
 
 def _answered(task: Task, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
-    from separatrix.ground.input_files import reading_only_in
-    from separatrix.ground.messages import grouped, noted_warnings
+    from separatrix.ground.errors import grouped, noted_warnings
+    from separatrix.ground.files import reading_only_in
     from separatrix.present import document
     from separatrix.questions import asked_study, computed, verb_named
     from separatrix.saving import save_answer
@@ -204,7 +204,7 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
 
 def _refuse_links_out(task: Task) -> None:
     """Refuse to write where a link leads out of the folder of the page."""
-    from separatrix.ground.input_files import is_inside
+    from separatrix.ground.files import is_inside
 
     for path in (task.folder, *(task.folder.iterdir() if task.folder.is_dir() else ())):
         if not is_inside(path, task.root):

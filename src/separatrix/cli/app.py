@@ -17,7 +17,7 @@ from separatrix.cli import saved_answers, without_bearing
 from separatrix.cli.console import answer, complain
 from separatrix.cli.verbs import ANSWERED, Json, command_of, whole_number
 from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.staged import refuse_existing, write_new
+from separatrix.ground.files import refuse_existing, write_new
 from separatrix.questions import VERBS
 
 FAULT, WRONG_INPUT = 1, 2

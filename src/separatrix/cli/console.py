@@ -14,8 +14,7 @@ from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, ParamSpec, TextIO
 
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import harmless, json_text, one_line
+from separatrix.ground.errors import InputError, harmless, json_text, one_line
 
 if TYPE_CHECKING:
     from separatrix.ground.units import Second

@@ -13,9 +13,8 @@ import typer
 from separatrix.cli.console import answer, answer_json, interrupted, interruptible
 from separatrix.cli.verbs import ANSWERED, Jobs, Json, Quiet, computed_with_progress, folder, threads
 from separatrix.comparing.saved import DAMAGE
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import harmless, noted_warnings
-from separatrix.ground.staged import writable_folder
+from separatrix.ground.errors import InputError, harmless, noted_warnings
+from separatrix.ground.files import writable_folder
 from separatrix.questions import Computed
 
 if TYPE_CHECKING:

@@ -14,9 +14,8 @@ from separatrix.cli.console import answer, answer_json, interruptible, progress_
 from separatrix.cli.verbs import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
 from separatrix.comparing.records import Agreement
 from separatrix.comparing.saved import Document, Saved, read_answers
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import grouped, noted_warnings
-from separatrix.ground.staged import staged, writable_folder
+from separatrix.ground.errors import InputError, grouped, noted_warnings
+from separatrix.ground.files import staged, writable_folder
 from separatrix.ground.units import printable, shown
 from separatrix.questions import Verb, computed, verb_named
 

@@ -12,9 +12,8 @@ import typer
 
 from separatrix.cli.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import grouped, noted_warnings
-from separatrix.ground.staged import writable_folder
+from separatrix.ground.errors import InputError, grouped, noted_warnings
+from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
 from separatrix.questions import Computed, Verb, asked_study, computed, processors
 from separatrix.verdict.ledger import NAME as LEDGER

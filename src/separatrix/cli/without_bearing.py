@@ -12,7 +12,7 @@ import typer
 from separatrix.cli.console import answer, answer_json, interruptible, progress_bar
 from separatrix.cli.verbs import Jobs, Json, Quiet, named, threads
 from separatrix.ground.errors import InputError
-from separatrix.ground.staged import refuse_existing, staged, writable_folder
+from separatrix.ground.files import refuse_existing, staged, writable_folder
 from separatrix.ground.units import parse, printable, shown
 
 if TYPE_CHECKING:

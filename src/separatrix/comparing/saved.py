@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 

@@ -10,8 +10,7 @@ from separatrix import figures
 from separatrix.comparing.records import Comparison, Noise, Row, Value, is_number
 from separatrix.comparing.results import UNCOUNTED_VERBS
 from separatrix.comparing.saved import Saved, arrays
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import harmless, json_text
+from separatrix.ground.errors import InputError, harmless, json_text
 from separatrix.ground.units import printable
 from separatrix.present import plain
 from separatrix.present.text.tables import (

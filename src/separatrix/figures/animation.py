@@ -19,7 +19,7 @@ from separatrix.figures.motion import AROUND, draw_lean, draw_orbit, frame_momen
 from separatrix.figures.style import BLACK, GREY, SKY, VERMILION, headed, journal, literal_texts, settled
 from separatrix.figures.view import BAR_POINTS, Scene, force_key, scene, span_key
 from separatrix.ground.errors import InputError
-from separatrix.ground.staged import staged
+from separatrix.ground.files import staged
 from separatrix.ground.units import Array
 
 A_SECOND, SIZE, DOTS = 24, (7.0, 4.2), 100

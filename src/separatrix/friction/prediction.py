@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from separatrix.ground.errors import InputError
 from separatrix.ground.schema import between, key, not_negative, record
 from separatrix.ground.units import Kelvin, MetrePerSecond, Pascal, Ratio
 
@@ -65,16 +64,3 @@ class Friction:
 
 SCATTER_RULE = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
 SCATTER_CURE = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
-
-
-def refuse_scatter_about_zero(friction: Friction, where: str) -> Friction:
-    """Return the friction as it was read, unless it scatters about a mean that is none.
-
-    Raises
-    ------
-    InputError
-        It has a standard deviation, and a mean of 0 or nearly so.
-    """
-    if friction.standard_deviation and friction.mean < LEAST_FRICTION:
-        raise InputError(f"{where}.mean", SCATTER_RULE, f"{friction.mean:g}", SCATTER_CURE)
-    return friction

@@ -32,10 +32,10 @@ from dataclasses import MISSING, dataclass, field, fields
 from enum import Enum
 from functools import cache, partial
 from itertools import pairwise
+from numbers import Real
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, dataclass_transform
+from typing import Annotated, Any, Literal, NamedTuple, TypeGuard, TypeVar, dataclass_transform
 
-from separatrix.ground.bounds import Bound, is_number
 from separatrix.ground.errors import InputError, noted, together
 from separatrix.ground.toml import KeyPath, text
 from separatrix.ground.units import UNITS, format_quantity, parse, shown, unit_of
@@ -65,6 +65,41 @@ class Fault(NamedTuple):
 
 Faults = Iterator[Fault]
 Check = Callable[..., Faults]
+
+
+class Bound(NamedTuple):
+    """Numbers that a quantity takes."""
+
+    low: float
+    high: float
+    open_low: bool = False
+    open_high: bool = False
+    sign: str = ""
+    """``"> 0"`` or ``">= 0"`` of a one-sided bound: it names only the side that is wrong."""
+
+    def rule(self, value: object, unit: str) -> str:
+        """Rule that a value breaks; empty if it breaks none."""
+        low, high = self.low, self.high
+        if not is_number(value) or not math.isfinite(value):
+            return f"must be a finite number{f' {self.sign}' if self.sign else ''}"
+        is_end = (self.open_low and value == low) or (self.open_high and value == high)
+        if low <= value <= high and not is_end:
+            return ""
+        bottom, top = ("0" if end == 0.0 else format_quantity(end, unit) for end in (low, high))
+        if self.sign and (value < 0.0 or (value == 0.0 and self.sign == "> 0")):
+            return f"must be {self.sign}"
+        if self.sign:
+            return f"must be >= {bottom}" if value < low else f"must be <= {top}"
+        if self.open_low or self.open_high:
+            below, above = ">" if self.open_low else ">=", "<" if self.open_high else "<="
+            return f"must be {below} {bottom} and {above} {top}"
+        return f"must lie between {bottom} and {top}"
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """True for a real number that is not a bool, nor an integer too long for a float."""
+    too_long = isinstance(value, int) and abs(value) >= 10**300
+    return isinstance(value, Real) and not isinstance(value, bool) and not too_long
 
 
 def between(low: float, high: float, *, open_low: bool = False, open_high: bool = False) -> Bound:

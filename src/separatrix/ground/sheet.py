@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.units import printable
 
 if TYPE_CHECKING:

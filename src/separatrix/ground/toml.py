@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
 from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.units import NUMBER, missing_unit, parse, printable, shown
 
 Made = TypeVar("Made")
@@ -80,17 +80,6 @@ def path_text(path: Path) -> str:
     return text if len(text) <= 80 else label_of(path)
 
 
-def read_toml(path: Path, kind: Kind = STUDY) -> tuple[dict[str, object], dict[KeyPath, int]]:
-    """Content of a TOML file, and the line of each key.
-
-    Raises
-    ------
-    InputError
-        Not a regular file, small enough for its kind, of UTF-8 with valid TOML in it.
-    """
-    return parsed(read_text(path, kind), label_of(path), kind)
-
-
 def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object], dict[KeyPath, int]]:
     """Content of TOML text, and the line of each key."""
     begins, too_deep = _statements(text)
@@ -128,53 +117,6 @@ def lines_of_keys(text: str, begins: Iterable[int]) -> dict[KeyPath, int]:
                 path = (*path, part)
                 found.setdefault(path, number)
     return found
-
-
-@dataclass(slots=True)
-class Places:
-    """File and line, or sheet and cell, of the paths of faults, as ``[ranking] candidates[2].name``."""
-
-    label: str
-    """Of the file: the place of a path without one."""
-
-    known: dict[str, str] = field(default_factory=dict)
-
-    def of(self, path: str) -> str:
-        """Return the place of the longest part of a path that has one."""
-        found = [p for p in self.known if path.startswith(p) and path[len(p) : len(p) + 1] in (*".,[ ", "")]
-        return self.known[max(found, key=len)] if found else self.label
-
-    def locate(self, path: str) -> str:
-        """Return a path with its place: ``case.toml, line 7: [cage] mass``."""
-        return f"{self.of(path)}: {path}" if path else self.label
-
-
-def places_of(label: str, data: Mapping[str, object], lines: Mapping[KeyPath, int]) -> Places:
-    """Return the places of the keys of a TOML file, from their lines."""
-    places = Places(label)
-    for keys, line in lines.items():
-        for path in _paths(keys, data):
-            places.known.setdefault(path, f"{label}, line {line}")
-    return places
-
-
-def _paths(path_of_keys: KeyPath, data: Mapping[str, object]) -> Iterator[str]:
-    """Yield the keys as the paths of faults, with those of the tables around them."""
-    name, *keys = map(str, path_of_keys)
-    inside = data.get(name)
-    if not keys and not isinstance(inside, dict | list):
-        yield name
-        return
-    path = f"[{printable(name)}]"
-    yield path
-    for i, key in enumerate(keys):
-        if isinstance(inside, list) and key.isdigit():
-            path += f"[{int(key) + 1}]" if i > 0 else ""
-            inside = inside[int(key)] if int(key) < len(inside) else None
-        else:
-            path += f"{' ' if i == 0 else '.'}{printable(key)}"
-            inside = inside.get(key) if isinstance(inside, dict) else None
-        yield path
 
 
 def _statements(text: str) -> tuple[list[int], int]:
@@ -330,17 +272,6 @@ def choice(options: type[Choice]) -> Reader[Choice]:
     return read
 
 
-def list_of(reader: Reader[Made]) -> Reader[tuple[Made, ...]]:
-    """Read a list, each item with one reader."""
-
-    def read(value: object, where: str) -> tuple[Made, ...]:
-        if not isinstance(value, list):
-            raise InputError(where, "must be a list in [brackets]", shown(value))
-        return tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(value, 1))
-
-    return read
-
-
 def table(
     value: object,
     where: str,
@@ -364,15 +295,6 @@ def table(
     if problems:
         raise together(problems)
     return given
-
-
-def build(record: Callable[..., Made], values: Mapping[str, object], where: str) -> Made:
-    """Build a record from a table; the place of the table is put before its refusals."""
-    try:
-        return record(**values)
-    except InputError as error:
-        found = [p.at(f"{where}.{p.path.partition('.')[2]}") for p in error.problems or (error,)]
-        raise together(found) from None
 
 
 def _as_number(value: object) -> str:

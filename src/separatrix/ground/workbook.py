@@ -24,11 +24,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from separatrix.ground.bounds import is_number
 from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.reader import Document
-from separatrix.ground.schema import Described, is_record, keys_of, without_none, without_unit
+from separatrix.ground.schema import Described, is_number, is_record, keys_of, without_none, without_unit
 from separatrix.ground.sheet import SAVE_AGAIN, refuse_unsafe
 from separatrix.ground.toml import KeyPath, label_of, nearest
 from separatrix.ground.units import NUMBER, printable, shown

@@ -20,8 +20,7 @@ from separatrix.comparing.shown import (
     result_words,
     shown_rows,
 )
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import grouped, noted_warnings
+from separatrix.ground.errors import InputError, grouped, noted_warnings
 from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.questions import Computed, Verb, verb_named
 from separatrix.reporting.evidence import evidence, inputs, outside, provenance, uncertainty

@@ -13,9 +13,8 @@ from types import ModuleType
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from separatrix.ground.errors import InputError
-from separatrix.ground.messages import harmless
-from separatrix.ground.staged import staged
+from separatrix.ground.errors import InputError, harmless
+from separatrix.ground.files import staged
 from separatrix.reporting.record import Block, Equation, Facts, Paragraph, Picture, Report, Table
 
 SHORT = 24

@@ -10,7 +10,6 @@ from itertools import pairwise
 from typing import Any, ClassVar, cast
 
 from separatrix.friction.prediction import FRICTION_LIMIT
-from separatrix.ground.bounds import is_number
 from separatrix.ground.reader import Reading
 from separatrix.ground.schema import (
     Fault,
@@ -19,6 +18,7 @@ from separatrix.ground.schema import (
     all_or_none,
     between,
     check,
+    is_number,
     key,
     keys_of,
     not_negative,

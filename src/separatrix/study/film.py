@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT
-from separatrix.ground.bounds import is_number
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -15,6 +14,7 @@ from separatrix.ground.schema import (
     all_or_none,
     between,
     check,
+    is_number,
     key,
     not_negative,
     one_of,

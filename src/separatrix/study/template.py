@@ -11,8 +11,7 @@ from enum import Enum
 from functools import cache
 from typing import Any
 
-from separatrix.ground.bounds import is_number
-from separatrix.ground.schema import Described, OneOf, is_record, keys_of, meanings_of
+from separatrix.ground.schema import Described, OneOf, is_number, is_record, keys_of, meanings_of
 from separatrix.ground.sheet import (
     HEADING,
     INPUT,

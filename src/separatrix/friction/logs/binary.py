@@ -24,7 +24,7 @@ import numpy as np
 from separatrix.friction.logs.log_tables import ERROR, PERCENT, UNCOMPUTED, Block
 from separatrix.friction.logs.names import header_parts, ranks
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.sheet import MOST_BYTES, SAVE_AGAIN, refuse_unsafe
 from separatrix.ground.units import Array, printable, shown
 

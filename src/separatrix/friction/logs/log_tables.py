@@ -16,7 +16,7 @@ from pathlib import Path
 from separatrix.friction.logs.column_map import ColumnMap, TextFormat
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
-from separatrix.ground.input_files import size_of, unreadable
+from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.units import Array, printable
 
 LARGEST = 2_000_000_000  # bytes that a log may have
