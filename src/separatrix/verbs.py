@@ -20,7 +20,6 @@ from separatrix.chain.restitution import Restitution
 from separatrix.chain.shown_traction import curves_by_ratio, shear, shown_curve
 from separatrix.chain.solution import Solution, solve
 from separatrix.explore.cases import DEFAULT_X, DEFAULT_Y, Case, asked_cases, checked_points, read_axis
-from separatrix.explore.expected import expected_curve, expected_map, expected_ranking, expected_uncertain
 from separatrix.explore.sweep import Sweep
 from separatrix.explore.sweep import sweep as run_cases
 from separatrix.explore.uncertain import uncertain_study
@@ -150,7 +149,6 @@ def stability(study: Study, runner: Runner) -> answers.StabilityAnswer:
     solution = solve(study)
     warn_of_extrapolation(solution)
     cage, settings = _cage_of(solution), study.stability
-    runner.expect(lambda: expected_curve(cage, settings, jobs=runner.jobs, band=True))
     return made_into(
         lambda curve: answers.StabilityAnswer(solution=solution, cage=cage, curve=curve),
         lambda: stability_curve(cage, settings, runner=runner),
@@ -199,7 +197,6 @@ def map(
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
     warn_of_extrapolation(solution)
-    runner.expect(lambda: expected_map(asked, jobs=runner.jobs), at_most=adaptive)
     return made_into(
         lambda found: answers.MapAnswer(solution=solution, cage=cage, map=found),
         lambda: stability_map(asked, runner=runner),
@@ -292,7 +289,6 @@ def rank(study: Study, runner: Runner) -> answers.RankingAnswer:
     """Verdict, margin, rank and reason of each candidate material."""
     solution, cage = _reference(study)
     _warn_if_overdamped(solution.restitution)
-    runner.expect(lambda: expected_ranking(study, jobs=runner.jobs))
     return made_into(
         lambda found: answers.RankingAnswer(solution=solution, cage=cage, ranking=found),
         lambda: rank_materials(study, runner=runner),
@@ -326,7 +322,6 @@ def sensitivity(study: Study, runner: Runner, *, samples: int = SAMPLES) -> answ
         raise InputError("--samples", rule, got=str(samples), cure=cure)
     solution, cage = _reference(study)
     uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
-    runner.expect(lambda: expected_uncertain(study, samples, jobs=runner.jobs))
     return made_into(
         lambda found: answers.SensitivityAnswer(
             solution=solution,

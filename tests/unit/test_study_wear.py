@@ -1,14 +1,11 @@
 """[film.wear] and [traction] in study files: every form, and what is refused where."""
 
-import itertools
-
 import pytest
 from commands import document
 from test_study_refusals import VALID, refusal
 from test_workbook import workbook
 
 from separatrix.cli import main
-from separatrix.explore import expected
 from separatrix.ground.errors import InputError
 from separatrix.limits.map_records import value_in, varied
 from separatrix.study.keys import with_values
@@ -161,15 +158,6 @@ def test_wear_is_typed_into_a_workbook(tmp_path):
         found = read_study(tmp_path / "worn.xlsx")
         assert found.film == plain.film
         assert set(found.distributions) == set(plain.distributions)
-
-
-def test_drawn_chains_are_in_the_estimate(tmp_path, monkeypatch):
-    """As many as are asked for, each as long as one takes by the study's model; none for frictions alone."""
-    ticks = itertools.count()
-    monkeypatch.setattr(expected.time, "perf_counter", lambda: next(ticks))
-    study = read_study(written(tmp_path, BAND.replace('"0.2 mm"', '"0.2 mm +- 10 %"')))
-    assert expected._of_chains(study, 7) == 7.0
-    assert expected._of_chains(read_study(written(tmp_path, BAND)), 7) == 0.0
 
 
 def test_the_answers_name_the_wear(tmp_path, capsys, monkeypatch):

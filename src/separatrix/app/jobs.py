@@ -31,7 +31,6 @@ class Job:
     state: str = WAITING
     done: int = 0
     total: int = 0
-    expected: float | None = None
     message: str = ""
     started: float | None = None
     ended: float | None = None
@@ -50,6 +49,12 @@ class Job:
     def share(self) -> float | None:
         """Share of its known points that are done; None before there is one."""
         return self.done / self.total if self.total else None
+
+    @property
+    def left(self) -> float | None:
+        """Time that is left if the rest goes as what was done; None before a twentieth is done."""
+        is_known = self.state == RUNNING and self.total and 20 * self.done >= self.total
+        return self.seconds * (self.total - self.done) / self.done if is_known and self.done else None
 
     @property
     def seconds(self) -> float:

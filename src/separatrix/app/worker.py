@@ -17,7 +17,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.units import Second, shown
+from separatrix.ground.units import shown
 
 if TYPE_CHECKING:
     from separatrix.questions import Computed, Verb
@@ -62,7 +62,7 @@ class Cancel:
 
 
 class Reporter:
-    """Reports how far a long job is, and what time it will take."""
+    """Reports how far a long job is."""
 
     def __init__(self, send: Send) -> None:
         self.send, self._last = send, 0.0
@@ -73,10 +73,6 @@ class Reporter:
         if done == total or now - self._last > EVERY:
             self._last = now
             self.send(done=done, total=total)
-
-    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:  # noqa: ARG002
-        """Report the time that the work is expected to take."""
-        self.send(expected=float(estimate()))
 
 
 def work(pipe: Connection) -> None:

@@ -28,10 +28,13 @@ LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
 
 WORTH_PRINTING: Second = 5.0
-"""An expected time below this is not printed."""
+"""A shorter work does not tell its time."""
+
+LOADING: Second = 1.0
+"""Time from the beginning in which steps are taken from an earlier call."""
 
 FIRST_PART = 0.05
-"""Share of the steps after which the time of all is estimated, where nothing was before."""
+"""Share of the steps after which the time of all is estimated."""
 
 COMPILATION = "about a minute"
 """What compiling all that a ranking needs takes."""
@@ -129,32 +132,27 @@ class Life:
 
     def __init__(self, title: str, *, quiet: bool = False) -> None:
         self.title, self.begun, self.quiet = title, time.monotonic(), quiet
-        self.started = self.begun
         self.done = self.total = 0
-        self.expected = self.compiled = quiet  # which prints nothing, as `--quiet` requires
+        self.first = self.begun, 0  # when the work began in earnest, and what was done then
+        self.told = self.compiled = quiet  # which prints nothing, as `--quiet` requires
 
     def __call__(self, done: int, total: int) -> None:
-        """Take in how far the work is; without an estimate beforehand its first part gives one."""
+        """Take in how far the work is; its first part tells what all of it takes."""
+        now = time.monotonic()
+        if now - self.begun < LOADING or not self.total:  # what an earlier call kept comes at once
+            self.first = now, done
         self.done, self.total = done, total
-        passed = time.monotonic() - self.begun
-        if not self.expected and passed > WORTH_PRINTING and FIRST_PART * total <= done < total:
-            self.expected = True
-            complain(f"{self.title} takes about {in_words(passed * total / done)}.")
+        share = (done - self.first[1]) / max(total - self.first[1], 1)
+        if not self.told and now - self.begun > WORTH_PRINTING and FIRST_PART <= share < 1.0:
+            self.told = True
+            whole = self.first[0] - self.begun + (now - self.first[0]) / share
+            complain(f"{self.title} takes about {in_words(whole)}.")
 
     def compiling(self) -> None:
         """Say once that kernels are compiled, which the next command finds done."""
         if not self.compiled:
             self.compiled = True
             complain(f"{self.title}: compiling once on this machine, {COMPILATION} in all.")
-
-    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
-        """Print what the work will take, unless that is too short to matter."""
-        if self.quiet:
-            return
-        seconds, self.expected = estimate(), True
-        self.started = time.monotonic()  # what was compiled for the estimate is not part of a step
-        if seconds >= WORTH_PRINTING:
-            complain(f"{self.title} takes {'at most ' if at_most else ''}about {in_words(seconds)}.")
 
     def line(self) -> str:
         """Return how far the work is after which time."""
@@ -163,7 +161,10 @@ class Life:
             return f"{self.title}: at work for {in_words(passed)}"
         share = math.floor(100.0 * self.done / self.total)
         steps = f"{self.done} of {self.total} steps ({share} %) after {in_words(passed)}"
-        left = (time.monotonic() - self.started) * (self.total - self.done) / self.done
+        begun, before = self.first
+        if self.done == before:
+            return f"{self.title}: {steps}"
+        left = (time.monotonic() - begun) * (self.total - self.done) / (self.done - before)
         return f"{self.title}: {steps}, about {in_words(left)} left"
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Seq
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import fields
 from queue import Empty, SimpleQueue
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -41,14 +41,6 @@ class Progress(Protocol):
 
     def __call__(self, done: int, total: int, /) -> None:
         """Take in how many points of those known so far are done."""
-
-
-@runtime_checkable
-class Expecting(Progress, Protocol):
-    """Is called beforehand with what a long job will take, too."""
-
-    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
-        """Take in an estimate, which costs something to make."""
 
 
 LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
@@ -103,12 +95,6 @@ class Runner:
         self.jobs, self.progress, self.ledger, self.executor = jobs, progress, ledger, executor
         self.stop = Stop()
         self._gathered: Gathered | None = None  # while `work_out` is at work
-
-    def expect(self, estimate: Callable[[], Second], *, at_most: bool = False) -> None:
-        """Report what the work will take; at most that where an earlier call has kept runs."""
-        if isinstance(self.progress, Expecting):
-            resumed = self.ledger is not None and self.ledger.goes_on
-            self.progress.expect(estimate, at_most=at_most or resumed)
 
     def ensemble(
         self,
