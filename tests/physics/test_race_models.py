@@ -155,7 +155,7 @@ def test_slip_by_the_pressure_moves_free_rolling():
 def test_a_worn_film_has_the_pressure_of_hertz():
     """Its thickness varies; it is in series."""
     worn = replace(COATED, wear=Wear(friction=0.3, share=0.1))
-    with pytest.raises(InputError, match=r'TractionSettings.pressure must be "hertz"'):
+    with pytest.raises(InputError, match=r'Study.traction.pressure must be "hertz"'):
         study(worn, traction=TractionSettings(pressure=ContactPressure.COATED))
 
 

@@ -137,8 +137,8 @@ def test_a_measured_profile_is_bare_between_two_places_without_film():
 @pytest.mark.parametrize(
     ("given", "path"),
     [
-        ({}, "Wear.width"),
-        ({"width": 1e-4, "share": 0.1}, "Wear.width"),
+        ({}, "Wear"),
+        ({"width": 1e-4, "share": 0.1}, "Wear.share"),
         ({"share": 1.5}, "Wear.share"),
         ({"share": 0.1, "friction": 0.0}, "Wear.friction"),
         ({"width": math.nan}, "Wear.width"),
@@ -161,7 +161,9 @@ def test_a_worn_film_is_one_that_there_is():
     wear = Wear(friction=0.3, share=0.1, thickness=2e-6)
     with pytest.raises(InputError, match=r"Film.wear needs a film that wears"):
         Film(race_friction=0.1, wear=wear)
-    with pytest.raises(InputError, match=r"Wear.thickness must be at most the thickness of the film, 1 um"):
+    with pytest.raises(
+        InputError, match=r"Film.wear.thickness must be at most the thickness of the film, 1 um"
+    ):
         Film(race_friction=0.1, material=SOFT, thickness=1e-6, wear=wear)
     none = worn_band(1e-4, worn=0.0, film=0.1)
     with pytest.raises(InputError, match=r"race_friction must be > 0 everywhere"):

@@ -104,7 +104,7 @@ def test_the_longest_flag_is_written_and_read_back(tmp_path):
     tests = (whole(flags=(max(found, key=len),)),)
     (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
     assert read_friction(tmp_path / "friction.toml") == tests
-    with pytest.raises(InputError, match=r"flags\.0 must be one line of 1 to 500"):
+    with pytest.raises(InputError, match=r"flags\[1\] must be one line of 1 to 500"):
         whole(flags=("a" * 501,))
 
 

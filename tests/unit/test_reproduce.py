@@ -216,6 +216,7 @@ HOSTILE = {
         "not valid",
     ),
     "no study": (lambda kept: kept.update(study=None), "does not keep its study"),
+    "no origins": (lambda kept: kept["study"].pop("origins"), "is damaged"),
     "no files": (lambda kept: kept["study"].pop("files"), "is damaged"),
     "files that are none": (lambda kept: kept["study"].update(files={"a": 1}), "is damaged"),
     "option": (_ask(out="x"), "is not an option"),

@@ -287,7 +287,11 @@ def test_every_parameter_reaches_the_study(name, study):
         cage |= {"motion": MotionModel.SPACE}
     if name == "cage.land_spacing":
         cage |= {"land_count": 2, "land_spacing": 0.01}
+    if name == "cage.land_lobes":
+        cage |= {"land_out_of_round": 1e-6}
     study = replace(study, cage=replace(study.cage, **cage))
+    if name == "operation.ramp_start":
+        study = replace(study, operation=replace(study.operation, ramp_time=0.1))
     if name.startswith("film.wear."):
         form = {"share": 0.1} if name.endswith("share") else {"width": 2e-4}
         worn = replace(study.film, wear=Wear(friction=0.3, thickness=1e-8, **form))

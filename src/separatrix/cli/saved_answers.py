@@ -137,10 +137,11 @@ def kept_by(saved: Saved) -> Document:
     if not isinstance(study, dict):
         why = kept.get("reason")
         raise InputError(saved.path, "does not keep its study", cure=printable(why, 200) if why else "")
-    files = study.get("files")
     is_right = isinstance(study.get("name"), str) and isinstance(study.get("data"), dict)
-    if not is_right or not isinstance(files, dict) or not all(isinstance(x, str) for x in files.values()):
-        raise InputError(saved.path, "is damaged: provenance.study must have name, data and files")
+    for one in (study.get("files"), study.get("origins")):
+        is_right = is_right and isinstance(one, dict) and all(isinstance(x, str) for x in one.values())
+    if not is_right:
+        raise InputError(saved.path, "is damaged: provenance.study must have name, data, files and origins")
     return kept
 
 

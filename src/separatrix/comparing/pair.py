@@ -185,8 +185,6 @@ def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[
     """Yield what differs; numbers of a list are compared with the largest of that list."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         for name in {**a, **b}:
-            if name == "origin":  # a place in a file
-                continue
             at = f"{key}.{name}" if key else str(name)
             if name in a and name in b:
                 yield from _differing(a[name], b[name], at, None)

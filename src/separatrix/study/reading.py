@@ -39,7 +39,11 @@ FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring
 LIBRARY = "library "
 """Before the number and the name of a library file that a study keeps: no path of a value begins so."""
 
-FROM_CLEARANCE = "derived, from radial_clearance"
+DERIVED = (
+    ("bearing.radial_clearance", "radial_clearance", ("bearing.contact_angle",)),
+    ("film.wear.profile", "profile", ("film.wear.across", "film.wear.thicknesses")),
+)
+"""A key, its name, and what follows from it where it is given."""
 
 
 def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> Study:
@@ -97,7 +101,9 @@ def study_again(content: Mapping[str, Any]) -> Study:
     libraries = [(name.partition(": ")[2], text) for name, text in files.items() if name.startswith(LIBRARY)]
     library = joined([library_of_text(text, label) for label, text in libraries])
     document = Document(content["name"], content["data"], {}, files=dict(files), is_kept=True)
-    return _study_of(document, content["name"], library)[0]
+    study, _ = _study_of(document, content["name"], library)
+    kept: Study = built_with(study, origins=content["origins"])
+    return kept
 
 
 def _study_of(document: Document, name: str, library: Library) -> tuple[Study, tuple[str, ...]]:
@@ -106,7 +112,7 @@ def _study_of(document: Document, name: str, library: Library) -> tuple[Study, t
     values = {one.name: getattr(study, one.name) for one in fields(Study)}
     values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
     data = {key: one for key, one in document.data.items() if key not in ("extends", "library")}
-    values["content"] = {"name": name, "data": data, "files": document.files}
+    values["content"] = {"name": name, "data": data, "files": document.files, "origins": values["origins"]}
     found, table = (
         library.fluid(study.operation.fluid or ""),
         document.data.get("ranking", {}).get("friction"),
@@ -191,8 +197,9 @@ def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
         value = document.written(path)
         is_plain = not isinstance(value, dict | list) or path in loaded.distributions
         origins[".".join(map(str, path))] = source.place + (f": {written(value)}" if is_plain else "")
-    if "bearing.radial_clearance" in origins:
-        origins["bearing.contact_angle"] = f"{FROM_CLEARANCE}, {origins['bearing.radial_clearance']}"
+    for key, name, follows in DERIVED:
+        if key in origins:
+            origins |= dict.fromkeys(follows, f"derived, from {name}, {origins[key]}")
     return origins
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from enum import Enum
 from functools import cache
 from importlib.metadata import version
@@ -74,7 +74,9 @@ def _section(study: Study, section: str) -> dict[str, object] | None:
         if record.wear is not None:
             del values["wear"]
             names = [name for name in keys_of(Wear) if name != "profile"]
-            values |= {f"wear.{name}": _value(study, record.wear, "film.wear", name) for name in names}
+            across, thicknesses = record.wear.places
+            worn = replace(record.wear, profile=None, across=across, thicknesses=thicknesses)
+            values |= {f"wear.{name}": _value(study, worn, "film.wear", name) for name in names}
     if isinstance(record, CageDesign):  # whose friction the cage has, where it has not its own
         candidate = None if record.ball_cage_friction is not None else cage_candidate(study)
         values["ball_cage_friction"] = {

@@ -361,7 +361,8 @@ def with_models(study: Study, models: Mapping[str, str]) -> Study:
     content = study.content
     if content is not None:
         given = {**content["data"].get("cage", {}), **{name: one.value for name, one in chosen.items()}}
-        content = {**content, "data": {**content["data"], "cage": given}}
+        known = {"data": {**content["data"], "cage": given}, "origins": {**study.origins, **origins}}
+        content = {**content, **known}
     return replace(study, cage=cage, origins={**study.origins, **origins}, content=content)
 
 
