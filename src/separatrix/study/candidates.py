@@ -114,7 +114,7 @@ def _environments_are_measured(
 
 @record
 class RankingSection:
-    """The keys of [ranking]: a table or a file of measured frictions, or candidates."""
+    """Which cage materials to rank, by measured frictions: a table, a file, or stated here."""
 
     RULES: ClassVar = (one_of(("friction", "materials"), "candidates", required=True),)
 

@@ -41,6 +41,8 @@ LIBRARY = "library "
 
 DERIVED = (
     ("bearing.radial_clearance", "radial_clearance", ("bearing.contact_angle",)),
+    ("bearing.contact_angle", "contact_angle", ("bearing.radial_clearance",)),
+    ("film.elastic_modulus", "elastic_modulus", ("film.material",)),
     ("film.wear.profile", "profile", ("film.wear.across", "film.wear.thicknesses")),
 )
 """A key, its name, and what follows from it where it is given."""
@@ -199,7 +201,7 @@ def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
         origins[".".join(map(str, path))] = source.place + (f": {written(value)}" if is_plain else "")
     for key, name, follows in DERIVED:
         if key in origins:
-            origins |= dict.fromkeys(follows, f"derived, from {name}, {origins[key]}")
+            origins = dict.fromkeys(follows, f"derived, from {name}, {origins[key]}") | origins
     return origins
 
 

@@ -29,6 +29,9 @@ from separatrix.study.study import (
     Wear,
 )
 
+PROPERTIES = {**DERIVED, "film.material": "body"}
+"""Inputs that may follow from others, and the property that has them."""
+
 MOST_KEPT = 64 * 1024**2
 """Characters of the files that an answer keeps."""
 
@@ -89,7 +92,7 @@ def _section(study: Study, section: str) -> dict[str, object] | None:
 
 def _value(study: Study, record: object, section: str, name: str) -> dict[str, object]:
     unit, key = unit_of(type(record), name), f"{section}.{name}"
-    value = getattr(record, DERIVED.get(key, name))
+    value = getattr(record, PROPERTIES.get(key, name))
     if isinstance(value, Material):
         inside = f"{section if section == 'film' else key}."
         own = {name.removeprefix(inside): one for name, one in study.distributions.items()}
