@@ -79,7 +79,7 @@ def test_speeds_of_cage_and_rings_are_finite(field):
         ("orbital_cosines", (math.nan,), "must be a finite number; got nan"),
         ("orbital_sines", (0.1,), "must be as many as orbital_cosines, 0"),
         ("ball_spin", (1.0, math.inf, 0.0), "must be a finite number; got inf"),
-        ("ball_spin", (1.0, 2.0), "must be three numbers [rad/s]"),
+        ("ball_spin", (1.0, 2.0), "must have 3 items; got 2 of them"),
         ("transverse_inertia", 0.02 * 0.0325**2, "must be at least half that about the axis"),
         ("inner_radius", 0.033, "The walls of its pockets do not reach the balls."),
         ("outer_radius", 0.032, "The walls of its pockets do not reach the balls."),

@@ -75,32 +75,24 @@ class MovingCage:
     RULES: ClassVar = (one_of("pocket_angles", "pocket_spacing_scatter"),)
 
     mass: Kilogram = key(_SIZE)  # M
-    moment_of_inertia: KilogramMetre2 = key(
-        positive(1e-30, 1e12)
-    )  # J about the bearing axis; a thin ring has M R^2
-    transverse_inertia: KilogramMetre2 | None = key(
-        positive(1e-30, 1e12), default=None
-    )  # about a diameter; None: that of a thin ring, J/2
+    moment_of_inertia: KilogramMetre2 = key(_SIZE)  # J about the axis; a thin ring has M R^2
+    transverse_inertia: KilogramMetre2 | None = key(_SIZE, default=None)  # about a diameter; None: J/2
     ball_count: int = key(between(1, 1000))
     pitch_radius: Metre = key(_SIZE)  # R, where balls and pockets meet
     cage_speed: RadianPerSecond = key(_TURNS)  # Omega of the ball set
     inner_speed: RadianPerSecond = key(_TURNS)
     outer_speed: RadianPerSecond = key(_TURNS)
     motion: MotionModel = key(default=MotionModel.PLANE)
-    pocket_clearance: Metre = key(
-        not_negative(10.0)
-    )  # along the circumference, stop to stop, 2 c_p; 0: gripped from both sides
+    pocket_clearance: Metre = key(not_negative(10.0))  # along the orbit, stop to stop, 2 c_p; 0: gripped
     ball_cage_stiffness: NewtonPerMetre = key(_SIZE)  # k_BC, in series with race_damping
     race_damping: NewtonSecondPerMetre  # C_mu; infinite: a ball gripped by its races
     ball_cage_friction: Ratio = key(_AMOUNT)  # f_BC
     ball_spin: Annotated[tuple[RadianPerSecond, ...], ("axis",)] | None = key(
-        between(-1e12, 1e12), default=None
+        _SPEEDS, default=None, length=(3, 3)
     )
     """Spin of a ball relative to its orbit: along the axis, outward, and along the orbit. None: about the
     axis, so fast that it alone decides where friction acts."""
-    ball_diameter: Metre = key(
-        between(0.0, 1e12), default=0.0
-    )  # friction acts at half of it from the ball's centre; 0: at the centre
+    ball_diameter: Metre = key(_AMOUNT, default=0.0)  # friction acts at half of it; 0: at the centre
     traction: BallTraction | None = None  # of a ball of one state; None: the paper's damper
     free_ball: FreeBall | None = None  # of a ball whose three spins are states too
     guidance: Guidance = key(default=Guidance.BALL)
@@ -111,64 +103,34 @@ class MovingCage:
     land_count: int = _SAME["land_count"]()
     land_spacing: Metre | None = None  # between the middles of two lands
     land_width: Metre = key(_AMOUNT, default=0.0)
-    land_radius: Metre | None = key(
-        positive(1e-9, 1e3), default=None
-    )  # where friction acts; None: at the pitch radius
-    land_out_of_round: Metre = _SAME["land_out_of_round"]()  # amplitude of the lobes of the cage's land
+    land_radius: Metre | None = key(_RADIUS, default=None)  # of friction; None: the pitch radius
+    land_out_of_round: Metre = _SAME["land_out_of_round"]()  # amplitude of its lobes
     land_lobes: int = _SAME["land_lobes"]()
     unbalance: KilogramMetre = key(_AMOUNT, default=0.0)  # mass times eccentricity
-    dynamic_unbalance: Radian = key(
-        between(0.0, 0.1), default=0.0
-    )  # between the axis of the cage and its principal axis
-    gravity: MetrePerSecond2 = key(
-        between(0.0, 1e12), default=0.0
-    )  # across the bearing axis, along azimuth 0, fixed in space
+    dynamic_unbalance: Radian = key(between(0.0, 0.1), default=0.0)  # to its principal axis
+    gravity: MetrePerSecond2 = key(_AMOUNT, default=0.0)  # across the axis, along azimuth 0
     axial_gravity: MetrePerSecond2 = key(between(-1e6, 1e6), default=0.0)
-    added_mass: Kilogram = key(
-        between(0.0, 1e12), default=0.0
-    )  # of the fluid that moves with the cage across the axis
+    added_mass: Kilogram = key(_AMOUNT, default=0.0)  # of fluid that moves along, across the axis
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
-    pocket_axial_clearance: Metre | None = _SAME[
-        "pocket_axial_clearance"
-    ]()  # along the axis, stop to stop, of an elongated pocket
-    pocket_axial_offset: Metre = _SAME[
-        "pocket_axial_offset"
-    ]()  # of the cage from the balls' plane; in space at the start
-    hertz_coefficient: NewtonPerMetre1_5 | None = key(
-        positive(1e-3, 1e18), default=None
-    )  # K of N = K approach^1.5; None: linear contact
-    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = key(
-        default=()
-    )  # of ball and pocket; empty: even
-    pocket_spacing_scatter: Ratio = _SAME[
-        "pocket_spacing_scatter"
-    ]()  # of the pitch, uniform, of a pocket with its ball
-    ball_diameter_scatter: Metre = _SAME["ball_diameter_scatter"]()  # standard deviation, normal, cut at 3
-    pocket_position_scatter: Metre = _SAME["pocket_position_scatter"]()  # along the circumference, the same
+    pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
+    pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start
+    hertz_coefficient: NewtonPerMetre1_5 | None = key(positive(1e-3, 1e18), default=None)  # K of N = K d^1.5
+    pocket_angles: Annotated[tuple[Radian, ...], ("pocket",)] = key(default=())  # empty: even
+    pocket_spacing_scatter: Ratio = _SAME["pocket_spacing_scatter"]()  # of the pitch, uniform
+    ball_diameter_scatter: Metre = _SAME["ball_diameter_scatter"]()  # normal, cut at 3
+    pocket_position_scatter: Metre = _SAME["pocket_position_scatter"]()  # the same, along the orbit
     groove_damping: NewtonSecondPerMetre = math.inf  # of a ball pushed along its grooves; infinite: held
     groove_stiffness: NewtonPerMetre = key(_AMOUNT, default=0.0)
-    pivot_speed: MetrePerSecond = key(
-        between(0.0, 1e12), default=0.0
-    )  # sliding below which pivoting lowers the friction of pocket and land
-    inner_radius: Metre | None = key(
-        positive(1e-9, 1e3), default=None
-    )  # of the cage, between which its pockets have walls; None: no edge
+    pivot_speed: MetrePerSecond = key(_AMOUNT, default=0.0)  # below it pivoting lowers friction
+    inner_radius: Metre | None = key(_RADIUS, default=None)  # of the walls; None: no edge
     outer_radius: Metre | None = key(_RADIUS, default=None)
-    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(
-        between(-1e12, 1e12), default=()
-    )
+    orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(_SPEEDS, default=())
     """A_h: a free ball at azimuth p, fixed in space and 0 along the radial load, is faster than the ball set
     by the sum of A_h cos h p + B_h sin h p over h = 1, 2, ..."""
-    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(
-        between(-1e12, 1e12), default=()
-    )  # B_h
-    ramp_time: Second = key(
-        not_negative(1e4), default=0.0
-    )  # in which all speeds rise in proportion to time; 0: no ramp
-    ramp_start: Ratio = key(between(0.0, 1.0, open_low=True), default=0.1)  # share of the speeds at its start
-    axial_kick: Ratio = key(
-        between(0.0, 1e12), default=0.0
-    )  # share of a disturbance along the axis, in space
+    orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(_SPEEDS, default=())  # B_h
+    ramp_time: Second = key(not_negative(1e4), default=0.0)  # in which all speeds rise; 0: none
+    ramp_start: Ratio = key(between(0.0, 1.0, open_low=True), default=0.1)  # of the speeds, at its start
+    axial_kick: Ratio = key(_AMOUNT, default=0.0)  # of a disturbance, along the axis
     tilt_kick: Ratio = key(_AMOUNT, default=0.0)  # at the rim by tilting
     is_tilt_held: bool = False  # the cage may not tilt
     is_axially_held: bool = False  # it may not move along the axis
@@ -317,12 +279,6 @@ def _one_angle_a_ball(pocket_angles: tuple[float, ...], ball_count: int) -> Faul
         rule = f"must hold one angle for each of the {ball_count} balls"
         cure = "Leave it out for evenly spaced pockets."
         yield Fault("pocket_angles", rule, cure, str(len(pocket_angles)))
-
-
-@check(MovingCage)
-def _spin_has_three_parts(ball_spin: tuple[float, ...]) -> Faults:
-    if len(ball_spin) != 3:
-        yield Fault("ball_spin", "must be three numbers [rad/s]", got=str(len(ball_spin)))
 
 
 @check(MovingCage)
