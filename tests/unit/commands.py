@@ -1,10 +1,12 @@
-"""The command line as the tests call it: its document, its refusal in one line, what a job has kept."""
+"""What many tests call: the command line, tables of mistakes, the refusal of a file, what a job has kept."""
 
 from __future__ import annotations
 
 import json
+import pickle
 import sqlite3
 import sys
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import pytest
 
 from separatrix.app.worker import work
 from separatrix.cli import main
+from separatrix.ground.errors import InputError
 from separatrix.verdict.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
@@ -38,6 +41,27 @@ def refused(capsys, *arguments: str) -> str:
     out, err = capsys.readouterr()
     assert (out, err.count("\n"), len(err) < 600, sorted(Path().iterdir())) == ("", 1, True, before), err
     return err
+
+
+def table(text: str) -> list:
+    """Return the cases of a table: what is wrong, and the words of its refusal between semicolons."""
+    rows = (row.partition(" :: ") for row in text.strip().replace("\n    ::", " ::").splitlines())
+    return [
+        pytest.param(wrong.replace(r"\n", "\n"), words.split(" ; "), id=f"{number} {wrong[:50]}")
+        for number, (wrong, _, words) in enumerate(rows)
+    ]
+
+
+def refusal(words: list[str], read: Callable, *arguments: object, lines: int = 1, **more: object) -> str:
+    """Return the refusal of an input, which has these words on short lines and crosses a process border."""
+    with pytest.raises(InputError) as caught:
+        read(*arguments, **more)
+    text = str(caught.value)
+    assert [word for word in words if word not in text] == [], text
+    assert [line for line in text.split("\n") if not line.isprintable() or len(line) > 600] == []
+    assert text.count("\n") == lines - 1, text
+    assert str(pickle.loads(pickle.dumps(caught.value))) == text  # noqa: S301 - our own bytes
+    return text
 
 
 def pieces(folder: Path) -> int:

@@ -1,6 +1,6 @@
 """Two studies with nearly every key: a cage in space, and one in the plane."""
 
-_BEFORE = """\
+SPACE = """\
 [bearing]
 ball_diameter = "7.144 mm"
 pitch_diameter = "36 mm"
@@ -8,12 +8,8 @@ ball_count = 12
 radial_clearance = "12 um +- 10 %"
 inner_conformity = 0.53
 outer_conformity = 0.54
+ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.285, density = "7650 kg/m3", name = "ours" }
 ring_material = "440C"
-ball_material.elastic_modulus = "205 GPa"
-ball_material.poisson_ratio = 0.285
-ball_material.density = "7650 kg/m3"
-ball_material.name = "ours"
-ball_material.source = "a sheet"
 
 [operation]
 inner_speed = "6000 rpm"
@@ -36,8 +32,29 @@ wear = { width = "0.05 mm", friction = 0.3, thickness = "0.1 um", races = "inner
 model = "exact"
 pressure_slip = "included"
 
-"""
-_AFTER = """\
+[cage]
+mass = "3.5 g"
+motion = "space"
+ball = "traction"
+inner_diameter = "33 mm"
+outer_diameter = "39 mm"
+width = "10 mm"
+material = "Vespel SP-3"
+pocket_clearance = "0.3 mm"
+pocket_shape = "elongated"
+pocket_axial_clearance = "0.2 mm"
+pocket_axial_offset = "0.02 mm"
+guidance = "outer"
+land_clearance = "0.3 mm"
+land_friction = 0.15
+land_count = 2
+land_spacing = "8 mm"
+land_width = "1 mm"
+transverse_inertia = "0.6 kg mm2"
+dynamic_unbalance = "0.1 mrad"
+gravity = "1 g0"
+added_mass = "0.1 g"
+
 [stability]
 kicks = ["2 m/s", "0.1 m/s"]
 reference_kick = "0.5 m/s"
@@ -55,30 +72,7 @@ name = "Phenolic, dry"
 friction = { "vacuum" = 0.30 }
 material = { elastic_modulus = "7 GPa", poisson_ratio = 0.35 }
 """
-SPACE = f"""{_BEFORE}\
-[cage]
-mass = "3.5 g +- 10 %"
-motion = "space"
-ball = "traction"
-inner_diameter = "33 mm"
-outer_diameter = "39 mm"
-width = "10 mm"
-material = "Vespel SP-3"
-pocket_clearance = "0.3 mm"
-pocket_shape = "elongated"
-pocket_axial_clearance = "0.2 mm"
-pocket_axial_offset = "0.02 mm"
-guidance = "outer"
-land_clearance = "0.3 mm"
-land_friction = 0.15
-land_count = 2
-land_spacing = "8 mm"
-land_width = "1 mm"
-dynamic_unbalance = "0.1 mrad"
-gravity = "1 g0"
-added_mass = "0.1 g"
-
-{_AFTER}"""
+_BEFORE, _, _AFTER = SPACE.partition("[cage]\n")
 PLANE = f"""{_BEFORE}\
 [cage]
 mass = "3.5 g +- 10 %"
@@ -102,4 +96,4 @@ pocket_position_scatter = "5 um"
 ball_diameter_scatter = "1 um"
 gravity = "1 g0"
 
-{_AFTER}"""
+[stability]{_AFTER.partition("[stability]")[2]}"""

@@ -1,6 +1,7 @@
 """Every value of a library, a friction file and a study wrong in nine ways: decided as by the readers before.
 
-The decisions are in reader_mutants.json: the lines that are refused, or "read". Those of the hand-written
+The decisions are in reader_mutants.json: the lines that are refused, or "read"; and each rule that refuses
+one, with its bounds, units and words, by the key. The decisions of the hand-written
 readers were the same, but that a wrong row of a friction table had the line of its header, and that a study
 lost the line of `title`, a fault beside a refused one, and the lines of a wrong distribution's neighbours.
 Written anew, after a look at each difference, by `python tests/unit/test_reader_mutants.py`.
@@ -12,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from rich_studies import SPACE
 
 from separatrix.friction.file import read_friction
 from separatrix.ground.errors import InputError
@@ -67,78 +69,7 @@ source = "a.csv"
 checksum = "ab"
 reduced_by = "separatrix"
 """,
-    "study": """\
-[bearing]
-ball_diameter = "7.144 mm"
-pitch_diameter = "36 mm"
-ball_count = 12
-radial_clearance = "12 um +- 10 %"
-inner_conformity = 0.53
-outer_conformity = 0.54
-ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.285, density = "7650 kg/m3", name = "ours" }
-ring_material = "440C"
-
-[operation]
-inner_speed = "6000 rpm"
-axial_load = "40 N"
-radial_load = "5 N"
-moment = "0 N m"
-temperature = "20 degC"
-fluid = "vacuum"
-ramp_time = "50 ms"
-ramp_start = 0.2
-
-[film]
-race_friction = { between = [0.05, 0.1] }
-elastic_modulus = "4 GPa"
-poisson_ratio = 0.38
-thickness = ["0.4 um", "0.5 um", "0.7 um"]
-wear = { width = "0.05 mm", friction = 0.3, thickness = "0.1 um", races = "inner" }
-
-[traction]
-model = "exact"
-pressure_slip = "included"
-
-[cage]
-mass = "3.5 g"
-motion = "space"
-ball = "traction"
-inner_diameter = "33 mm"
-outer_diameter = "39 mm"
-width = "10 mm"
-material = "Vespel SP-3"
-pocket_clearance = "0.3 mm"
-pocket_shape = "elongated"
-pocket_axial_clearance = "0.2 mm"
-pocket_axial_offset = "0.02 mm"
-guidance = "outer"
-land_clearance = "0.3 mm"
-land_friction = 0.15
-land_count = 2
-land_spacing = "8 mm"
-land_width = "1 mm"
-transverse_inertia = "0.6 kg mm2"
-dynamic_unbalance = "0.1 mrad"
-gravity = "1 g0"
-added_mass = "0.1 g"
-
-[stability]
-kicks = ["2 m/s", "0.1 m/s"]
-reference_kick = "0.5 m/s"
-runs = 32
-axial_kick = 0.1
-restitution_factors = [0.1, 0.5, 0.9]
-
-[[ranking.candidates]]
-name = "Vespel SP-3"
-friction = { "vacuum" = { mean = 0.08, standard_deviation = "20 %", count = 4 }, "air, 440C" = "0.2 +- 30 %" }
-material = { elastic_modulus = "3.3 GPa", poisson_ratio = 0.4, density = "1.4 g/cm3" }
-
-[[ranking.candidates]]
-name = "Phenolic, dry"
-friction = { "vacuum" = 0.30 }
-material = { elastic_modulus = "7 GPa", poisson_ratio = 0.35 }
-""",
+    "study": SPACE,
 }
 PAIR = re.compile(r'("[^"\n]*"|[a-z_]+)( = )("[^"\n]*"|\[[^]\n{}]*\]|[0-9.]+|false)(, )?')
 CHANGES = {
@@ -154,8 +85,8 @@ CHANGES = {
 }
 
 
-def decisions(dialect, folder):
-    """Refused lines of every mutant, in the order of the values, by the change."""
+def decisions(dialect, folder, rules):
+    """Refused lines of every mutant, in the order of the values, by the change; the rules by their keys."""
     text, path = FILES[dialect], folder / f"{dialect}.toml"
     for change, changed in CHANGES.items():
         found = []
@@ -174,13 +105,23 @@ def decisions(dialect, folder):
                 found.append("read")
             except InputError as error:
                 found.append(" ".join(sorted(set(re.findall(r"toml, line (\d+)", str(error))), key=int)))
+                for one in error.problems or (error,):
+                    if not one.rule.startswith(("is not a valid key", "is not valid TOML")):
+                        rules.setdefault(re.sub(r"^.*?(, line \d+: |$)", "", one.path), set()).add(one.rule)
         yield change, found
+
+
+def decided(dialect, folder):
+    """All that is frozen of a dialect, as JSON has it."""
+    rules = {}
+    lines = dict(decisions(dialect, folder, rules))
+    return lines | {f"rules of {key}": sorted(said) for key, said in sorted(rules.items())}
 
 
 @pytest.mark.parametrize("dialect", FILES)
 def test_mutants_are_decided_as_before(dialect, tmp_path):
-    """Which are read, and the lines of those that are not."""
-    assert dict(decisions(dialect, tmp_path)) == json.loads(FROZEN.read_text(encoding="utf-8"))[dialect]
+    """Which are read, and the lines and rules of those that are not."""
+    assert decided(dialect, tmp_path) == json.loads(FROZEN.read_text(encoding="utf-8"))[dialect]
 
 
 def test_the_files_that_are_changed_are_right(tmp_path):
@@ -192,7 +133,7 @@ def test_the_files_that_are_changed_are_right(tmp_path):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as made:
-        rows = {dialect: dict(decisions(dialect, Path(made))) for dialect in FILES}
+        rows = {dialect: decided(dialect, Path(made)) for dialect in FILES}
     one = {
         d: ",\n".join(f"{json.dumps(c)}: {json.dumps(f)}" for c, f in of.items()) for d, of in rows.items()
     }
