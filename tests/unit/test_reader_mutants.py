@@ -1,7 +1,7 @@
 """Every value of a library, a friction file and a study wrong in nine ways: decided as by the readers before.
 
 The decisions are in reader_mutants.json: the lines that are refused, or "read"; and each rule that refuses
-one, with its bounds, units and words, by the key. The decisions of the hand-written
+one, with its bounds, units, words and cure, by the key. The decisions of the hand-written
 readers were the same, but that a wrong row of a friction table had the line of its header, and that a study
 lost the line of `title`, a fault beside a refused one, and the lines of a wrong distribution's neighbours.
 Written anew, after a look at each difference, by `python tests/unit/test_reader_mutants.py`.
@@ -107,7 +107,9 @@ def decisions(dialect, folder, rules):
                 found.append(" ".join(sorted(set(re.findall(r"toml, line (\d+)", str(error))), key=int)))
                 for one in error.problems or (error,):
                     if not one.rule.startswith(("is not a valid key", "is not valid TOML")):
-                        rules.setdefault(re.sub(r"^.*?(, line \d+: |$)", "", one.path), set()).add(one.rule)
+                        rules.setdefault(re.sub(r"^.*?(, line \d+: |$)", "", one.path), set()).add(
+                            f"{one.rule}. {one.cure}"
+                        )
         yield change, found
 
 
