@@ -6,8 +6,9 @@ import pickle
 from dataclasses import replace
 
 import pytest
+from commands import refusal
 
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.units import UNITS
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
@@ -18,7 +19,6 @@ from separatrix.study.study import (
     Candidate,
     Film,
     Friction,
-    Guidance,
     KinematicModel,
     Kinematics,
     Material,
@@ -114,46 +114,30 @@ GOOD = {
 OILY = Candidate(name="A", friction={"oil": Friction(mean=0.1)})
 WIDE = {"cage": CageDesign(mass=0.02, pocket_clearance=0.006, ball_cage_stiffness=1e6)}
 WRONG_RECORDS = [
-    (bearing, {"ball_diameter": math.nan}, "BallBearing.ball_diameter must be a finite number > 0; got nan"),
+    (
+        bearing,
+        {"ball_diameter": "1"},
+        'BallBearing.ball_diameter needs a unit of length; got "1". Write "1 mm".',
+    ),
     (bearing, {"ball_diameter": -1.0}, "BallBearing.ball_diameter must be > 0; got -1 m"),
-    (bearing, {"ball_diameter": 0.0}, "BallBearing.ball_diameter must be > 0; got 0 mm"),
-    (bearing, {"ball_diameter": "1 kg"}, "ball_diameter needs a unit of length (m, cm, mm, um, ...)"),
-    (bearing, {"ball_diameter": "1"}, 'ball_diameter needs a unit of length; got "1". Write "1 mm".'),
-    (bearing, {"ball_diameter": "-1 mm"}, "BallBearing.ball_diameter must be > 0; got -1 mm"),
     (bearing, {"ball_diameter": None}, "BallBearing.ball_diameter is missing"),
     (bearing, {"ball_diameter": True}, "BallBearing.ball_diameter must be a finite number > 0; got true"),
     (bearing, {"contact_angle": 15}, "contact_angle must be >= 0 and < 90 deg; got 859.43669 deg (15 rad)"),
     (bearing, {"contact_angle": math.pi / 2}, "BallBearing.contact_angle must be >= 0 and < 90 deg; got 90"),
     (bearing, {"ball_count": 12.0}, "ball_count must be a whole number from 3 to 200; got 12.0"),
     (bearing, {"ball_count": 19}, "BallBearing.ball_count must be at most 18"),
-    (bearing, {"inner_conformity": 0.5}, "BallBearing.inner_conformity must be > 0.5 and <= 0.6; got 0.5"),
-    (bearing, {"outer_conformity": 0.61}, "BallBearing.outer_conformity must be > 0.5 and <= 0.6; got 0.61"),
     (bearing, {"bore": 0.05}, "BallBearing.bore must be smaller than"),
     (Material, {"elastic_modulus": math.inf}, "Material.elastic_modulus must be a finite number > 0"),
-    (Material, {"poisson_ratio": 0.5}, "Material.poisson_ratio must be >= 0 and < 0.5; got 0.5"),
-    (Material, {"density": 0.0}, "Material.density must be > 0"),
     (Material, {"name": "a\nb"}, "Material.name must be one line of 1 to 200 printable"),
-    (Operation, {"inner_speed": math.nan}, "Operation.inner_speed must be a finite number"),
-    (Operation, {"axial_load": -1.0}, "lifts the inner ring off its balls"),
     (Operation, {"axial_load": 0.0}, "nothing presses the balls"),
     (Operation, {"axial_load": 0.0, "tilt": 1e-3}, "there is no radial load or moment"),
     (Operation, {"moment": 1.0, "tilt": 0.0}, "tilt and moment exclude each other"),
     (Operation, {"temperature": 0.0}, "Operation.temperature must be > 0"),
-    (Film, {"race_friction": -0.1}, "Film.race_friction must lie between 0 and 2"),
-    (Film, {"material": STEEL}, "Film.thickness is missing"),
     (Film, {"thickness": 1e-6}, "Film.material is missing"),
-    (CageDesign, {"mass": 0.0}, "CageDesign.mass must be > 0"),
-    (CageDesign, {"pocket_clearance": -1e-3}, "CageDesign.pocket_clearance must be >= 0; got -1 mm"),
-    (CageDesign, {"guidance": Guidance.OUTER}, "land_clearance is missing: a cage with outer guidance"),
     (CageDesign, {"land_clearance": 1e-3}, "CageDesign.land_clearance needs guidance: without it"),
     (StabilitySettings, {"kicks": ("1 m/s", "2 m")}, "StabilitySettings.kicks needs a unit of speed"),
     (StabilitySettings, {"kicks": (0.5, 0.1)}, "must be strictly increasing; got 0.1 m/s after 0.5 m/s"),
     (StabilitySettings, {"kicks": (math.nan,)}, "StabilitySettings.kicks[1] must be a finite number"),
-    (StabilitySettings, {"runs": True}, "StabilitySettings.runs must be a whole number"),
-    (StabilitySettings, {"restitution_factors": (0.5, 1.0)}, "restitution_factors[2] must be > 0 and < 1"),
-    (StabilitySettings, {"seed": -1}, "StabilitySettings.seed must be a whole number from 0"),
-    (Friction, {"mean": 3.0}, "Friction.mean must lie between 0 and 2"),
-    (Friction, {"count": 0}, "Friction.count must be a whole number from 1"),
     (Candidate, {"friction": {"air": None}}, 'Candidate.friction of "A" has no measured value'),
     (RankingQuestion, {"candidates": (OILY,)}, "RankingQuestion.candidates"),
     (RankingQuestion, {"environments": ()}, "must not be empty"),
@@ -165,23 +149,13 @@ WRONG_RECORDS = [
 
 @pytest.mark.parametrize(("record", "changes", "words"), WRONG_RECORDS)
 def test_a_wrong_record_is_refused_when_it_is_built(record, changes, words):
-    """The field, the rule, the value in readable units; on one line."""
-    with pytest.raises(InputError) as caught:
-        record(**GOOD.get(record, {}) | changes)
-    assert words in str(caught.value)
-    assert all(line.isprintable() for line in str(caught.value).splitlines())
+    """The field, the rule, the value in readable units."""
+    refusal([words], record, lines=0, **GOOD.get(record, {}) | changes)
 
 
 def test_a_record_reports_everything_wrong_at_once():
     """Two fields, one error that holds both."""
-    with pytest.raises(InputError) as caught:
-        bearing(ball_diameter=-1.0, inner_conformity=5.88)
-    assert [p.path for p in caught.value.problems] == [
-        "BallBearing.ball_diameter",
-        "BallBearing.inner_conformity",
-    ]
-    again = pickle.loads(pickle.dumps(caught.value))  # noqa: S301 - our own bytes
-    assert [str(p) for p in again.problems] == [str(p) for p in caught.value.problems]
+    refusal(["ball_diameter", "inner_conformity"], bearing, ball_diameter=-1, inner_conformity=5.88, lines=2)
 
 
 def test_a_number_may_be_text_with_its_unit():
@@ -201,8 +175,7 @@ def test_balls_fit_up_to_touching():
     assert bearing(ball_diameter=touching * (1 - 1e-9)).ball_gap == pytest.approx(
         touching * 1e-9, rel=1e-6
     )  # cancellation
-    with pytest.raises(InputError, match="at most 11"):
-        bearing(ball_diameter=touching * (1 + 1e-9))
+    refusal(["at most 11"], bearing, ball_diameter=touching * (1 + 1e-9))
 
 
 def test_no_speed_and_no_friction_are_allowed_where_they_mean_something():
