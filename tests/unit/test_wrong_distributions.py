@@ -28,6 +28,17 @@ film: "0.5 +- 20 %" :: needs a unit before +- too ; "0.5 um +- 20 %"
 film: "0.5 +- 0.1 um" :: needs a unit before +- too ; on either side
 film: "(0.5 +- 0.1)" :: one number and one unit of length
 film: "(0.5 +- 20 %) um" :: after +- ; "20 % um"
+film: "0.5 um +- 20 % +- 3 %" :: one value, +- and one expanded uncertainty
+film: "0,5 um +- 20 %" :: decimal point, not a comma
+film: { between = [0.2, 1] } :: between, item 1, needs a unit of length
+[film]\nrace_friction = "0.1 mm +- 10 %" :: must be a plain number
+[film]\nrace_friction = "0,1 +- 10 %" :: a decimal point
+[film]\nmaterial = { elastic_modulus = "2 GPa +- 0 %", poisson_ratio = 0.4 }
+    :: [film] material.elastic_modulus ; a width > 0
+friction: "0.1 +- 0 %" :: friction.air ; a width > 0
+[kinematics]\nmodel = ["free", "inner race control"] :: [kinematics] model must be
+[bearing]\nball_count = [12, 12.5] :: item 2, must be a whole number
+[stability]\nruns = [32, 64] :: [stability] runs must be a whole number
 film: "0.5 um +-" :: one value, +- and one ; like "0.5 um +- 20 %"
 film: "+- 20 %" :: one value, +- and one
 film: { between = ["1 um", "0.2 um"] } :: between must rise; got "1 um" and "0.2 um" ; lower one first

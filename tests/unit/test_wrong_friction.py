@@ -23,7 +23,7 @@ nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got 
 +checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "b.csv"
     :: line 13: [[test]] checksum is that of test 1 once more
 +\n[[test]]\nmaterial = "armalon"\ncounterface = "440C"\nmedium = "liquid  nitrogen"\nfriction = 1
-    :: line 8: [[test]] material differs from that of test 1 only in capitals or spaces ; line 10: [[test]] medium
+    :: line 8: [[test]] material differs from that of test 1 only in capitals ; line 10: [[test]] medium
 """
 """A change of a good file, one added (+) or the file itself (^); place and rule of each mistake."""
 
