@@ -58,7 +58,7 @@ def refusal(words: list[str], read: Callable, *arguments: object, lines: int = 1
         read(*arguments, **more)
     text = str(caught.value)
     assert [word for word in words if word not in text] == [], text
-    assert [line for line in text.split("\n") if not line.isprintable() or len(line) > 600] == []
+    assert [line for line in text.split("\n") if not line.isprintable() or len(line) >= 400] == []
     assert lines in (0, text.count("\n") + 1), text
     assert str(pickle.loads(pickle.dumps(caught.value))) == text  # noqa: S301 - our own bytes
     return text
