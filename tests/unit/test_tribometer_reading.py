@@ -63,35 +63,96 @@ def test_checksum_is_that_of_the_file(tmp_path):
     assert read(tmp_path, content).checksum == hashlib.sha256(content).hexdigest()
 
 
-def test_anton_paar_columns_and_conditions_are_in_si(tmp_path):
-    """Radius 15 mm at 10 cm/s and 5 N: slip speed, load, temperature and time of a turn from the metadata."""
-    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME))
+ANTON = raw_logs.anton_paar(FRICTION, TIME)
+RTEC = raw_logs.rtec(FRICTION, TIME)
+BARE_RTEC = raw_logs.rtec(FRICTION, TIME, metadata=False)
+STROKE = ANTON.replace("Angle [\u00b0]".encode("cp1252"), b"Linear Position [mm]")
+PATTERNS = {
+    "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
+    "files": {
+        "log*.txt": {"material": "Armalon"},
+        "*g.txt": {"medium": "liquid nitrogen"},
+        "other.txt": {"material": "PEEK"},
+    },
+}
+ANTON_PAAR = {"sample": "A1", "slip_speed": 0.1, "normal_force": 5.0, "temperature": 295.15}
+CONDITIONS = {
+    "radius 15 mm at 10 cm/s": (ANTON, {}, ANTON_PAAR | {"cycle_time": 2 * math.pi * 0.015 / 0.1}),
+    "forces in mN": (raw_logs.anton_paar(FRICTION, TIME, nano=True), {}, {"normal_force": 5.0}),
+    "the greatest speed of strokes": (STROKE, {}, {"slip_speed": None}),
+    "the map before the metadata": (ANTON, {"test": {"normal_force": "6 N"}}, {"normal_force": 6.0}),
+    "keys over values, and 120 rpm on 20 mm": (
+        RTEC,
+        {"test": {"track_radius": "20 mm", "material": "Armalon"}},
+        {"material": "Armalon", "sample": "disk 7", "slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5},
+    ),
+    "two keys over two values": (b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC, {}, {"sample": "disk 7"}),
+    "one key over one value": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
+    "keys that end in a carriage return": (
+        RTEC.replace(b"Recipe\r\ndisk", b"Recipe\rdisk"),
+        {},
+        {"sample": "disk 7"},
+    ),
+    "a velocity of 240, rpm or mm/s": (raw_logs.umt(FRICTION, TIME), {}, {"slip_speed": None}),
+    "a flat pin of 6 mm under 100 N": (
+        raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}),
+        {"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}},
+        {"pressure": 100.0 / (9.0 * math.pi) * 1e6},
+    ),
+    "keys that are no quantity": (
+        raw_logs.plain_csv(
+            {"time [s]": TIME, "COF": FRICTION},
+            head=["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"],
+        ),
+        {},
+        {"normal_force": 50.0, "slip_speed": None},
+    ),
+    "patterns of names in their order, after what holds for all": (
+        raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}),
+        PATTERNS,
+        {"environment": "liquid nitrogen, 440C", "material": "Armalon", "temperature": 77.0},
+    ),
+    "a pattern of this folder": (
+        ANTON,
+        {"files": {"logs/*.txt": {"material": "Armalon"}, "log.txt": {"sample": "A"}}},
+        {"material": "Armalon", "sample": "A"},
+    ),
+    "a pattern of another folder": (
+        ANTON,
+        {"files": {"peek/*.txt": {"material": "PEEK"}, "log.txt": {"sample": "A"}}},
+        {"material": None, "sample": "A"},
+    ),
+}
+SAID = {
+    "the greatest speed of strokes": "slip_speed below [test]",
+    "a velocity of 240, rpm or mm/s": 'Velocity 240 has no unit; put slip_speed = "240 <unit>" under [test]\n'
+    'Radius 15.000 has no unit; put track_radius = "15.000 mm" under [test]',
+    "keys that are no quantity": 'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its '
+    "unit under [test]\nSpeed as usual is not understood",
+}
+
+
+@pytest.mark.parametrize("what", CONDITIONS)
+def test_conditions_are_in_si_with_words_on_what_is_not_understood(tmp_path, what):
+    """From metadata, the column map and the names of files; of two decimals, and their products."""
+    content, given, conditions = CONDITIONS[what]
+    (tmp_path / "logs").mkdir()
+    log = read(tmp_path / "logs", content, column_map(given))
+    for key, value in conditions.items():
+        expected = pytest.approx(value, rel=1e-12) if isinstance(value, float) else value
+        assert getattr(log.conditions, key) == expected, key
+    for words in SAID.get(what, "").splitlines():
+        assert any(words in note for note in log.notes), words
+
+
+def test_anton_paar_columns_are_in_si(tmp_path):
+    """Distance and depth; the same test logged in mN has the same forces."""
+    log = read(tmp_path, ANTON)
     np.testing.assert_array_equal(log.distance, as_written(TIME * 0.1))
     np.testing.assert_allclose(log.wear_depth, as_written(TIME * 1e-3) * 1e-6, rtol=ULP)
-    conditions = log.conditions
-    assert conditions.sample == "A1"
-    assert conditions.slip_speed == pytest.approx(0.1, rel=1e-12)  # written with two decimals of cm/s
-    assert conditions.normal_force == 5.0
-    assert conditions.temperature == pytest.approx(295.15, rel=1e-12)
-    assert conditions.cycle_time == pytest.approx(2 * math.pi * 0.015 / 0.1, rel=1e-12)
-
-
-def test_nano_tribometer_forces_are_millinewtons(tmp_path):
-    """The same test logged in mN has the same forces."""
     log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME, nano=True))
     np.testing.assert_array_equal(log.normal_force, 5.0)
     np.testing.assert_allclose(log.tangential_force, as_written(FRICTION * 5e3) / 1e3, rtol=ULP)
-    assert log.conditions.normal_force == 5.0
-
-
-def test_a_stroke_s_greatest_speed_is_not_its_sliding_speed(tmp_path):
-    """With a linear position instead of an angle the file is of strokes, and the speed is asked for."""
-    content = raw_logs.anton_paar(FRICTION, TIME).replace(
-        "Angle [\u00b0]".encode("cp1252"), b"Linear Position [mm]"
-    )
-    log = read(tmp_path, content)
-    assert log.conditions.slip_speed is None
-    assert any("slip_speed below [test]" in note for note in log.notes)
 
 
 ENCODINGS = ["utf-8", "utf-8-sig", "utf-16-le-mark", "utf-16-be-mark", "utf-16-le", "utf-16-be", "cp1252"]
@@ -293,6 +354,10 @@ THE_SAME: dict[str, tuple[bytes, dict | None]] = {
         lines("first remark\nZeit;Reibwert\nother remark\ns;-", "{T};{F}"),
         {"format": FORMAT},
     ),
+    "a table that is no log, left out by its first line": (
+        csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n",
+        {"format": {"ends": ["Summary"]}},
+    ),
     "the second of two frictions by the map": (
         csv({"time [s]": TIME, "COF": 2 * FRICTION, "mu": FRICTION}),
         {"columns": {"friction": "mu"}},
@@ -339,6 +404,7 @@ def test_what_stands_beside_the_numbers_is_kept(tmp_path):
     assert read(tmp_path, csv(separator=";", head=LONG_HEAD)).metadata["key 39"] == "value 39"
     assert read(tmp_path, csv(head=["# material: Armalon"])).conditions.material == "Armalon"
     assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
+    assert read(tmp_path, RTEC).metadata["Operator"] == "nobody"
     assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     temperature = np.where(np.arange(ROWS) < 5, np.nan, 20.0)
     log = read(tmp_path, csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}))
@@ -409,12 +475,6 @@ def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
     assert any("negative" in one for one in log.notes) == ("negative" in note)
 
 
-def test_compend_without_coefficient_uses_its_forces(tmp_path):
-    """Friction (N) over Load (N)."""
-    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION * 20.0) / 20.0)
-
-
 @pytest.mark.parametrize("units", [(), ("s", "-")])
 def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units):
     """On every page, say: time goes on, and it is one test, to its last row."""
@@ -451,6 +511,8 @@ def test_friction_is_tangential_over_normal_force(tmp_path):
     log = read(tmp_path, raw_logs.plain_csv(columns))
     np.testing.assert_array_equal(log.friction, np.abs(log.tangential_force) / log.normal_force)
     assert (log.tangential_force < 0.0).any()
+    compend = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
+    np.testing.assert_array_equal(compend.friction, as_written(FRICTION * 20.0) / 20.0)
     assert log.conditions.normal_force == pytest.approx(np.median(load), abs=1e-6)  # six decimals
 
 
@@ -462,14 +524,6 @@ def test_umt_forces_are_grams_and_every_step_is_a_log(tmp_path):
     assert second.time[0] == 0.0
     np.testing.assert_allclose(first.normal_force, 2.0, rtol=1e-8)  # six decimals of 203.94 g
     np.testing.assert_array_equal(np.concatenate([first.friction, second.friction]), as_written(FRICTION))
-
-
-def test_umt_keys_without_units_are_not_conditions(tmp_path):
-    """``Velocity = 240`` could be rpm or mm/s: it is said and not used."""
-    log = read(tmp_path, raw_logs.umt(FRICTION, TIME))
-    assert log.conditions.slip_speed is None
-    assert 'Velocity 240 has no unit; put slip_speed = "240 <unit>" under [test]' in log.notes
-    assert 'Radius 15.000 has no unit; put track_radius = "15.000 mm" under [test]' in log.notes
 
 
 def test_rtec_steps_are_logs_of_their_own(tmp_path):
@@ -484,29 +538,6 @@ def test_rtec_steps_are_logs_of_their_own(tmp_path):
         column_map({"format": {"tables": ["step 2"]}}),
     )
     assert second.rows == 40
-
-
-def test_rtec_metadata_and_rotation_give_the_conditions(tmp_path):
-    """Keys over values; 120 rpm on a radius of 20 mm is a slip speed of 4 pi x 0.02 m/s."""
-    columns = column_map({"test": {"track_radius": "20 mm", "material": "Armalon"}})
-    log = read(tmp_path, raw_logs.rtec(FRICTION, TIME), columns)
-    assert log.metadata["Operator"] == "nobody"
-    assert log.conditions.material == "Armalon"
-    assert log.conditions.slip_speed == pytest.approx(4 * math.pi * 0.02, rel=1e-12)
-    assert log.conditions.cycle_time == pytest.approx(0.5, rel=1e-12)
-
-
-@pytest.mark.parametrize("keys", ["Sample,Operator\ndisk 7,nobody", "Sample\ndisk 7"])
-def test_rtec_keys_stand_above_their_values_however_few(tmp_path, keys):
-    """Two keys over two values are not the pair of the two keys: the sample is disk 7, not "Operator"."""
-    content = keys.encode() + b"\n" + raw_logs.rtec(FRICTION, TIME, metadata=False)
-    assert read(tmp_path, content).conditions.sample == ("disk 7" if "," in keys else None)
-
-
-def test_rtec_metadata_may_end_in_a_bare_carriage_return(tmp_path):
-    """Some exports split the keys from their values that way."""
-    content = raw_logs.rtec(FRICTION, TIME).replace(b"Recipe\r\ndisk", b"Recipe\rdisk")
-    assert read(tmp_path, content).conditions.sample == "disk 7"
 
 
 def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
@@ -535,67 +566,6 @@ def test_column_map_says_what_names_do_not(tmp_path):
     np.testing.assert_array_equal(log.time, as_written(TIME) * 60.0)
     np.testing.assert_allclose(log.friction, as_written(FRICTION * 2e3) / 2e3, rtol=ULP)
     assert {column.why for column in log.columns} == {"column map"}
-
-
-def test_conditions_of_file_patterns_go_before_those_of_all(tmp_path):
-    """[test] for all, then each pattern that fits, in the order written."""
-    columns = column_map(
-        {
-            "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
-            "files": {
-                "armalon_*.txt": {"material": "Armalon"},
-                "*_ln2.txt": {"medium": "liquid nitrogen"},
-                "other.txt": {"material": "PEEK"},
-            },
-        }
-    )
-    content = csv()
-    conditions = read(tmp_path, content, columns, "armalon_3_ln2.txt").conditions
-    assert conditions.environment == "liquid nitrogen, 440C"
-    assert conditions.material == "Armalon"
-    assert conditions.temperature == 77.0
-
-
-def test_a_pattern_may_name_the_folder(tmp_path):
-    """Logs of the same name in folders of their materials."""
-    columns = column_map({"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}})
-    content = csv()
-    found = []
-    for folder in ("armalon", "peek"):
-        (tmp_path / folder).mkdir()
-        conditions = read(tmp_path / folder, content, columns, "a.csv").conditions
-        found.append((conditions.material, conditions.sample))
-    assert found == [("Armalon", "A"), (None, "A")]
-
-
-def test_a_table_that_is_no_log_can_be_left_out(tmp_path):
-    """By the beginning of its first line."""
-    content = csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n"
-    log = read(tmp_path, content, column_map({"format": {"ends": ["Summary"]}}))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-
-
-def test_pressure_is_the_force_over_the_pin_s_area(tmp_path):
-    """A flat pin of 6 mm under 100 N bears 100 / (9 pi) MPa."""
-    columns = column_map({"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}})
-    log = read(tmp_path, csv(), columns)
-    assert log.conditions.pressure == pytest.approx(100.0 / (9.0 * math.pi) * 1e6, rel=1e-12)
-
-
-def test_column_map_goes_before_metadata(tmp_path):
-    """The user knows better than the header of the file."""
-    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME), column_map({"test": {"normal_force": "6 N"}}))
-    assert log.conditions.normal_force == 6.0
-
-
-def test_a_condition_that_cannot_be_read_is_said(tmp_path):
-    """Known keys whose values are no quantity are shown, and asked for."""
-    head = ["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"]
-    log = read(tmp_path, csv(head=head))
-    assert log.conditions.normal_force == 50.0
-    said = 'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its unit under [test]'
-    assert said in log.notes
-    assert any(note.startswith("Speed as usual is not understood") for note in log.notes)
 
 
 def test_description_shows_columns_units_and_reasons(tmp_path):
