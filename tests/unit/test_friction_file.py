@@ -18,6 +18,7 @@ from separatrix.friction.file import FrictionTest, Place, friction_text, read_fr
 from separatrix.friction.fit import TestedFriction
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
+from separatrix.study.sources import resolved
 from separatrix.study.study import Friction, Operation
 
 SMALL = """
@@ -112,6 +113,7 @@ def test_the_longest_flag_is_written_and_read_back(tmp_path):
 def test_a_written_test_is_read_back_to_the_last_bit(tmp_path, axis):
     """Every field, with numbers that no short decimal holds, quotes and backslashes."""
     tests = (whole(run_in_end=Place(axis, 12.3)), whole(checksum="cd" * 32, flags=(), sample=None))
+    tests += (whole(source="a.csv, step 2"),)  # sheets and steps of one file share its checksum
     (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
     assert read_friction(tmp_path / "friction.toml") == tests
 
@@ -155,13 +157,6 @@ def test_a_study_may_rank_some_materials_and_assume_another_scatter(tmp_path):
     seen = solve(asked, asked.ranking.candidates[0]).frictions["liquid nitrogen, 440C"]
     assert seen.standard_error == pytest.approx(0.04, rel=1e-9)
     assert seen.assumed_scatter
-
-
-def test_two_tests_of_one_log_are_two_tests(tmp_path):
-    """Sheets and steps of one file share its checksum."""
-    tests = (whole(source="a.csv, step 1"), whole(source="a.csv, step 2"))
-    (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
-    assert read_friction(tmp_path / "friction.toml") == tests
 
 
 def test_a_study_takes_the_tests_at_its_temperature_and_says_how_many_it_leaves_out(tmp_path):
@@ -278,21 +273,13 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
 
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
-    """The resolved study repeats the tests whole, in SI, so that the file may change afterwards."""
-    from separatrix.study.sources import resolved
-
+    """The resolved study repeats the tests whole, in SI, also those not ranked, so that the file may change."""
     found = resolved(read_study(study(tmp_path)))["ranking"]
     (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
     assert (test["friction"], test["slip_speed"], test["sample"]) == (0.2, [1.0, 5.0], "s1")
     assert found["friction_scatter"]["value"] == 0.09
     assert found["other_tests"] == []
     json.dumps(found, allow_nan=False)
-
-
-def test_a_result_holds_the_tests_of_materials_that_are_not_ranked(tmp_path):
-    """The scatter is pooled over them too."""
-    from separatrix.study.sources import resolved
-
     found = resolved(read_study(study(tmp_path, ranking='materials = ["My compound"]')))["ranking"]
     assert [test["material"] for test in found["other_tests"]] == ["Armalon"]
 
