@@ -273,7 +273,7 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
 
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
-    """The resolved study repeats the tests whole, in SI, also those not ranked, so that the file may change."""
+    """The resolved study repeats the tests whole, in SI, also those that are not ranked."""
     found = resolved(read_study(study(tmp_path)))["ranking"]
     (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
     assert (test["friction"], test["slip_speed"], test["sample"]) == (0.2, [1.0, 5.0], "s1")

@@ -15,11 +15,7 @@ from separatrix.limits.map_records import varied
 from separatrix.present import in_words
 from separatrix.ranking.records import measured
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
-from separatrix.study.keys import (
-    study_numbers,
-    value_of,
-    with_values,
-)
+from separatrix.study.keys import study_numbers, value_of, with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.verdict.draws import sample, uncertain_inputs
@@ -60,7 +56,10 @@ FORMS = {
 
 @pytest.mark.parametrize("text", FORMS)
 def test_every_form_is_read(text, study_of):
-    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file."""
+    """The kind and its numbers, to rounding of the unit; and the text as it stands in the file.
+
+    What follows the sign is two standard deviations, as on a certificate (GUM, 7.2.4).
+    """
     study = study_of(f"[film]\nthickness = {text}\n")
     found, wanted = study.distributions["film.thickness"], FORMS[text]
     assert type(found) is type(wanted)
@@ -85,12 +84,6 @@ def test_the_page_on_uncertain_inputs_is_right():
         for form in forms:
             path.write_text(HEAD + f"[film]\nthickness = {form}\n", encoding="utf-8")
             assert "film.thickness" in read_study(path).distributions, form
-
-
-def test_what_follows_the_sign_is_two_standard_deviations(study_of):
-    """An expanded uncertainty with the coverage factor 2, as on a certificate (GUM, 7.2.4)."""
-    study = study_of('[operation]\naxial_load = "300 daN +- 20 %"\n')
-    assert study.distributions["operation.axial_load"].standard_deviation == pytest.approx(300.0, rel=1e-15)
 
 
 def test_a_width_in_another_unit_or_of_a_temperature_is_a_difference(study_of):
@@ -125,16 +118,10 @@ name = "Mine"
 friction = { "air" = "0.1 +- 20 %", "water" = { mean = 0.1, standard_deviation = "9 %" }, "oil" = 0.05 }
 material = { elastic_modulus = "5 GPa +- 30 %", poisson_ratio = [0.3, 0.4] }
 """)
-    assert set(study.distributions) == {
-        "bearing.ball_count",
-        "bearing.outer_conformity",
-        "bearing.ring_material.elastic_modulus",
-        "film.race_friction",
-        "film.elastic_modulus",
-        "cage.mass",
-        "ranking.Mine.air",
-        "ranking.Mine.material.elastic_modulus",
-        "ranking.Mine.material.poisson_ratio",
+    assert {*study.distributions} == {
+        *("bearing.ball_count", "bearing.outer_conformity", "bearing.ring_material.elastic_modulus"),
+        *("film.race_friction", "film.elastic_modulus", "cage.mass", "ranking.Mine.air"),
+        *("ranking.Mine.material.elastic_modulus", "ranking.Mine.material.poisson_ratio"),
     }
     known = study_numbers(study)
     for key, law in study.distributions.items():

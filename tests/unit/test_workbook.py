@@ -5,6 +5,7 @@ import re
 import time
 import tomllib
 import zipfile
+from dataclasses import replace
 from fractions import Fraction
 
 import openpyxl
@@ -91,13 +92,8 @@ def candidates_sheet(candidates):
     """Return the sheet with a row for each candidate."""
     environments = dict.fromkeys(env for one in candidates for env in one["friction"])
     parts = ("mean", "standard_deviation", "count", "source")
-    heads = [
-        ("", "name"),
-        ("", "material"),
-        ("GPa", "elastic_modulus"),
-        ("", "poisson_ratio"),
-        ("g/cm3", "density"),
-    ]
+    heads = [("", "name"), ("", "material"), ("GPa", "elastic_modulus"), ("", "poisson_ratio")]
+    heads.append(("g/cm3", "density"))
     heads += [(env, part) for env in environments for part in parts]
     rows = []
     for one in candidates:
@@ -225,27 +221,19 @@ def test_a_formula_counts_with_its_saved_value_and_is_named(tmp_path):
     assert found.film.thickness == 5e-7
 
 
-def test_sheets_of_ones_own_and_rows_without_value_are_passed_over(tmp_path):
-    """A sheet of calculations, with formulas and all, and a key without a value change nothing."""
-    sheets = {"my sums": [["a", Formula("1+1")], ["b", 2.0]], "cage": [HEAD, ["mass", None, None, "g"]]}
-    found = variant(tmp_path / "a.xlsx", ["thickness", 0.25, None, "um"], **sheets)
-    assert found.film.thickness == 2.5e-7
-    assert found.cage == read_study("cryogenic-turbopump").cage
+@pytest.mark.parametrize("steel", [52100.0, "52100"])
+def test_what_stands_in_cells_is_meant(tmp_path, steel):
+    """No digit of a number is lost, one may be the name of a steel, and a value in quotes is its text.
 
-
-@pytest.mark.parametrize("value", [52100.0, "52100"])
-def test_a_name_of_digits_is_a_name(tmp_path, value):
-    """Spreadsheet programs make a number of the steel 52100; a value in quotes is what stands in them."""
-    sheets = {"bearing": [HEAD, ["ball_material", value]], "cage": [HEAD, ["mass", '"26 g"']]}
-    found = variant(tmp_path / "a.xlsx", **sheets)
-    assert (found.bearing.ball_material.name, found.cage.mass) == ("52100", 0.026)
-
-
-def test_a_number_in_a_cell_loses_no_digit(tmp_path):
-    """The number of the cell and its unit give what the same digits give as text."""
-    assert variant(tmp_path / "a.xlsx", ["thickness", 0.123456789012, None, "um"]).film.thickness == parse(
-        "0.123456789012 um", "m"
-    )
+    Nothing is changed by a sheet of calculations, with formulas and all, or a key without a value.
+    """
+    film = ["thickness", 0.123456789012, None, "um"]
+    cage = [HEAD, ["gravity", None, None, "g0"], ["mass", '"26 g"']]
+    sheets = {"my sums": [["a", Formula("1+1")], ["b", 2.0]], "bearing": [HEAD, ["ball_material", steel]]}
+    found = variant(tmp_path / "a.xlsx", film, cage=cage, **sheets)
+    assert found.film.thickness == parse("0.123456789012 um", "m")
+    assert found.cage == replace(read_study("cryogenic-turbopump").cage, mass=0.026)
+    assert found.bearing.ball_material.name == "52100"
 
 
 def test_headings_may_stand_in_any_order(tmp_path):
@@ -387,15 +375,8 @@ def test_what_we_write_we_read(tmp_path):
         put(sheet, 1, column, value)
     (tmp_path / "a.xlsx").write_bytes(workbook_bytes(book))
     (found,) = sheets_of(tmp_path / "a.xlsx", "a.xlsx", lambda _: True)
-    assert [found.cells[1, n].value if (1, n) in found.cells else None for n in range(1, 8)] == [
-        1.5,
-        -3,
-        "-",
-        "'=x",
-        "yes",
-        None,
-        "_x003D_1",
-    ]
+    written = (1.5, -3, "-", "'=x", "yes", None, "_x003D_1")
+    assert tuple(found.cells[1, n].value if (1, n) in found.cells else None for n in range(1, 8)) == written
     with zipfile.ZipFile(tmp_path / "a.xlsx") as archive:
         assert b"_x005F_x003D_1<" in archive.read("xl/worksheets/sheet1.xml")  # else shown and exported as =1
 
