@@ -415,41 +415,27 @@ SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
 LOAD = np.where(np.isin(np.arange(ROWS), (3, 4)), -0.5, 10.0)
 FEW = np.arange(ROWS) % 20 == 5
 TEN = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0}
+DEAD_WEIGHT = {"test": {"normal_force": "10 N"}}
+TENTH = as_written(FRICTION * 10.0) / 10.0
 MADE = {
-    "percent": (
-        {"time [s]": TIME, "COF [%]": FRICTION * 100.0},
-        None,
-        as_written(FRICTION * 100.0) / 100.0,
-        "",
-    ),
-    "a constant load of the map": (
+    "percent": ({"time [s]": TIME, "COF [%]": FRICTION * 100}, None, as_written(FRICTION * 100) / 100, ""),
+    "a load of the map": (
         TEN,
-        {"test": {"normal_force": "10 N"}},
-        as_written(FRICTION * 10.0) / 10.0,
+        DEAD_WEIGHT,
+        TENTH,
         "friction is |tangential force| / 10 N, the constant given",
     ),
-    "a constant load of the map and a column without load": (
-        TEN | {"Fn [N]": 0.0 * ONE},
-        {"test": {"normal_force": "10 N"}},
-        as_written(FRICTION * 10.0) / 10.0,
+    "a load of the map and a column without load": (
+        *(TEN | {"Fn [N]": 0.0 * ONE}, DEAD_WEIGHT, TENTH),
         "the column of normal force has no load in any row and is not used",
     ),
     "compression that counts negative": (
-        TEN | {"Fn [N]": -10.0 * ONE},
-        None,
-        as_written(FRICTION * 10.0) / 10.0,
+        *(TEN | {"Fn [N]": -10.0 * ONE}, None, TENTH),
         "the normal force is negative in the file: compression counts negative there",
     ),
-    "rows without compression": (
-        TEN | {"Fn [N]": LOAD},
-        None,
-        as_written(FRICTION * 10.0)[LOAD > 0] / 10.0,
-        "2 rows without compression",
-    ),
+    "rows without compression": (TEN | {"Fn [N]": LOAD}, None, TENTH[LOAD > 0], "2 rows without compression"),
     "strokes there and back": (
-        {"time [s]": TIME, "COF": SIGN * FRICTION},
-        None,
-        as_written(FRICTION),
+        *({"time [s]": TIME, "COF": SIGN * FRICTION}, None, as_written(FRICTION)),
         "friction is negative in 30 of 60 rows",
     ),
     **{

@@ -71,7 +71,6 @@ LAUGHS = (
     '<!ENTITY c "&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;">]><sst>&c;</sst>'
 )
 SHEET_1 = "xl/worksheets/sheet1.xml"
-MACRO_TYPES = '<Types><Override ContentType="application/vnd.ms-excel.sheet.macroEnabled.main+xml"/></Types>'
 
 STUDIES = [
     ("no unit", mass(25.0), 'sheet cage, cell B2: [cage] mass needs a unit of mass; got 25. Write "25 g".'),
