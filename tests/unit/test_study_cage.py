@@ -68,6 +68,8 @@ LAND\nland_out_of_round = "0.1 mm"
     :: the square of land_lobes, 100 um: beyond it a lobe touches
 LAND\nland_out_of_round = "50 um"\nland_lobes = 3
     :: half the land's clearance over the square of land_lobes, 44.44 um: beyond it
+LAND\nland_count = 3 :: land_count must be a whole number from 1 to 2; got 3
+pocket_spacing_scatter = 0.5 :: pocket_spacing_scatter must be >= 0 and < 0.5
 land_lobes = 3 :: [cage] land_lobes needs land_out_of_round: without it the land is round
 unbalance = "813 g mm" :: [cage] unbalance must be smaller than mass times pitch radius, 812.5 g mm
 guidance = "outer"\nland_clearance = "11.2 mm"

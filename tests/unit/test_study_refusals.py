@@ -80,9 +80,11 @@ inner_conformity = 0.52 => inner_conformity = 0.45
     :: line 8 ; [bearing] inner_conformity must be > 0.5 and <= 0.6; got 0.45 ; groove radius
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
+ball_count = 13 => ball_count = 0 :: [bearing] ball_count ; whole number from 3
 ball_count = 13 => ball_count = 13.0 :: whole number ; Write 13.
 race_friction = 0.1 => race_friction = "0.1" :: plain number ; Write 0.1 as a number, not as text.
 race_friction = 0.1 => race_friction = "10 %" :: plain number ; without a unit
+race_friction = 0.1 => race_friction = 50 :: [film] race_friction must lie between 0 and 2
 race_friction = 0.1 => race_friction = 0 :: [film] race_friction must be > 0 ; race control
 "25 deg" => "90 deg" :: [bearing] contact_angle ; < 90 deg ; got "90 deg"
 contact_angle = "25 deg" => contact_angle = "25 deg"\nradial_clearance = "10 um"
@@ -109,6 +111,9 @@ material = "PTFE transfer film" => elastic_modulus = "4 GPa" :: [film] poisson_r
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
 land_clearance = "1 mm"\n =>  :: [cage] land_clearance is missing ; outer
+"0.1 m/s" => "0 m/s" :: [stability] kicks ; > 1e-09
+runs = 64 => runs = 0 :: [stability] runs must be a whole number from 1 ; got 0
+runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
 to = 0.95 => to = 1.0 :: [stability] restitution_factors ; < 1
 from = 0.05 => from = 0.99 :: [stability] restitution_factors must be strictly increasing
 count = 19 => count = 1 :: restitution_factors ; count from 2 ; got 1

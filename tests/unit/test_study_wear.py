@@ -80,6 +80,7 @@ def test_a_wrong_profile_is_refused(content, words, tmp_path):
     ("section", "words"),
     [
         ("[film.wear]\nfriction = 0.3\n", ["[film] wear lacks: width (or share, across, profile)"]),
+        ("[film.wear]\nshare = 2\nfriction = 0.3\n", ["[film] wear.share must lie between 0 and 1; got 2"]),
         (BAND + "share = 0.1\n", ["[film] wear.share and width exclude each other"]),
         (BAND + 'thickness = "2 um"\n', ["[film] wear.thickness must be at most the thickness of the film"]),
         ('[traction]\npressure_slip = "included"\n', ["[traction] pressure_slip must be", 'model = "exact"']),

@@ -11,7 +11,7 @@ from commands import document, refused, written
 
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
-from separatrix.friction.logs.log_tables import is_clock
+from separatrix.friction.logs.log_tables import is_clock, is_number
 from separatrix.friction.logs.raw import seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 from separatrix.ground.errors import InputError
@@ -144,15 +144,10 @@ FORCE_ONLY = "Laps\tFrictionForce\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\n" 
 
 
 def test_a_force_without_unit_is_not_taken_for_the_friction(tmp_path):
-    """Naming it all the same is refused."""
+    """Naming it all the same is refused; whoever insists that newtons are a coefficient reads a flag."""
     with pytest.raises(InputError, match=r'"FrictionForce" is a force by its name'):
         read(tmp_path, FORCE_ONLY, {"columns": {"friction": "FrictionForce"}})
-
-
-def test_a_friction_above_one_is_flagged(tmp_path):
-    """Whoever insists that newtons are a coefficient reads it in the answer."""
-    given = {"columns": {"friction": {"name": "FrictionForce", "unit": "-"}}}
-    (log,) = read(tmp_path, FORCE_ONLY, given)
+    (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": {"name": "FrictionForce", "unit": "-"}}})
     assert any("is above 1, which dry sliding seldom reaches" in flag for flag in reduce_log(log).flags)
 
 
@@ -283,15 +278,9 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
     assert 0.09 < reduce_log(log).friction < 0.11
 
 
-def test_a_number_of_many_digits_takes_no_time():
-    """Digits and a letter: a pattern that tried every split of them took the square of their number."""
-    from separatrix.friction.logs.log_tables import is_number
-
-    assert not is_number("1" * 1_000_000 + "x")  # with the square, hours
-
-
-def test_more_tables_than_any_test_has_are_refused(tmp_path):
-    """Each would be kept: twenty thousand took 1.7 GB."""
+def test_neither_many_digits_nor_many_tables_take_long(tmp_path):
+    """Digits and a letter took the square of their number, hours; twenty thousand tables 1.7 GB."""
+    assert not is_number("1" * 1_000_000 + "x")
     one = "time [s],COF\n0,0.1\n1,0.1\n2,0.1\n"
     with pytest.raises(InputError, match="has more than 2000 tables"):
         read(tmp_path, one * 2100)

@@ -21,6 +21,10 @@ WRONG_FILES = r"""
 ^title = "mine" :: friction.toml lacks: test. Write [[test]]
 nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got "liquid nitrogen, wet"
 0.08 => 0 :: line 5: [[test]] friction must be > 0; got 0. Its logarithm is fitted
+0.08 => 3 :: line 5: [[test]] friction must be <= 2; got 3
++slip_speed = "0 m/s" :: line 6: [[test]] slip_speed must lie between 1e-09 m/s and 1000 m/s; got 0 m/s
++pressure = "1e9 GPa" :: line 6: [[test]] pressure must lie between 0.001 Pa and 1000 GPa
++temperature = "0 K" :: line 6: [[test]] temperature must lie between 0.1 K
 0.08 => "8 %" :: line 5: [[test]] friction must be a plain number, without a unit; got "8 %". Write 0.08
 +run_in_end = "35 N" :: line 6: [[test]] run_in_end must be a time, a distance or a number of cycles
 +checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "a.csv"

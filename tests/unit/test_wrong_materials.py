@@ -22,6 +22,10 @@ FLUID = '[fluid."slush"]\nsubstance = "nitrogen"\nphase = "liquid"\n'
 
 
 EDITS = r"""
+MATERIAL: 5 GPa => 0 GPa
+    :: line 2: [cage_material] Ours.elastic_modulus.value must lie between 100 kPa and 5000 GPa
+MATERIAL: 0.3 => 0.5 :: line 3: [cage_material] Ours.poisson_ratio.value must lie between 0.001 and 0.499
+FLUID:  => aliases = []\n :: line 4: [fluid] slush.aliases must have 1 to 20 items
 MATERIAL: "5 GPa", => "5 GPa", range = ["6 GPa", "9 GPa"],
     :: line 2: [cage_material] Ours.elastic_modulus.range must have the value between its ends
 MATERIAL:  => replaces = true\n :: line 1: [cage_material] Ours replaces a cage material that is not shipped
