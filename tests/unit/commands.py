@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import sqlite3
 import sys
 from multiprocessing.connection import Connection
@@ -12,6 +13,8 @@ import pytest
 
 from separatrix.app.worker import work
 from separatrix.cli import main
+from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
@@ -38,6 +41,30 @@ def refused(capsys, *arguments: str) -> str:
     out, err = capsys.readouterr()
     assert (out, err.count("\n"), len(err) < 600, sorted(Path().iterdir())) == ("", 1, True, before), err
     return err
+
+
+def written(folder: Path, text: str | bytes, name: str = "study.toml") -> Path:
+    """Return the path of a file with this content."""
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def refusal(path: str | Path, read=read_study) -> str:
+    """Return the text of a refusal: a short printable line a mistake, the same from another process."""
+    with pytest.raises(InputError) as caught:
+        read(path)
+    message = str(caught.value)
+    assert all(line.isprintable() and len(line) < 420 for line in message.split("\n")), message
+    assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
+    return message
+
+
+def refusal_line(path: str | Path, read=read_study) -> str:
+    """Return the one line of a refusal."""
+    message = refusal(path, read)
+    assert "\n" not in message
+    return message
 
 
 def pieces(folder: Path) -> int:

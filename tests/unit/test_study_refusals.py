@@ -1,10 +1,9 @@
 """Every wrong study file is refused with one line: place, rule, value, cure."""
 
 import os
-import pickle
-from pathlib import Path
 
 import pytest
+from commands import refusal, written
 
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.ground.toml import parsed
@@ -64,115 +63,70 @@ friction = { "liquid nitrogen, 440C" = 0.11 }
 TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\n'
 
 
-def candidates(text: str) -> tuple[str, str]:
-    """Edit that replaces the whole section [ranking]."""
-    return "[ranking]\n" + TABLE, text
-
-
 EDITS = r"""
-bore = "50 mm" => bor = "50 mm" :: line 10 ; [bearing] bor ; Did you mean bore?
 bore = "50 mm" => axial_load = "3 N" :: line 10 ; [bearing] axial_load ; belongs in [operation]
-[kinematics] => [kinematic] :: line 18 ; [kinematic] ; Did you mean kinematics?
 title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
 [operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]
 "11.1125 mm" => 11.1 :: line 4 ; [bearing] ball_diameter needs a unit of length; got 11.1 ; Write "11.1 mm".
-"11.1125 mm" => "11.1" :: needs a unit of length ; Write "11.1 mm".
 "11.1125 mm" => "3 N" :: needs a unit of length (m,  ; got "3 N" ; a force
 "205 GPa" => "205 Gpa" :: ring_material.elastic_modulus ; Did you mean "GPa"?
 "50 mm" => "49,5 mm" :: [bearing] bore ; decimal point ; Write "49.5 mm".
 inner_conformity = 0.52 => inner_conformity = 0,52 :: line 8 ; not valid TOML ; Write a decimal point: 0.52.
-inner_conformity = 0.52 => inner_conformity = "0,52" :: line 8 ; [bearing] inner_conformity ; decimal point
 pitch_diameter = "65 mm" => pitch_diameter = 65 mm :: line 5 ; Put quantities in quotes: "65 mm".
 model = "free" => model = free :: line 19 ; Put text in quotes.
-inner_conformity = 0.52 => inner_conformity = nan :: [bearing] inner_conformity ; finite ; nan
-race_friction = 0.1 => race_friction = inf :: [film] race_friction ; finite ; inf
-"11.1125 mm" => "nan mm" :: [bearing] ball_diameter ; finite ; "nan mm"
-"300 daN" => "inf daN" :: [operation] axial_load ; finite
 "300 daN" => "1e999 N" :: [operation] axial_load ; 1e999 N
-race_friction = 0.1 => race_friction = 1e999 :: [film] race_friction ; finite
 "11.1125 mm" => "9**9**9 m" :: ball_diameter ; one number and one unit
-"11.1125 mm" => "-11 mm" :: line 4 ; [bearing] ball_diameter must ; got "-11 mm"
-"65 mm" => "0 mm" :: line 5 ; [bearing] pitch_diameter must ; got "0 mm"
 inner_conformity = 0.52 => inner_conformity = 0.45
     :: line 8 ; [bearing] inner_conformity must be > 0.5 and <= 0.6; got 0.45 ; groove radius
-outer_conformity = 0.52 => outer_conformity = 5.78 :: groove radius
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
 ball_count = 13 => ball_count = 0 :: [bearing] ball_count ; whole number from 3
 ball_count = 13 => ball_count = 13.0 :: whole number ; Write 13.
-ball_count = 13 => ball_count = "13" :: ball_count ; whole number ; "13"
-ball_count = 13 => ball_count = true :: ball_count ; whole number ; got true
-race_friction = 0.1 => race_friction = true :: race_friction ; plain number ; true
 race_friction = 0.1 => race_friction = "0.1" :: plain number ; Write 0.1 as a number, not as text.
 race_friction = 0.1 => race_friction = "10 %" :: plain number ; without a unit
-race_friction = 0.1 => race_friction = -0.1 :: [film] race_friction must lie between 0 and 2
 race_friction = 0.1 => race_friction = 50 :: [film] race_friction must lie between 0 and 2
 race_friction = 0.1 => race_friction = 0 :: [film] race_friction must be > 0 ; race control
 "25 deg" => "90 deg" :: [bearing] contact_angle ; < 90 deg ; got "90 deg"
-"25 deg" => "-5 deg" :: [bearing] contact_angle ; >= 0
 contact_angle = "25 deg" => contact_angle = "25 deg"\nradial_clearance = "10 um"
     :: radial_clearance and contact_angle exclude each other
-contact_angle = "25 deg"\n =>  :: lacks: contact_angle (or radial_clearance)
 contact_angle = "25 deg" => radial_clearance = "1 mm" :: [bearing] radial_clearance ; 889 um ; got "1 mm"
-contact_angle = "25 deg" => radial_clearance = "-1 um" :: [bearing] radial_clearance
 "50 mm" => "60 mm" :: [bearing] bore must be smaller ; 53.89 mm
-ball_diameter = "11.1125 mm"\npitch_diameter = "65 mm"\nball_count = 13\n =>
-    :: [bearing] lacks: ball_diameter, pitch_diameter, ball_count
 ball_material = "440C" => ball_material = "404C"
     :: line 11 ; [bearing] ball_material ; Did you mean 440C? ; 52100
-"PTFE transfer film" => "Teflon" :: [film] material ; PTFE transfer film ; MoS2
 ball_material = "440C" => ball_material = 440
     :: [bearing] ball_material must be the name of a bearing material, or its properties ; 440
-elastic_modulus = "205 GPa",  =>  :: ring_material ; lacks: elastic_modulus
-poisson_ratio = 0.285 => poison_ratio = 0.285 :: Did you mean poisson_ratio?
-0.285 => 0.5 :: ring_material.poisson_ratio ; < 0.5 ; got 0.5
-"205 GPa" => "-205 GPa" :: ring_material.elastic_modulus
 ball_material = "440C" => ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.3 }
     :: [bearing] ball_material ; density
 "15000 rpm" => "250 1/s" :: [operation] inner_speed ; rotational speed
-"15000 rpm" => "1e9 rpm" :: [operation] inner_speed ; got "1e9 rpm"
 "300 daN" => "-300 daN" :: [operation] axial_load ; lifts the inner ring
 "300 daN" => "0 N" :: [operation] axial_load ; nothing presses the balls
 axial_load = "300 daN" => axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"
     :: [operation] tilt and moment exclude each other
-axial_load = "300 daN" => axial_load = "300 daN"\nradial_load = "-1 N" :: [operation] radial_load
 axial_load = "300 daN" => axial_load = "300 daN"\ntemperature = "-300 degC"
     :: [operation] temperature must be > 0; ; "-300 degC"
-model = "free" => model = "jones" :: "outer race control" ; got "jones"
 thickness = "0.5 um"\n =>  :: [film] thickness is missing
 material = "PTFE transfer film"\n =>  :: [film] material is missing
 material = "PTFE transfer film" => elastic_modulus = "4 GPa" :: [film] poisson_ratio is missing. Give all of
 "0.5 um" => "0 um" :: [film] thickness must be > 0 ; bare
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
-mass = "25 g" => mass = "0 g" :: [cage] mass must be > 0
 land_clearance = "1 mm"\n =>  :: [cage] land_clearance is missing ; outer
-guidance = "outer" => guidance = "both" :: "inner" or "ball" ; got "both"
-runs = 64 => runs = 0 :: [stability] runs must be a whole number from 1 ; got 0
-runs = 64 => runs = 0.5 :: [stability] runs must be a whole number ; got 0.5
-["0.1 m/s", "0.5 m/s", "2 m/s"] => [] :: [stability] kicks must not be empty
-["0.1 m/s", "0.5 m/s", "2 m/s"] => "0.5 m/s" :: [stability] kicks must be a list
 "0.1 m/s" => "0 m/s" :: [stability] kicks ; > 1e-09
-"0.1 m/s" => "0.5 m/s" :: [stability] kicks ; strictly increasing
-"0.1 m/s" => "0.1 m" :: [stability] kicks[1] needs a unit of speed
+runs = 64 => runs = 0 :: [stability] runs must be a whole number from 1 ; got 0
+runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
 to = 0.95 => to = 1.0 :: [stability] restitution_factors ; < 1
 from = 0.05 => from = 0.99 :: [stability] restitution_factors must be strictly increasing
 count = 19 => count = 1 :: restitution_factors ; count from 2 ; got 1
 { from = 0.05, to = 0.95, count = 19 } => []
     :: [stability] restitution_factors must not be empty ; Leave it out
 , count = 19 =>  :: restitution_factors lacks: count
-runs = 64 => duration = "-1 s" :: [stability] duration must be > 0
-runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
-runs = 64 => seed = -1 :: [stability] seed
 "pin-on-disk-77K" => "pin-on-disk" :: [ranking] friction ; pin-on-disk-77K
 "Vespel SP 211" => "Vespel SP-212" :: [ranking] materials ; Did you mean Vespel SP 211?
 "Vespel SP 211" => "Armalon" :: [ranking] candidates ; "Armalon" twice
 [ranking]\nfriction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\n => [ranking]\n
     :: [ranking] lacks: friction (or candidates)
-bore = "50 mm" => bore = "50 mm"\nbore = "51 mm" :: line 11 ; bore a second time
 [kinematics] => [bearing]\n[kinematics] :: line 18 ; a second time
 race_friction = 0.1 => race_friction = 2024-01-01 :: [film] race_friction ; 2024-01-01
-"A valid study" => 3 :: line 1: title ; must be text; got 3
 bore = => "" = 1\nbore = :: [bearing] "" is not a valid key
 title = "A valid study" => extends = "study.toml" :: line 1: extends ; leads back
 title = "A valid study" => extends = "le77" :: line 1: extends ; Did you mean le7?
@@ -190,32 +144,14 @@ LONG = {
         ("[ranking]\n" + TABLE, "[ranking]\n" + TABLE + IN_PLACE),
         ["exclude each other"],
     ),
-    "candidate without friction": (
-        candidates('[[ranking.candidates]]\nname = "Mine"\n'),
-        ["candidates[1]", "lacks: friction"],
-    ),
-    "candidate with an empty friction": (
-        candidates(IN_PLACE.replace('"liquid nitrogen, 440C" = 0.11', "")),
-        ["candidates[1]"],
-    ),
-    "candidate with a negative friction": (
-        candidates(IN_PLACE.replace("0.11", "-0.11")),
-        ["candidates[1]", "liquid nitrogen"],
-    ),
-    "candidate with text for friction": (
-        candidates(IN_PLACE.replace("0.11", '"low"')),
-        ["candidates[1]", "plain number"],
-    ),
     "second candidate misspelt": (
-        candidates(IN_PLACE + IN_PLACE.replace("name =", "nam =")),
+        ("[ranking]\n" + TABLE, IN_PLACE + IN_PLACE.replace("name =", "nam =")),
         ["line 45", "candidates[2].nam ", "Did you mean name?"],
     ),
     "control character in the title": (
         ('"A valid study"', '"A\\u001b[31m study"'),
         ["line 1: title", "printable"],
     ),
-    "two-line title": (('"A valid study"', '"A valid\\nstudy"'), ["line 1: title", "printable"]),
-    "title too long": (('"A valid study"', '"' + "a" * 201 + '"'), ["line 1: title", "200"]),
     "deep array": (
         ("bore =", "x = " + "[\n" * 9000 + "]" * 3000 + "\nbore ="),
         ["line 26", "nests brackets"],
@@ -225,28 +161,10 @@ LONG = {
         ["line 10", "nests brackets"],
     ),
     "deep dotted key": (("bore =", ".".join("a" * 1500) + " = 1\nbore ="), ["line 10", "[bearing] a"]),
-    "long line": (("bore =", "# " + "x" * 6000 + "\nbore ="), ["line 10", "longer than 4000"]),
-    "NUL byte": (('"A valid study"', '"A\0"'), ["line 1", "NUL"]),
-    "long key twice": (
-        ("bore =", ("a." * 1500 + "a = 1\n") * 2 + "bore ="),
-        ["line 11 has a.a.a.", "a second time"],
-    ),
     "long hexadecimal ratio": (("race_friction = 0.1", "race_friction = 0x" + "f" * 3900), ["60 digits"]),
     "long hexadecimal count": (("ball_count = 13", "ball_count = 0x" + "f" * 3900), ["60 digits"]),
     "long number without a unit": (('"50 mm"', "9" * 3900), ["needs a unit of length"]),
 }
-
-
-def refusal(path: str | Path) -> str:
-    """Text of the refusal of a study file; a short line for each mistake, whatever is wrong."""
-    with pytest.raises(InputError) as caught:
-        read_study(path)
-    message = str(caught.value)
-    for line in message.split("\n"):
-        assert line.isprintable()
-        assert len(line) < 400
-    assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
-    return message
 
 
 def cases():
@@ -264,31 +182,16 @@ def cases():
 def test_a_wrong_file_is_refused_with_place_rule_and_cure(old, new, words, tmp_path):
     """One change to a valid study; the one line names the file, the place, and what to do."""
     assert VALID.count(old) >= 1
-    path = tmp_path / "study.toml"
-    path.write_text(VALID.replace(old, new, 1), encoding="utf-8")
-    message = refusal(path)
-    for word in ["study.toml", *words]:
-        assert word in message, message
-
-
-def test_the_valid_study_is_read(tmp_path):
-    """What the wrong files are edits of is itself right."""
-    path = tmp_path / "study.toml"
-    path.write_text(VALID, encoding="utf-8")
-    assert read_study(path).bearing.ball_count == 13
+    message = refusal(written(tmp_path, VALID.replace(old, new, 1)))
+    assert [word for word in ["study.toml", *words] if word not in message] == [], message
 
 
 BYTES = {
-    "an empty file": (b"", "is empty"),
-    "only a comment": (b"# nothing yet\n", "is empty"),
-    "a file of 5 MB": (b"# " + b"x" * 5_000_000, "larger than"),
-    "Latin-1": ('title = "Käfig"'.encode("latin-1"), "not UTF-8"),
     "UTF-16": ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
     "random bytes": (bytes(range(256)), "not UTF-8"),
     "only a title": (b'title = "Cage"\n', "lacks: [operation], [bearing], [film]"),
     "no TOML at all": (b"ball diameter: 11 mm\n", "line 1 is not valid TOML"),
     "an open string": (b'title = """Cage\n', "not valid TOML"),
-    "an open bracket": (b"[bearing\n", "line 1 is not valid TOML"),
     "a script": (b"#!/bin/sh\necho $(true)\n", "line 2 is not valid TOML"),
 }
 
@@ -296,9 +199,7 @@ BYTES = {
 @pytest.mark.parametrize(("content", "words"), BYTES.values(), ids=BYTES.keys())
 def test_what_is_no_study_is_refused(content, words, tmp_path):
     """Whatever the bytes, the answer is one line."""
-    path = tmp_path / "study.toml"
-    path.write_bytes(content)
-    assert words in refusal(path)
+    assert words in refusal(written(tmp_path, content))
 
 
 def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
@@ -323,39 +224,23 @@ def test_a_strange_path_is_refused_in_one_line(path):
 def test_everything_wrong_is_reported_at_once(tmp_path):
     """Three mistakes in three sections, three lines."""
     text = VALID.replace("0.52", "0.42", 1).replace('"300 daN"', "3000").replace("runs = 64", "runs = 0")
-    path = tmp_path / "study.toml"
-    path.write_text(text)
-    lines = refusal(path).split("\n")
-    assert "line 8: [bearing] inner_conformity" in lines[0]
-    assert "line 16: [operation] axial_load" in lines[1]
-    assert "line 38: [stability] runs" in lines[2]
-    assert len(lines) == 3
-
-
-def test_thirty_mistakes_are_thirty_lines(tmp_path):
-    """None is counted instead of shown."""
-    path = tmp_path / "study.toml"
-    path.write_text(VALID.replace("[film]", "[film]\n" + "".join(f"x{i} = 1\n" for i in range(30))))
-    lines = refusal(path).split("\n")
-    assert len(lines) == 30
-    assert all(f"[film] x{i} " in line for i, line in enumerate(lines))
-
-
-def test_a_file_of_mistakes_is_not_read_to_its_end(tmp_path):
-    """After a hundred mistakes the last line says that there may be more."""
-    path = tmp_path / "study.toml"
-    path.write_text(VALID.replace("[film]", "[film]\n" + "".join(f"x{i} = 1\n" for i in range(300))))
-    lines = refusal(path).split("\n")
-    assert 100 < len(lines) < 110
-    assert "was not read to its end: it has more than 100 mistakes" in lines[-1]
+    found = [
+        line.partition(" must")[0].partition(" needs")[0]
+        for line in refusal(written(tmp_path, text)).split("\n")
+    ]
+    places = (
+        "line 8: [bearing] inner_conformity",
+        "line 16: [operation] axial_load",
+        "line 38: [stability] runs",
+    )
+    assert found == [f"study.toml, {place}" for place in places]
 
 
 def test_a_stiffness_needs_a_value_or_a_modulus(tmp_path):
     """Neither is there: only what needs no cage is answered, and `check` refuses the study."""
-    path = tmp_path / "study.toml"
     text = VALID.replace("[ranking]\n" + TABLE, IN_PLACE).replace('ball_cage_stiffness = "3e6 N/m"\n', "")
     text = text.replace('mass = "25 g"', 'mass = "25 g +- 10 %"')
-    path.write_text(text)
+    path = written(tmp_path, text)
     rule = r'study\.toml, line 26: \[cage\] ball_cage_stiffness is missing, and the candidate "Mine" has no'
     with pytest.warns(ValidityWarning, match=rf"^{rule} .*: the section is left out"):
         found = read_study(path)
@@ -369,26 +254,22 @@ def test_a_stiffness_needs_a_value_or_a_modulus(tmp_path):
     assert read_study(path).cage.ball_cage_stiffness is None
 
 
-def test_extends_in_a_circle_is_refused(tmp_path):
-    """Two files that extend each other."""
-    (tmp_path / "a.toml").write_text('extends = "b.toml"\n')
-    (tmp_path / "b.toml").write_text('extends = "a.toml"\n')
-    assert "b.toml, line 1: extends leads back" in refusal(tmp_path / "a.toml")
+CHAIN = {f"{i}.toml": f'extends = "{i + 1}.toml"\n' for i in range(40)} | {"40.toml": VALID}
+EXTENDING = {
+    "a circle": ({"b.toml": 'extends = "0.toml"\n'}, "b.toml", "0.toml, line 1: extends leads back"),
+    "a long chain": (CHAIN, "0.toml", "chain of more than"),
+    "a mistake in the base": (
+        {"0.toml": VALID.replace('"300 daN"', "3000")}, "0.toml", "0.toml, line 16: [operation] axial_load",
+    ),
+}  # fmt: skip
 
 
-def test_a_long_chain_of_extends_is_refused(tmp_path):
-    """More files than anyone can follow."""
-    for i in range(40):
-        (tmp_path / f"{i}.toml").write_text(f'extends = "{i + 1}.toml"\n')
-    (tmp_path / "40.toml").write_text(VALID)
-    assert "chain of more than" in refusal(tmp_path / "0.toml")
-
-
-def test_a_mistake_in_the_base_names_the_base(tmp_path):
-    """A variant of a wrong file is refused where the mistake stands."""
-    (tmp_path / "base.toml").write_text(VALID.replace('"300 daN"', "3000"))
-    (tmp_path / "variant.toml").write_text('extends = "base.toml"\n')
-    assert "base.toml, line 16: [operation] axial_load" in refusal(tmp_path / "variant.toml")
+@pytest.mark.parametrize(("files", "base", "words"), EXTENDING.values(), ids=EXTENDING)
+def test_a_mistake_across_files_is_refused_where_it_stands(files, base, words, tmp_path):
+    """Files that extend each other, more of them than anyone can follow, a wrong base of a right variant."""
+    for name, text in ({"0.toml": 'extends = "b.toml"\n'} | files).items():
+        written(tmp_path, text, name)
+    assert words in refusal(written(tmp_path, f'extends = "{base}"\n'))
 
 
 def test_a_verb_that_needs_a_section_says_which():

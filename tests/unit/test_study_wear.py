@@ -1,8 +1,9 @@
 """[film.wear] and [traction] in study files: every form, and what is refused where."""
 
+import commands
 import pytest
-from commands import document
-from test_study_refusals import VALID, refusal
+from commands import document, refusal, refusal_line
+from test_study_refusals import VALID
 from test_workbook import workbook
 
 from separatrix.cli import main
@@ -19,9 +20,7 @@ PLACES = '[film.wear]\nacross = ["-0.1 mm", "0.1 mm"]\nthicknesses = ["0 um", "0
 
 def written(folder, section):
     """Path of the valid study with a section more, before [cage]."""
-    path = folder / "study.toml"
-    path.write_text(VALID.replace("[cage]\n", f"{section}\n[cage]\n", 1), encoding="utf-8")
-    return path
+    return commands.written(folder, VALID.replace("[cage]\n", f"{section}\n[cage]\n", 1))
 
 
 @pytest.mark.parametrize(
@@ -74,27 +73,17 @@ def test_a_wrong_profile_is_refused(content, words, tmp_path):
     if content is not None:
         (tmp_path / "track.csv").write_text(content)
     message = refusal(written(tmp_path, '[film.wear]\nprofile = "track.csv"\nfriction = 0.3\n'))
-    for word in words:
-        assert word in message, message
+    assert [word for word in words if word not in message] == [], message
 
 
 @pytest.mark.parametrize(
     ("section", "words"),
     [
-        ('[film.wear]\nwidth = "0.2 mm"\n', ["[film] wear lacks: friction"]),
         ("[film.wear]\nfriction = 0.3\n", ["[film] wear lacks: width (or share, across, profile)"]),
-        (BAND + "share = 0.1\n", ["[film] wear.share and width exclude each other"]),
         ("[film.wear]\nshare = 2\nfriction = 0.3\n", ["[film] wear.share must lie between 0 and 1; got 2"]),
-        ("[film.wear]\nshare = 0.1\nfriction = 0\n", ["[film] wear.friction must be > 0"]),
-        ('[film.wear]\nwidth = "0.2 N"\nfriction = 0.3\n', ["[film] wear.width needs a unit of length"]),
-        ("[film.wear]\nwidth = 0.2\nfriction = 0.3\n", ["[film] wear.width needs a unit of length"]),
+        (BAND + "share = 0.1\n", ["[film] wear.share and width exclude each other"]),
         (BAND + 'thickness = "2 um"\n', ["[film] wear.thickness must be at most the thickness of the film"]),
-        (BAND + "depth = 1\n", ["[film] wear.depth is not a valid key. Did you mean width?"]),
-        (BAND + 'races = "left"\n', ["[film] wear.races must be", '"both"', '"inner"', '"outer"']),
-        ('[traction]\nmodel = "Exakt"\n', ['[traction] model must be "strips" or "exact"; got "Exakt"']),
-        ('[traction]\npressure = "own"\n', ['[traction] pressure must be "hertz" or "coated"']),
         ('[traction]\npressure_slip = "included"\n', ["[traction] pressure_slip must be", 'model = "exact"']),
-        ('[traction]\nmodell = "exact"\n', ["[traction] modell is not a valid key", "Did you mean model?"]),
         (
             BAND + '[traction]\npressure = "coated"\n',
             ['[traction] pressure must be "hertz" where the film is'],
@@ -103,11 +92,9 @@ def test_a_wrong_profile_is_refused(content, words, tmp_path):
 )
 def test_what_makes_no_sense_is_refused_in_a_line(section, words, tmp_path):
     """File, line, key, rule, value."""
-    message = refusal(written(tmp_path, section))
+    message = refusal_line(written(tmp_path, section))
     assert message.startswith("study.toml, line ")
-    assert "\n" not in message
-    for word in words:
-        assert word in message, message
+    assert [word for word in words if word not in message] == [], message
 
 
 def test_wear_needs_a_film(tmp_path):

@@ -1,11 +1,9 @@
 """Wrong library files and wrong calls of `materials`: a line a mistake, exit status 2."""
 
 import pytest
+from commands import refusal, refusal_line, refused, written
 
-from separatrix.cli import main
-from separatrix.ground.errors import InputError
 from separatrix.study.library import with_files
-from separatrix.study.reading import read_study
 
 RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
 MODULUS = 'elastic_modulus = { value = "5 GPa", source = "our test", confidence = "measured" }'
@@ -23,61 +21,28 @@ environments = ["air, 440C"]
 FLUID = '[fluid."slush"]\nsubstance = "nitrogen"\nphase = "liquid"\n'
 
 
-def changed(text, old, new):
-    """A valid file with one change."""
-    assert old in text
-    return text.replace(old, new)
-
-
 EDITS = r"""
-MATERIAL: cage_material => spring :: line 1: [spring] is not a section of a library of materials
-MATERIAL: "Ours" => "" :: line 1: [cage_material] "", its name, must be one line
-MATERIAL: Ours => Ours  :: line 1: [cage_material] Ours , its name, must not begin or end with a space
-MATERIAL: DATUM => 5
-    :: line 2: [cage_material] Ours.elastic_modulus must be a table with value, source, confidence
-MATERIAL: DATUM => [] :: line 2: [cage_material] Ours.elastic_modulus must have 1 to 100 items
-MATERIAL: DATUM => [DATUM, DATUM]
-    :: line 2: [cage_material] Ours.elastic_modulus has two with the same temperature, pressure
-MATERIAL: , source = "our test", confidence => , confidence
-    :: line 2: [cage_material] Ours.elastic_modulus lacks: source
-MATERIAL: "our test" => "x"
-    :: line 2: [cage_material] Ours.elastic_modulus.source must be one line of 3 to 1000
-MATERIAL: "measured" => "sure"
-    :: line 2: [cage_material] Ours.elastic_modulus.confidence must be one of measured, maker
-MATERIAL: 5 GPa => 5 mm :: line 2: [cage_material] Ours.elastic_modulus.value needs a unit of pressure
 MATERIAL: 5 GPa => 0 GPa
     :: line 2: [cage_material] Ours.elastic_modulus.value must lie between 100 kPa and 5000 GPa
 MATERIAL: 0.3 => 0.5 :: line 3: [cage_material] Ours.poisson_ratio.value must lie between 0.001 and 0.499
-MATERIAL: "5 GPa", => "5 GPa", temperature = "-10 K",
-    :: line 2: [cage_material] Ours.elastic_modulus.temperature must lie
+FLUID:  => aliases = []\n :: line 4: [fluid] slush.aliases must have 1 to 20 items
 MATERIAL: "5 GPa", => "5 GPa", range = ["6 GPa", "9 GPa"],
     :: line 2: [cage_material] Ours.elastic_modulus.range must have the value between its ends
-MATERIAL: "5 GPa", => "5 GPa", range = "5 GPa",
-    :: line 2: [cage_material] Ours.elastic_modulus.range must be a list in [brackets]
-MATERIAL: poisson_ratio => density :: line 1: [cage_material] Ours lacks: poisson_ratio
-MATERIAL:  => viscosity = 5\n :: line 4: [cage_material] Ours.viscosity is not a valid key
 MATERIAL:  => replaces = true\n :: line 1: [cage_material] Ours replaces a cage material that is not shipped
 MATERIAL: Ours => Armalon :: line 1: [cage_material] Armalon has the name of a shipped cage material
 MATERIAL: Ours => armalon :: line 1: [cage_material] armalon has a name of Armalon (cage_materials.toml, line
 MATERIAL:  => [cage_material.OURS]\nelastic_modulus = DATUM\npoisson_ratio = RATIO\n
     :: line 4: [cage_material] OURS has a name of Ours (ours.toml, line 1); got "OURS"
 FLUID:  => aliases = ["ln2"]\n :: line 1: [fluid] slush has a name of liquid nitrogen (fluids.toml, line
-FLUID:  => aliases = []\n :: line 4: [fluid] slush.aliases must have 1 to 20 items
 FLUID:  => coolprop = "REFPROP::N2"\n :: line 4: [fluid] slush.coolprop must be the plain name of a pure fluid
-FLUID: liquid => slush :: line 3: [fluid] slush.phase must be "liquid" or "gas"
-FLUID: phase => elastic_modulus :: line 1: [fluid] slush lacks: phase
 TABLE: 0.2 => 0.0 :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be above 0
 TABLE: 0.2 => { mean = 1e-200, standard_deviation = 0.1 }
     :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be >= 1e-05 where there is
-TABLE: 0.2 => { mean = 0.2, count = 0 }
-    :: line 8: [friction_table] rig.friction.Ours."air, 440C".count must be a whole number from 1
 TABLE: ["air, 440C"] => ["air"]
     :: line 6: [friction_table] rig.environments lacks an environment that the table uses
 TABLE: ["air, 440C"] => ["air, 440C", "air, 440C"]
     :: line 6: [friction_table] rig.environments names an environment twice
-TABLE: "air, 440C" = 0.2\n =>  :: line 7: [friction_table] rig.friction.Ours must have 1 to 2000 names
 TITLE:  => \n :: ours.toml has no record: it needs a section
-TITLE: title = "Ours"\n => # nothing :: ours.toml is empty. `separatrix materials show 440C` shows
 TITLE: title = "Ours"\n => [[film]]\nname = 1\n :: line 1: [[film]] must be a table of names with their values
 """
 """A file, an edit of it, place and rule of one line of its refusal. A text alone is added behind."""
@@ -101,24 +66,10 @@ def cases():
 @pytest.mark.parametrize(("text", "words"), list(cases()))
 def test_a_wrong_library_is_refused_in_one_line(text, words, tmp_path):
     """File, line, key and rule; nothing beside it appears."""
-    path = tmp_path / "ours.toml"
-    path.write_text(text)
-    with pytest.raises(InputError) as refused:
-        with_files([path])
-    message = str(refused.value)
+    message = refusal_line(written(tmp_path, text, "ours.toml"), lambda path: with_files([path]))
     assert words in message
     assert message.startswith("ours.toml")
-    assert message.replace("\n", "").isprintable()
-    assert len(message) < 600
     assert [p.name for p in tmp_path.iterdir()] == ["ours.toml"]
-
-
-@pytest.mark.parametrize("text", [MATERIAL, TABLE, FLUID])
-def test_the_files_that_are_changed_are_right(text, tmp_path):
-    """So that each refusal is for its change alone."""
-    path = tmp_path / "ours.toml"
-    path.write_text(text)
-    with_files([path])
 
 
 STUDIES = {
@@ -133,15 +84,10 @@ STUDIES = {
         '[bearing]\nball_material = "Ours"\n',
         "is not a bearing material of the library",
     ),
-    "a library that is a number": (
-        "library = 5\n",
-        "library[1] must be text; got 5. Give the path of a file or a folder",
-    ),
     "a library that is missing": (
         'library = "no.toml"\n',
         'library does not name a file or folder; got "no.toml"',
     ),
-    "an empty list": ("library = []\n", "library must have 1 to 20 items"),
     "an empty folder": ('library = "empty"\n', "names a folder without a .toml file"),
     "a library that is a study": ('library = "case.toml"\n', "is not a key of a library of materials"),
     "a library with an endless name": (f'library = "{"x" * 300}"\n', "does not name a file or folder"),
@@ -155,31 +101,25 @@ def test_a_study_that_names_a_wrong_record_is_refused_in_one_line(what, tmp_path
     (tmp_path / "materials.toml").write_text(MATERIAL + TABLE)
     (tmp_path / "empty").mkdir()
     top, _, sections = text.partition("[")
-    (tmp_path / "case.toml").write_text(
-        f'extends = "cryogenic-turbopump"\n{top}' + "[" * bool(sections) + sections
-    )
-    with pytest.raises(InputError) as refused:
-        read_study(tmp_path / "case.toml")
-    assert words in str(refused.value)
-    assert str(refused.value).replace("\n", "").isprintable()
+    case = f'extends = "cryogenic-turbopump"\n{top}' + "[" * bool(sections) + sections
+    assert words in refusal(written(tmp_path, case, "case.toml"))
 
 
 def test_a_study_beside_a_wrong_library_is_refused_for_the_library(tmp_path):
     """Even if it names nothing in it: what would have been replaced is not known."""
-    (tmp_path / "materials.toml").write_text(changed(MATERIAL, "5 GPa", "5 mm"))
-    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
-    with pytest.raises(InputError, match=r"^materials.toml, line 2: \[cage_material\] Ours.elastic_modulus"):
-        read_study(tmp_path / "case.toml")
+    written(tmp_path, MATERIAL.replace("5 GPa", "5 mm"), "materials.toml")
+    line = refusal_line(written(tmp_path, 'extends = "cryogenic-turbopump"\n'))
+    assert line.startswith("materials.toml, line 2: [cage_material] Ours.elastic_modulus")
 
 
 def test_one_name_in_two_libraries_is_refused(tmp_path):
     """Which one was meant is not guessed; both places are named."""
     (tmp_path / "materials").mkdir()
     for name in ("materials.toml", "materials/more.toml"):
-        (tmp_path / name).write_text(MATERIAL)
-    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
-    with pytest.raises(InputError, match=r"more.toml, line 1.* is in materials.toml, line 1 too"):
-        read_study(tmp_path / "case.toml")
+        written(tmp_path, MATERIAL, name)
+    line = refusal_line(written(tmp_path, 'extends = "cryogenic-turbopump"\n'))
+    assert "more.toml, line 1" in line
+    assert "is in materials.toml, line 1 too" in line
 
 
 CALLS = {
@@ -204,8 +144,6 @@ CALLS = {
 def test_a_wrong_call_is_refused_in_one_line(what, capsys):
     """Exit status 2, and nothing on standard output."""
     arguments, words = CALLS[what]
-    assert main(["materials", *arguments]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert all(line.startswith("separatrix: ") for line in err.splitlines())
-    assert words in err
+    line = refused(capsys, "materials", *arguments)
+    assert line.startswith("separatrix: ")
+    assert words in line
