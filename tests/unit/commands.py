@@ -1,4 +1,4 @@
-"""What many tests call: the command line, tables of mistakes, the refusal of a file, what a job has kept."""
+"""The command line as the tests call it: its document, its refusal in one line, what a job has kept."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import json
 import pickle
 import sqlite3
 import sys
-from collections.abc import Callable
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pytest
 from separatrix.app.worker import work
 from separatrix.cli import main
 from separatrix.ground.errors import InputError
+from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
 COMMAND = [sys.executable, "-m", "separatrix"]
@@ -43,25 +43,28 @@ def refused(capsys, *arguments: str) -> str:
     return err
 
 
-def table(text: str) -> list:
-    """Return the cases of a table: what is wrong, and the words of its refusal between semicolons."""
-    rows = (row.partition(" :: ") for row in text.strip().replace("\n    ::", " ::").splitlines())
-    return [
-        pytest.param(wrong.replace(r"\n", "\n"), words.split(" ; "), id=f"{number} {wrong[:50]}")
-        for number, (wrong, _, words) in enumerate(rows)
-    ]
+def written(folder: Path, text: str | bytes, name: str = "study.toml") -> Path:
+    """Return the path of a file with this content."""
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
 
 
-def refusal(words: list[str], read: Callable, *arguments: object, lines: int = 1, **more: object) -> str:
-    """Return the refusal of an input, which has these words on so many short lines (0: any)."""
+def refusal(path: str | Path, read=read_study) -> str:
+    """Return the text of a refusal: a short printable line a mistake, the same from another process."""
     with pytest.raises(InputError) as caught:
-        read(*arguments, **more)
-    text = str(caught.value)
-    assert [word for word in words if word not in text] == [], text
-    assert [line for line in text.split("\n") if not line.isprintable() or len(line) >= 400] == []
-    assert lines in (0, text.count("\n") + 1), text
-    assert str(pickle.loads(pickle.dumps(caught.value))) == text  # noqa: S301 - our own bytes
-    return text
+        read(path)
+    message = str(caught.value)
+    assert all(line.isprintable() and len(line) < 420 for line in message.split("\n")), message
+    assert str(pickle.loads(pickle.dumps(caught.value))) == message  # noqa: S301 - our own bytes
+    return message
+
+
+def refusal_line(path: str | Path, read=read_study) -> str:
+    """Return the one line of a refusal."""
+    message = refusal(path, read)
+    assert "\n" not in message
+    return message
 
 
 def pieces(folder: Path) -> int:

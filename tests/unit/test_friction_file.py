@@ -10,6 +10,7 @@ from importlib import import_module
 from subprocess import run
 
 import pytest
+from commands import document, written
 
 from separatrix.chain.pocket import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
@@ -58,10 +59,15 @@ def whole(**changes):
 
 def study(folder, text=SMALL, ranking=""):
     """A study beside a friction file."""
-    (folder / "friction.toml").write_text(text)
-    path = folder / "study.toml"
-    path.write_text(f'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n{ranking}\n')
-    return path
+    written(folder, text, "friction.toml")
+    return written(
+        folder, f'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n{ranking}\n'
+    )
+
+
+def read_back(folder, tests):
+    """The tests of a friction file that is written and read."""
+    return read_friction(written(folder, friction_text(tests), "friction.toml"))
 
 
 def sentences():
@@ -103,38 +109,39 @@ def test_the_longest_flag_is_written_and_read_back(tmp_path):
     found = [text for text in sentences() if text.rstrip().endswith(".") and "\n" not in text]
     assert sum(text.startswith(("Friction", "The ", "Running-in")) for text in found) >= 16
     tests = (whole(flags=(max(found, key=len),)),)
-    (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
-    assert read_friction(tmp_path / "friction.toml") == tests
+    assert read_back(tmp_path, tests) == tests
     with pytest.raises(InputError, match=r"flags\[1\] must be one line of 1 to 500"):
         whole(flags=("a" * 501,))
 
 
-@pytest.mark.parametrize("axis", ["time", "distance", "cycles"])
-def test_a_written_test_is_read_back_to_the_last_bit(tmp_path, axis):
-    """Every field, with numbers that no short decimal holds, quotes and backslashes."""
-    tests = (whole(run_in_end=Place(axis, 12.3)), whole(checksum="cd" * 32, flags=(), sample=None))
-    tests += (whole(source="a.csv, step 2"),)  # sheets and steps of one file share its checksum
-    (tmp_path / "friction.toml").write_text(friction_text(tests), encoding="utf-8")
-    assert read_friction(tmp_path / "friction.toml") == tests
+def test_a_written_test_is_read_back_to_the_last_bit(tmp_path):
+    """Every field, with numbers that no short decimal holds, quotes and backslashes; steps of one log."""
+    for axis in ("time", "distance", "cycles"):
+        tests = (whole(run_in_end=Place(axis, 12.3)), whole(checksum="cd" * 32, flags=(), sample=None))
+        assert read_back(tmp_path, tests) == tests
+    tests = (whole(source="a.csv, step 1"), whole(source="a.csv, step 2"))
+    assert read_back(tmp_path, tests) == tests
+    text = friction_text([whole()])
+    assert text.startswith("# Friction of cage materials")
+    assert tomllib.loads(text)["test"][0]["run_in_end"] == "12.3 cycles"
 
 
 def test_only_four_keys_are_needed(tmp_path):
-    """What slid on what, in what, and the friction; nothing else is made up."""
-    (tmp_path / "friction.toml").write_text(SMALL)
-    first, second = read_friction(tmp_path / "friction.toml")
+    """What slid on what, in what, and the friction; nothing else is made up, and numpy is not imported."""
+    path = written(tmp_path, SMALL, "friction.toml")
+    code = (
+        "import sys, json; from pathlib import Path; from separatrix.friction.file import read_friction; "
+        "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
+    )
+    found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
+    assert json.loads(found.stdout) is False
+    first, second = read_friction(path)
     assert first == FrictionTest(
         material="Armalon", counterface="440C", medium="liquid nitrogen", friction=0.08
     )
     assert second.slip_speed == (1.0, 5.0)
     assert second.temperature == (77.0, 77.0)
     assert first.pressure_velocity is None
-
-
-def test_the_file_is_toml_that_says_what_it_is():
-    """A comment tells a person how to go on; any reader of TOML takes the rest."""
-    text = friction_text([whole()])
-    assert text.startswith("# Friction of cage materials")
-    assert tomllib.loads(text)["test"][0]["run_in_end"] == "12.3 cycles"
 
 
 def test_a_study_ranks_the_materials_of_a_friction_file(tmp_path):
@@ -205,8 +212,7 @@ def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsy
     )
     few = '[stability]\nkicks = ["0.5 m/s"]\nruns = 2\nduration = "10 ms"\nrestitution_factors = [0.5]'
     path = study(tmp_path, text, few)
-    assert main([verb[0], str(path), *verb[1:], "--json", "--jobs", "1"]) == 0
-    answer = json.loads(capsys.readouterr().out)
+    answer = document(capsys, verb[0], str(path), *verb[1:], "--jobs", "1")
     cage, notes = answer["cage"], " ".join(answer["warnings"])
     if verb[0] in ("stability", "simulate"):
         assert "0.12 of Armalon in liquid nitrogen, 440C, extrapolated" in notes
@@ -217,8 +223,7 @@ def test_the_cage_asks_for_what_its_pocket_rubs():
     """A table of 1 to 5 m/s at 77 K, a pocket at 21 m/s in the other medium: the mean stays, words say so."""
     table = read_study("cryogenic-turbopump").ranking.candidates[2]
     seen = friction_in_pocket(table.friction["gaseous nitrogen, 440C"], POCKET, TURNING, 0.09)
-    assert seen.mean == 0.07
-    assert seen.standard_error == pytest.approx(0.0063)
+    assert (seen.mean, seen.standard_error) == (0.07, pytest.approx(0.0063))
     assert seen.standard_deviation == seen.standard_error  # stated without its tests: no number is added
     assert seen.extrapolation == (
         "slip speed in the pocket 21 m/s, tests cover 1 to 5 m/s: value at 5 m/s used",
@@ -246,18 +251,6 @@ def test_the_shipped_study_rubs_at_25_metres_a_second():
     assert found.max_pressure == pytest.approx(1.5 * found.pressure)
 
 
-def test_reading_a_friction_file_needs_no_numpy(tmp_path):
-    """A wrong file is refused before anything heavy is imported."""
-    path = tmp_path / "friction.toml"
-    path.write_text(SMALL)
-    code = (
-        "import sys, json; from pathlib import Path; from separatrix.friction.file import read_friction; "
-        "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
-    )
-    found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
-    assert json.loads(found.stdout) is False
-
-
 def test_figures_mark_in_their_legend_that_something_was_not_tested():
     """One line, whatever the sentences are: the printed answer has them; nothing where all was tested."""
     import xarray as xr
@@ -273,7 +266,7 @@ def test_figures_mark_in_their_legend_that_something_was_not_tested():
 
 
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
-    """The resolved study repeats the tests whole, in SI, also those that are not ranked."""
+    """Whole, in SI, as the file may change; also of materials not ranked, as scatter is pooled over them."""
     found = resolved(read_study(study(tmp_path)))["ranking"]
     (test,) = found["candidates"][1]["friction"]["liquid nitrogen, 440C"]["tests"]
     assert (test["friction"], test["slip_speed"], test["sample"]) == (0.2, [1.0, 5.0], "s1")
@@ -288,8 +281,7 @@ def test_check_warns_of_tests_that_sensitivity_refuses(tmp_path, capsys):
     """A mean that is known to ten times itself: the same line from both, and nothing of tests that tell."""
     for friction in ("0.001\nstandard_error = 0.5", "0.08"):
         path = study(tmp_path, SMALL.replace("0.08", friction, 1))
-        assert main(["check", str(path), "--json"]) == 0
-        warned = json.loads(capsys.readouterr().out)["warnings"]
+        warned = document(capsys, "check", str(path))["warnings"]
         if friction == "0.08":
             assert warned == []
             continue

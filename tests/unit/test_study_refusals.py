@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from commands import refusal, table
+from commands import refusal, written
 
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.ground.toml import parsed
@@ -67,126 +67,150 @@ EDITS = r"""
 bore = "50 mm" => axial_load = "3 N" :: line 10 ; [bearing] axial_load ; belongs in [operation]
 title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
 [operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]
+"11.1125 mm" => 11.1 :: line 4 ; [bearing] ball_diameter needs a unit of length; got 11.1 ; Write "11.1 mm".
+"11.1125 mm" => "3 N" :: needs a unit of length (m,  ; got "3 N" ; a force
+"205 GPa" => "205 Gpa" :: ring_material.elastic_modulus ; Did you mean "GPa"?
 "50 mm" => "49,5 mm" :: [bearing] bore ; decimal point ; Write "49.5 mm".
 inner_conformity = 0.52 => inner_conformity = 0,52 :: line 8 ; not valid TOML ; Write a decimal point: 0.52.
 pitch_diameter = "65 mm" => pitch_diameter = 65 mm :: line 5 ; Put quantities in quotes: "65 mm".
 model = "free" => model = free :: line 19 ; Put text in quotes.
-"11.1125 mm" => "nan mm" :: [bearing] ball_diameter ; finite ; "nan mm"
-"300 daN" => "inf daN" :: [operation] axial_load ; finite
 "300 daN" => "1e999 N" :: [operation] axial_load ; 1e999 N
+"11.1125 mm" => "9**9**9 m" :: ball_diameter ; one number and one unit
+inner_conformity = 0.52 => inner_conformity = 0.45
+    :: line 8 ; [bearing] inner_conformity must be > 0.5 and <= 0.6; got 0.45 ; groove radius
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
+ball_count = 13 => ball_count = 0 :: [bearing] ball_count ; whole number from 3
+ball_count = 13 => ball_count = 13.0 :: whole number ; Write 13.
+race_friction = 0.1 => race_friction = "0.1" :: plain number ; Write 0.1 as a number, not as text.
+race_friction = 0.1 => race_friction = "10 %" :: plain number ; without a unit
+race_friction = 0.1 => race_friction = 50 :: [film] race_friction must lie between 0 and 2
 race_friction = 0.1 => race_friction = 0 :: [film] race_friction must be > 0 ; race control
 "25 deg" => "90 deg" :: [bearing] contact_angle ; < 90 deg ; got "90 deg"
-"25 deg" => "-5 deg" :: [bearing] contact_angle ; >= 0
 contact_angle = "25 deg" => contact_angle = "25 deg"\nradial_clearance = "10 um"
     :: radial_clearance and contact_angle exclude each other
 contact_angle = "25 deg" => radial_clearance = "1 mm" :: [bearing] radial_clearance ; 889 um ; got "1 mm"
-contact_angle = "25 deg" => radial_clearance = "-1 um" :: [bearing] radial_clearance
 "50 mm" => "60 mm" :: [bearing] bore must be smaller ; 53.89 mm
 ball_material = "440C" => ball_material = "404C"
     :: line 11 ; [bearing] ball_material ; Did you mean 440C? ; 52100
-"PTFE transfer film" => "Teflon" :: [film] material ; PTFE transfer film ; MoS2
 ball_material = "440C" => ball_material = 440
     :: [bearing] ball_material must be the name of a bearing material, or its properties ; 440
+ball_material = "440C" => ball_material = { elastic_modulus = "205 GPa", poisson_ratio = 0.3 }
+    :: [bearing] ball_material ; density
+"15000 rpm" => "250 1/s" :: [operation] inner_speed ; rotational speed
+"300 daN" => "-300 daN" :: [operation] axial_load ; lifts the inner ring
 "300 daN" => "0 N" :: [operation] axial_load ; nothing presses the balls
 axial_load = "300 daN" => axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"
     :: [operation] tilt and moment exclude each other
 axial_load = "300 daN" => axial_load = "300 daN"\ntemperature = "-300 degC"
     :: [operation] temperature must be > 0; ; "-300 degC"
-model = "free" => model = "jones" :: "outer race control" ; got "jones"
+thickness = "0.5 um"\n =>  :: [film] thickness is missing
+material = "PTFE transfer film"\n =>  :: [film] material is missing
+material = "PTFE transfer film" => elastic_modulus = "4 GPa" :: [film] poisson_ratio is missing. Give all of
+"0.5 um" => "0 um" :: [film] thickness must be > 0 ; bare
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
-"0.1 m/s" => "0.5 m/s" :: [stability] kicks ; strictly increasing
+land_clearance = "1 mm"\n =>  :: [cage] land_clearance is missing ; outer
+"0.1 m/s" => "0 m/s" :: [stability] kicks ; > 1e-09
+runs = 64 => runs = 0 :: [stability] runs must be a whole number from 1 ; got 0
+runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
+to = 0.95 => to = 1.0 :: [stability] restitution_factors ; < 1
 from = 0.05 => from = 0.99 :: [stability] restitution_factors must be strictly increasing
 count = 19 => count = 1 :: restitution_factors ; count from 2 ; got 1
-runs = 64 => duration = "-1 s" :: [stability] duration must be > 0
-runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
-runs = 64 => seed = -1 :: [stability] seed
+{ from = 0.05, to = 0.95, count = 19 } => []
+    :: [stability] restitution_factors must not be empty ; Leave it out
+, count = 19 =>  :: restitution_factors lacks: count
 "pin-on-disk-77K" => "pin-on-disk" :: [ranking] friction ; pin-on-disk-77K
 "Vespel SP 211" => "Vespel SP-212" :: [ranking] materials ; Did you mean Vespel SP 211?
 "Vespel SP 211" => "Armalon" :: [ranking] candidates ; "Armalon" twice
+[ranking]\nfriction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\n => [ranking]\n
+    :: [ranking] lacks: friction (or candidates)
 [kinematics] => [bearing]\n[kinematics] :: line 18 ; a second time
 race_friction = 0.1 => race_friction = 2024-01-01 :: [film] race_friction ; 2024-01-01
+bore = => "" = 1\nbore = :: [bearing] "" is not a valid key
 title = "A valid study" => extends = "study.toml" :: line 1: extends ; leads back
 title = "A valid study" => extends = "le77" :: line 1: extends ; Did you mean le7?
 title = "A valid study" => extends = 7 :: line 1: extends ; path
-guidance = "outer"\n =>  :: land_clearance needs guidance ; land_stiffness needs ; land_restitution needs
-[ranking]\n => [ranking]\ncandidates = [{ name = "Mine", friction = { air = 0.1 } }]\n :: exclude each other
-"A valid study" => "A\u001b[31m study" :: line 1: title ; printable
-"A valid study" => "A valid\u000astudy" :: line 1: title ; printable
 """
 """An edit of VALID, and the words that its refusal must have."""
 
 LONG = {
-    ("ball_count = 13", "ball_count = " + "9" * 4900): "study.toml",
-    ("bore =", "x = " + "[\n" * 9000 + "]" * 3000 + "\nbore ="): "line 26 nests brackets",
-    ("bore =", "x = " + "{a=" * 900 + "1" + "}" * 900 + "\nbore ="): "line 10 nests brackets",
-    ("bore =", ".".join("a" * 1500) + " = 1\nbore ="): "line 10: [bearing] a",
-    ("bore =", ("a." * 1500 + "a = 1\n") * 2 + "bore ="): "line 11 has a.a.a.",
-    ("race_friction = 0.1", "race_friction = 0x" + "f" * 3900): "60 digits",
-    ("ball_count = 13", "ball_count = 0x" + "f" * 3900): "60 digits",
-    ('"50 mm"', "9" * 3900): "needs a unit of length",
+    "ball count of 5000 digits": (("ball_count = 13", "ball_count = " + "9" * 4900), ["study.toml"]),
+    "land of a ball-guided cage": (
+        ('guidance = "outer"\n', ""),
+        ["[cage] land_clearance needs guidance", "guidance = "],
+    ),
+    "table and candidates": (
+        ("[ranking]\n" + TABLE, "[ranking]\n" + TABLE + IN_PLACE),
+        ["exclude each other"],
+    ),
+    "second candidate misspelt": (
+        ("[ranking]\n" + TABLE, IN_PLACE + IN_PLACE.replace("name =", "nam =")),
+        ["line 45", "candidates[2].nam ", "Did you mean name?"],
+    ),
+    "control character in the title": (
+        ('"A valid study"', '"A\\u001b[31m study"'),
+        ["line 1: title", "printable"],
+    ),
+    "deep array": (
+        ("bore =", "x = " + "[\n" * 9000 + "]" * 3000 + "\nbore ="),
+        ["line 26", "nests brackets"],
+    ),
+    "deep table": (
+        ("bore =", "x = " + "{a=" * 900 + "1" + "}" * 900 + "\nbore ="),
+        ["line 10", "nests brackets"],
+    ),
+    "deep dotted key": (("bore =", ".".join("a" * 1500) + " = 1\nbore ="), ["line 10", "[bearing] a"]),
+    "long hexadecimal ratio": (("race_friction = 0.1", "race_friction = 0x" + "f" * 3900), ["60 digits"]),
+    "long hexadecimal count": (("ball_count = 13", "ball_count = 0x" + "f" * 3900), ["60 digits"]),
+    "long number without a unit": (('"50 mm"', "9" * 3900), ["needs a unit of length"]),
 }
 
 
-@pytest.fixture
-def refused(tmp_path):
-    """Words that the refusal of an edited study must have; it names the file."""
+def cases():
+    """The edits, with a name and the words of the refusal."""
+    for number, line in enumerate(EDITS.strip().replace("\n    ::", " ::").splitlines()):
+        edit, _, words = line.partition(" :: ")
+        old, _, new = edit.replace(r"\n", "\n").partition(" =>")
+        new = new.removeprefix(" ")
+        yield pytest.param(old, new, words.split(" ; "), id=f"{number} {new[:40]}")
+    for name, ((old, new), words) in LONG.items():
+        yield pytest.param(old, new, words, id=name)
 
-    def with_words(old, new, words):
-        assert old in VALID
-        (tmp_path / "study.toml").write_text(VALID.replace(old, new, 1), encoding="utf-8")
-        return refusal(["study.toml", *words], read_study, tmp_path / "study.toml", lines=0)
 
-    return with_words
-
-
-@pytest.mark.parametrize(("edit", "words"), table(EDITS))
-def test_a_wrong_file_is_refused_with_place_rule_and_cure(edit, words, refused):
+@pytest.mark.parametrize(("old", "new", "words"), list(cases()))
+def test_a_wrong_file_is_refused_with_place_rule_and_cure(old, new, words, tmp_path):
     """One change to a valid study; the one line names the file, the place, and what to do."""
-    old, _, new = edit.partition(" =>")
-    refused(old, new.removeprefix(" "), words)
+    assert VALID.count(old) >= 1
+    message = refusal(written(tmp_path, VALID.replace(old, new, 1)))
+    assert [word for word in ["study.toml", *words] if word not in message] == [], message
 
 
-@pytest.mark.parametrize(("old", "new"), LONG, ids=range(len(LONG)))
-def test_what_no_person_writes_is_refused_at_once(old, new, refused):
-    """Neither depth nor length takes time, memory or a long line."""
-    refused(old, new, [LONG[old, new]])
+BYTES = {
+    "UTF-16": ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
+    "random bytes": (bytes(range(256)), "not UTF-8"),
+    "only a title": (b'title = "Cage"\n', "lacks: [operation], [bearing], [film]"),
+    "no TOML at all": (b"ball diameter: 11 mm\n", "line 1 is not valid TOML"),
+    "an open string": (b'title = """Cage\n', "not valid TOML"),
+    "a script": (b"#!/bin/sh\necho $(true)\n", "line 2 is not valid TOML"),
+}
 
 
-def test_the_valid_study_is_read(tmp_path):
-    """What the wrong files are edits of is itself right."""
-    (tmp_path / "study.toml").write_text(VALID, encoding="utf-8")
-    assert read_study(tmp_path / "study.toml").bearing.ball_count == 13
-
-
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
-        (b'title = "Cage"\n', "lacks: [operation], [bearing], [film]"),
-        (b'title = """Cage\n', "not valid TOML"),
-        (b"#!/bin/sh\necho $(true)\n", "line 2 is not valid TOML"),
-    ],
-)
+@pytest.mark.parametrize(("content", "words"), BYTES.values(), ids=BYTES.keys())
 def test_what_is_no_study_is_refused(content, words, tmp_path):
     """Whatever the bytes, the answer is one line."""
-    (tmp_path / "study.toml").write_bytes(content)
-    refusal([words], read_study, tmp_path / "study.toml")
+    assert words in refusal(written(tmp_path, content))
 
 
 def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
     """Nothing but a regular file is opened, so that a pipe without a writer does not hang."""
-    os.mkfifo(tmp_path / "pipe.toml")
-    for path, words in {
-        tmp_path: "is a folder",
-        tmp_path / "pipe.toml": "not a regular file",
-        "/dev/null": "/dev/null is not a regular file. Save its output",
-        tmp_path / "none.toml": "does not exist. Shipped examples: ball-218",
-        "cryogenic_turbopump": "Did you mean cryogenic-turbopump?",
-    }.items():
-        refusal([words], read_study, path)
+    assert "is a folder" in refusal(tmp_path)
+    pipe = tmp_path / "pipe.toml"
+    os.mkfifo(pipe)
+    assert "not a regular file" in refusal(pipe)
+    assert refusal("/dev/null").startswith("/dev/null is not a regular file. Save its output")
+    assert "does not exist. Shipped examples: ball-218" in refusal(tmp_path / "none.toml")
+    assert "Did you mean cryogenic-turbopump?" in refusal("cryogenic_turbopump")
 
 
 @pytest.mark.parametrize(
@@ -194,23 +218,29 @@ def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
 )
 def test_a_strange_path_is_refused_in_one_line(path):
     """Empty, with a NUL, too long, or with control characters."""
-    refusal([], read_study, path)
+    refusal(path)
 
 
-def test_thirty_mistakes_are_thirty_lines(tmp_path):
-    """None is counted instead of shown."""
-    path = tmp_path / "study.toml"
-    path.write_text(VALID.replace("[film]", "[film]\n" + "".join(f"x{i} = 1\n" for i in range(30))))
-    lines = refusal([], read_study, path, lines=30).split("\n")
-    assert all(f"[film] x{i} " in line for i, line in enumerate(lines))
+def test_everything_wrong_is_reported_at_once(tmp_path):
+    """Three mistakes in three sections, three lines."""
+    text = VALID.replace("0.52", "0.42", 1).replace('"300 daN"', "3000").replace("runs = 64", "runs = 0")
+    found = [
+        line.partition(" must")[0].partition(" needs")[0]
+        for line in refusal(written(tmp_path, text)).split("\n")
+    ]
+    places = (
+        "line 8: [bearing] inner_conformity",
+        "line 16: [operation] axial_load",
+        "line 38: [stability] runs",
+    )
+    assert found == [f"study.toml, {place}" for place in places]
 
 
 def test_a_stiffness_needs_a_value_or_a_modulus(tmp_path):
     """Neither is there: only what needs no cage is answered, and `check` refuses the study."""
-    path = tmp_path / "study.toml"
     text = VALID.replace("[ranking]\n" + TABLE, IN_PLACE).replace('ball_cage_stiffness = "3e6 N/m"\n', "")
     text = text.replace('mass = "25 g"', 'mass = "25 g +- 10 %"')
-    path.write_text(text)
+    path = written(tmp_path, text)
     rule = r'study\.toml, line 26: \[cage\] ball_cage_stiffness is missing, and the candidate "Mine" has no'
     with pytest.warns(ValidityWarning, match=rf"^{rule} .*: the section is left out"):
         found = read_study(path)
@@ -224,26 +254,22 @@ def test_a_stiffness_needs_a_value_or_a_modulus(tmp_path):
     assert read_study(path).cage.ball_cage_stiffness is None
 
 
-def test_extends_in_a_circle_is_refused(tmp_path):
-    """Two files that extend each other."""
-    (tmp_path / "a.toml").write_text('extends = "b.toml"\n')
-    (tmp_path / "b.toml").write_text('extends = "a.toml"\n')
-    refusal(["b.toml, line 1: extends leads back"], read_study, tmp_path / "a.toml")
+CHAIN = {f"{i}.toml": f'extends = "{i + 1}.toml"\n' for i in range(40)} | {"40.toml": VALID}
+EXTENDING = {
+    "a circle": ({"b.toml": 'extends = "0.toml"\n'}, "b.toml", "0.toml, line 1: extends leads back"),
+    "a long chain": (CHAIN, "0.toml", "chain of more than"),
+    "a mistake in the base": (
+        {"0.toml": VALID.replace('"300 daN"', "3000")}, "0.toml", "0.toml, line 16: [operation] axial_load",
+    ),
+}  # fmt: skip
 
 
-def test_a_long_chain_of_extends_is_refused(tmp_path):
-    """More files than anyone can follow."""
-    for i in range(40):
-        (tmp_path / f"{i}.toml").write_text(f'extends = "{i + 1}.toml"\n')
-    (tmp_path / "40.toml").write_text(VALID)
-    refusal(["chain of more than"], read_study, tmp_path / "0.toml")
-
-
-def test_a_mistake_in_the_base_names_the_base(tmp_path):
-    """A variant of a wrong file is refused where the mistake stands."""
-    (tmp_path / "base.toml").write_text(VALID.replace('"300 daN"', "3000"))
-    (tmp_path / "variant.toml").write_text('extends = "base.toml"\n')
-    refusal(["base.toml, line 16: [operation] axial_load"], read_study, tmp_path / "variant.toml")
+@pytest.mark.parametrize(("files", "base", "words"), EXTENDING.values(), ids=EXTENDING)
+def test_a_mistake_across_files_is_refused_where_it_stands(files, base, words, tmp_path):
+    """Files that extend each other, more of them than anyone can follow, a wrong base of a right variant."""
+    for name, text in ({"0.toml": 'extends = "b.toml"\n'} | files).items():
+        written(tmp_path, text, name)
+    assert words in refusal(written(tmp_path, f'extends = "{base}"\n'))
 
 
 def test_a_verb_that_needs_a_section_says_which():

@@ -1,12 +1,13 @@
 """Logs in workbooks and in LabVIEW files become the numbers, names and units written."""
 
 import builtins
+import io
 import sys
 
 import numpy as np
 import openpyxl
 import pytest
-from commands import refusal
+from commands import refusal_line
 from minimal_xlsx import Fault, Formula, Shown, workbook, zipped
 
 from separatrix.friction.logs import read_log
@@ -57,13 +58,6 @@ def test_each_sheet_with_a_table_is_a_log(tmp_path):
     ]
 
 
-@pytest.mark.parametrize("mark", [None, "x", " NaN ", "#DIV/0!", Formula('IF(A1,"",1)', ""), Shown(None, 2)])
-def test_a_missing_value_is_left_out(tmp_path, mark):
-    """An empty cell, a mark or a formula with an empty text is not a value; the note counts its row."""
-    (found,) = logs(tmp_path, changed(5, 1, mark))
-    assert (found.rows, found.missing) == (39, 1)
-
-
 def test_times_of_day_and_dates_become_seconds(tmp_path):
     """A cell formatted as time holds days: 1/86400 of one is a second; dates count from the first."""
     for start in (0.5, 46_000.4):
@@ -73,73 +67,80 @@ def test_times_of_day_and_dates_become_seconds(tmp_path):
         assert found.time == pytest.approx(np.arange(5.0), abs=2e-6)
 
 
-def test_only_cells_that_are_read_must_have_a_value(tmp_path):
-    """An error beside the table, above it, or in a column that is not needed does not count."""
-    rows = [[float(i), 0.1, Fault("#REF!"), None, Fault("#N/A")] for i in range(9)]
-    (found,) = logs(tmp_path, {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *rows]})
-    assert found.rows == 9
-
-
-@pytest.mark.parametrize("code", ['0.0"%"', "0\\%"])
-def test_a_sign_of_percent_that_is_only_text_does_not_scale(tmp_path, code):
-    """What shows 12 % by such a format is saved as 12."""
+def saved(rows, code=None):
+    """Bytes of a workbook as a usual writer makes them: shared texts, styles, a gap, a format of column B."""
     book = openpyxl.Workbook()
-    for row in (["Time [s]", "COF [%]"], *([float(i), 12.0] for i in range(5))):
+    for row in rows:
         book.active.append(row)
-    for cell in book.active["B"][1:4]:
+    book.active["A1"].font = openpyxl.styles.Font(bold=True)
+    for cell in book.active["B"][1:] if code else ():
         cell.number_format = code
-    book.save(tmp_path / "log.xlsx")
-    assert read_log(tmp_path / "log.xlsx")[0].friction.tolist() == [0.12] * 5
+    book.save(content := io.BytesIO())
+    return content.getvalue()
 
 
-@pytest.mark.parametrize("header", [["Time [s]", "COF [%]"], ["Time [s]", "COF"]])
-def test_a_cell_shown_as_a_percentage_holds_a_fraction(tmp_path, header):
-    """What shows 12 % is saved as 0.12, also below a header that says percent."""
-    rows = [[float(i), Shown(0.12, 2)] for i in range(5)]
-    (found,) = logs(tmp_path, {"a": [header, *rows]})
-    assert found.friction.tolist() == [0.12] * 5
+def five(friction, *names):
+    """Sheets of five rows of this friction, below these names."""
+    return {"a": [list(names or ("Time [s]", "COF")), *([float(i), friction] for i in range(5))]}
 
 
-BARE = [[float(i), "OVL" if i == 2 else 0.1] for i in range(5)]
+FAULTS = [[float(i), 0.1, Fault("#REF!"), None, Fault("#N/A")] for i in range(5)]
+OVERFLOW = [[float(i), "OVL" if i == 2 else 0.1] for i in range(5)]
 BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
-
-
-@pytest.mark.parametrize(
-    ("sheets", "given", "columns"),
-    [
-        ({"a": [["Time [s]", "COF"], ["seen by", "A. N."], *BARE]}, {"header_line": 1}, {}),
-        (
-            {"a": [["Time", "COF"], ["made", "now"], ["s", "-"], *BARE]},
-            {"header_line": 1, "units_line": 3},
+MARKS = (None, "x", " NaN ", "#DIV/0!", Formula('IF(A1,"",1)', ""), Shown(None, 2))
+READ = {
+    **{f"a missing value, {mark}": (changed(5, 1, mark), {}) for mark in MARKS},
+    "faults where nothing is read": (
+        {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *FAULTS]},
+        {},
+    ),
+    "a percentage holds a fraction": (five(Shown(0.1, 2)), {}),
+    "a percentage below a name in percent": (five(Shown(0.1, 2), "Time [s]", "COF [%]"), {}),
+    **{
+        f"a sign of percent that is only text, {code}": (
+            saved(five(10.0, "Time [s]", "COF [%]")["a"], code),
             {},
-        ),
-        ({"a": [["Time [s]", "COF"], *BARE], "b": [[1.0, 2.0]] * 3}, {"tables": ["a"]}, {}),
-        ({"a": BARE}, {"separator": ";"}, BY_NUMBER),
-    ],
-)
-def test_the_column_map_serves_workbooks_too(tmp_path, sheets, given, columns):
-    """Marks of missing values, rows of names and units, the sheets to read, columns by number."""
-    (found,) = logs(tmp_path, sheets, {"format": {"missing": ["OVL"], **given}, **columns})
-    assert found.time.tolist() == [0.0, 1.0, 3.0, 4.0]
+        )
+        for code in ('0.0"%"', "0\\%")
+    },
+    "the saved value of a formula": (five(Formula("D1/10", 0.1)), {}),
+    "what openpyxl writes": (
+        saved([["Zeit", "Reibzahl"], ["s", "-"], *OVERFLOW[:2], [2.0], *OVERFLOW[3:], ["end of test"]]),
+        {},
+    ),
+    "a row of names by the map": (
+        {"a": [["Time [s]", "COF"], ["seen by", "A. N."], *OVERFLOW]},
+        {"format": {"header_line": 1, "missing": ["OVL"]}},
+    ),
+    "a row of units by the map": (
+        {"a": [["Time", "COF"], ["made", "now"], ["s", "-"], *OVERFLOW]},
+        {"format": {"header_line": 1, "units_line": 3, "missing": ["OVL"]}},
+    ),
+    "a sheet by the map": (
+        {"a": [["Time [s]", "COF"], *OVERFLOW], "b": [[1.0, 2.0]] * 3},
+        {"format": {"tables": ["a"], "missing": ["OVL"]}},
+    ),
+    "columns by number": (
+        {"a": OVERFLOW},
+        {"format": {"separator": ";", "missing": ["OVL"]}} | BY_NUMBER,
+    ),
+}
 
 
-def test_a_formula_has_its_saved_value(tmp_path):
-    """Nothing is computed again: the value saved with the formula is taken."""
-    rows = [[float(i), Formula(f"D{i}/10", 0.1)] for i in range(5)]
-    assert logs(tmp_path, {"a": [["Time [s]", "COF"], *rows]})[0].friction.tolist() == [0.1] * 5
-
-
-def test_what_openpyxl_writes_is_read(tmp_path):
-    """Shared texts, styles and gaps as a usual writer makes them."""
-    book = openpyxl.Workbook()
-    sheet = book.active
-    for row in (["Zeit", "Reibzahl"], ["s", "-"], *([float(i), 0.2] for i in range(9)), ["end of test"]):
-        sheet.append(row)
-    sheet["B7"] = None
-    sheet["A1"].font = openpyxl.styles.Font(bold=True)
-    book.save(tmp_path / "log.xlsx")
-    (found,) = read_log(tmp_path / "log.xlsx")
-    assert found.time.tolist() == [0.0, 1.0, 2.0, 3.0, 5.0, 6.0, 7.0, 8.0]
+@pytest.mark.parametrize("what", READ)
+def test_a_workbook_is_read_as_it_is_meant(tmp_path, what):
+    """Friction 0.1 at five times, or at four with the one left out counted, whatever the cells hold."""
+    (found,) = logs(tmp_path, *READ[what])
+    if what.startswith("a missing"):
+        left = [row for i, row in enumerate(NUMBERS) if i != 5]
+        assert (found.time.tolist(), found.friction.tolist()) == tuple(
+            map(list, list(zip(*left, strict=True))[:2])
+        )
+    else:
+        gap = "openpyxl" in what or "map" in what or "number" in what
+        assert found.time.tolist() == ([0.0, 1.0, 3.0, 4.0] if gap else [0.0, 1.0, 2.0, 3.0, 4.0])
+        assert found.friction.tolist() == [0.1] * found.rows
+    assert found.missing == (1 if what.startswith("a missing") or gap else 0)
 
 
 IN_B7 = 'log.xlsx, sheet a: row 7, column "COF" '
@@ -173,6 +174,7 @@ WRONG = {
         "open question: row 43 is among the rows and is left out: 'end of test'",
     ),
     "dates in part": (changed(4, 0, Shown(0.5, 1)), 'row 7, column "Time" must be a number; got "12:00:00"'),
+    "not a workbook": (zipped({"a.txt": "x"}), "is not a readable workbook"),
     "a zip bomb": (zipped({"xl/media/a.bin": bytes(9_000_000)}), "must expand by at most 100:1"),
 }
 
@@ -181,7 +183,7 @@ WRONG = {
 def test_a_wrong_workbook_is_refused_by_sheet_and_row(tmp_path, name):
     """What is neither a number nor missing is never left out in silence."""
     content, words = WRONG[name]
-    refusal([words], logs, tmp_path, content)
+    assert words in refusal_line(content, lambda sheets: logs(tmp_path, sheets))
 
 
 # LabVIEW
@@ -215,36 +217,32 @@ def test_a_group_is_a_table_with_units_and_metadata(tmp_path):
     assert table.columns[1].tolist() == np.array([0.1, 0.25, 0.3], dtype=np.float32).tolist()
 
 
-def test_a_waveform_brings_its_time(tmp_path):
-    """Start and increment of a waveform make the column of time that it lacks."""
-    wave = {"wf_start_offset": 1.5, "wf_increment": 0.25, "unit_string": "-"}
-    (table,) = measured(
-        tmp_path, channel("COF", [0.1, 0.2, 0.3], **wave), channel("N", [5.0, 5.0, 5.0], **wave)
-    )
-    assert (tuple(table.heads), table.below) == (("time of the waveform", "COF", "N"), ["s", "-", "-"])
-    assert table.columns[0].tolist() == [1.5, 1.75, 2.0]
+WAVE = {"wf_start_offset": 1.5, "wf_increment": 0.25, "unit_string": "-"}
+MOMENTS = np.datetime64("2026-01-01T00:00:00") + np.arange(3) * np.timedelta64(250, "ms")
 
 
-@pytest.mark.parametrize("name", ["time", "Elapsed Time (s)", "Zeit"])
-def test_a_channel_of_time_is_preferred_to_the_waveform(tmp_path, name):
-    """Whatever the waveform says: its increment is 1 where nobody has set it."""
-    wave = {"wf_increment": 1.0}
-    (table,) = measured(tmp_path, channel(name, [0.0, 0.1], **wave), channel("COF", [0.1, 0.2], **wave))
-    assert tuple(table.heads) == (name, "COF")
+@pytest.mark.parametrize(
+    ("channels", "heads", "below", "time"),
+    [
+        ([], ("time of the waveform", "COF"), ["s", "-"], [1.5, 1.75, 2.0]),
+        *(
+            ([channel(name, [0.0, 0.1, 0.2], wf_increment=1.0)], (name, "COF"), ["", "-"], [0.0, 0.1, 0.2])
+            for name in ("time", "Elapsed Time (s)", "Zeit")
+        ),
+        ([channel("Time", MOMENTS)], ("Time", "COF"), ["s", "-"], [0.0, 0.25, 0.5]),
+    ],
+)
+def test_the_time_is_that_of_a_channel_or_of_the_waveform(tmp_path, channels, heads, below, time):
+    """A channel first: an increment is 1 where nobody has set it; points in time count from the first."""
+    (table,) = measured(tmp_path, *channels, channel("COF", [0.1, 0.2, 0.3], **WAVE))
+    assert (tuple(table.heads), table.below) == (heads, below)
+    assert table.columns[0] == pytest.approx(time, abs=1e-6)  # time stamps are written to the microsecond
 
 
 def test_a_number_of_scalings_that_none_has_is_refused(tmp_path):
     """The library would count up to it: a thousand million scalings are refused before it does."""
     with pytest.raises(InputError, match=r"at most 100 scalings a channel; got 1000000000\."):
         measured(tmp_path, channel("COF", [0.1, 0.2], NI_Number_Of_Scales=10**9))
-
-
-def test_points_in_time_become_seconds_since_the_first(tmp_path):
-    """Time stamps are kept to the microsecond; 1e-6 s is their resolution in the writer."""
-    moments = np.datetime64("2026-01-01T00:00:00") + np.arange(3) * np.timedelta64(250, "ms")
-    (table,) = measured(tmp_path, channel("Time", moments), channel("COF", [0.1, 0.2, 0.3]))
-    assert table.below[0] == "s"
-    assert table.columns[0] == pytest.approx([0.0, 0.25, 0.5], abs=1e-6)
 
 
 def test_channels_of_different_rate_are_different_tables(tmp_path):

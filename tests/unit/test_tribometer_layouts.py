@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
+from commands import document, refused, written
 
-from separatrix.cli import main
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
-from separatrix.friction.logs.log_tables import is_clock
+from separatrix.friction.logs.log_tables import is_clock, is_number
 from separatrix.friction.logs.raw import seconds
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 from separatrix.ground.errors import InputError
@@ -25,8 +24,7 @@ STEADY = 0.12
 
 def read(tmp_path, text, columns=None, name="log.txt"):
     """The logs of a file with that text."""
-    path = tmp_path / name
-    path.write_bytes(text.encode("cp1252"))
+    path = written(tmp_path, text.encode("cp1252"), name)
     return read_log(path, None if columns is None else column_map(columns))
 
 
@@ -146,15 +144,10 @@ FORCE_ONLY = "Laps\tFrictionForce\n" + "".join(f"{i}\t{1.2 + 0.01 * (i % 3)}\n" 
 
 
 def test_a_force_without_unit_is_not_taken_for_the_friction(tmp_path):
-    """Naming it all the same is refused."""
+    """Naming it all the same is refused; whoever insists that newtons are a coefficient reads a flag."""
     with pytest.raises(InputError, match=r'"FrictionForce" is a force by its name'):
         read(tmp_path, FORCE_ONLY, {"columns": {"friction": "FrictionForce"}})
-
-
-def test_a_friction_above_one_is_flagged(tmp_path):
-    """Whoever insists that newtons are a coefficient reads it in the answer."""
-    given = {"columns": {"friction": {"name": "FrictionForce", "unit": "-"}}}
-    (log,) = read(tmp_path, FORCE_ONLY, given)
+    (log,) = read(tmp_path, FORCE_ONLY, {"columns": {"friction": {"name": "FrictionForce", "unit": "-"}}})
     assert any("is above 1, which dry sliding seldom reaches" in flag for flag in reduce_log(log).flags)
 
 
@@ -225,15 +218,9 @@ def strokes(tmp_path, monkeypatch):
     return tmp_path
 
 
-def answer(capsys, *arguments):
-    """The JSON document of a call."""
-    assert main(["tribometer", *arguments, "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
 def test_strokes_of_one_test_are_joined_by_their_header(strokes, capsys):
     """Twelve strokes in six files of a folder are one test, of the mean of both directions."""
-    (test,) = answer(capsys, "wear")["tests"]
+    (test,) = document(capsys, "tribometer", "wear")["tests"]
     assert test["source"] == "disk-1.csv, run 1, step 2 and 11 more"
     assert test["friction"] == pytest.approx(0.8, abs=0.01)
     assert test["cycles"] == 6
@@ -241,20 +228,20 @@ def test_strokes_of_one_test_are_joined_by_their_header(strokes, capsys):
 
 def test_strokes_of_one_file_are_told_and_joined_if_asked(strokes, capsys):
     """Alone they are two tests with a note; --join makes them one, and --out refuses them apart."""
-    found = answer(capsys, "wear/disk-1.csv")
+    found = document(capsys, "tribometer", "wear/disk-1.csv")
     assert len(found["tests"]) == 2
     assert "one of 2 parts of one test by the header: --join counts them as one" in found["files"][0]["notes"]
-    assert len(answer(capsys, "wear/disk-1.csv", "--join")["tests"]) == 1
-    assert main(["tribometer", "wear/disk-1.csv", "--out", "f.toml"]) == 2
-    assert "is one of 2 strokes or parts of one test by the header. Add --join" in capsys.readouterr().err
+    assert len(document(capsys, "tribometer", "wear/disk-1.csv", "--join")["tests"]) == 1
+    line = refused(capsys, "tribometer", "wear/disk-1.csv", "--out", "f.toml")
+    assert "is one of 2 strokes or parts of one test by the header. Add --join" in line
 
 
 def test_parts_under_other_loads_are_not_one_test(strokes, capsys):
     """A step at twice the load: the header keeps them apart, and --join refuses."""
     (strokes / "wear" / "disk-9.csv").write_text(umt(9, set_force=-400))
-    assert len(answer(capsys, "wear")["tests"]) == 3
-    assert main(["tribometer", "wear", "--join"]) == 2
-    assert "cannot be one test: their normal force differs" in capsys.readouterr().err
+    assert len(document(capsys, "tribometer", "wear")["tests"]) == 3
+    line = refused(capsys, "tribometer", "wear", "--join")
+    assert "cannot be one test: their normal force differs" in line
 
 
 def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):
@@ -263,7 +250,7 @@ def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):
     for number, level in enumerate([0.12, 0.125, 0.118, 0.4, 0.121]):
         rows = "".join(f"{i},{level + NOISE[i]:.5f}\n" for i in range(ROWS))
         (tmp_path / f"{number}.csv").write_text(f"time [s],COF\n{rows}")
-    tests = answer(capsys, *(f"{i}.csv" for i in range(5)))["tests"]
+    tests = document(capsys, "tribometer", *(f"{i}.csv" for i in range(5)))["tests"]
     told = [
         [flag for flag in test["flags"] if "times the median of the other 4 tests" in flag] for test in tests
     ]
@@ -291,15 +278,9 @@ def test_a_step_that_underflows_is_reduced(tmp_path):
     assert 0.09 < reduce_log(log).friction < 0.11
 
 
-def test_a_number_of_many_digits_takes_no_time():
-    """Digits and a letter: a pattern that tried every split of them took the square of their number."""
-    from separatrix.friction.logs.log_tables import is_number
-
-    assert not is_number("1" * 1_000_000 + "x")  # with the square, hours
-
-
-def test_more_tables_than_any_test_has_are_refused(tmp_path):
-    """Each would be kept: twenty thousand took 1.7 GB."""
+def test_neither_many_digits_nor_many_tables_take_long(tmp_path):
+    """Digits and a letter took the square of their number, hours; twenty thousand tables 1.7 GB."""
+    assert not is_number("1" * 1_000_000 + "x")
     one = "time [s],COF\n0,0.1\n1,0.1\n2,0.1\n"
     with pytest.raises(InputError, match="has more than 2000 tables"):
         read(tmp_path, one * 2100)

@@ -14,7 +14,7 @@ from raw_logs import as_written
 
 from separatrix.friction.logs import described, read_log
 from separatrix.friction.logs.column_map import ColumnMap, column_map
-from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS
@@ -38,177 +38,7 @@ def read_all(tmp_path, content: bytes, columns: ColumnMap | None = None, name: s
     return read_log(path, columns)
 
 
-FORMATS = {
-    "Anton Paar text": raw_logs.anton_paar,
-    "Rtec CSV": raw_logs.rtec,
-    "Bruker UMT text": raw_logs.umt,
-    "Phoenix Compend text": raw_logs.compend,
-}
-
-
-@pytest.mark.parametrize("format_name", FORMATS)
-def test_friction_and_time_come_back_to_the_last_digit(tmp_path, format_name):
-    """Every writer's numbers are read as the floats nearest to their decimals."""
-    log = read(tmp_path, FORMATS[format_name](FRICTION, TIME))
-    assert log.format.startswith(format_name)
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    np.testing.assert_array_equal(log.time, as_written(TIME))
-    assert log.rows == ROWS
-    assert log.missing == 0
-
-
-def test_checksum_is_that_of_the_file(tmp_path):
-    """Provenance: SHA-256 of the bytes as they stand on the disk."""
-    content = raw_logs.anton_paar(FRICTION, TIME)
-    assert read(tmp_path, content).checksum == hashlib.sha256(content).hexdigest()
-
-
-ANTON = raw_logs.anton_paar(FRICTION, TIME)
-RTEC = raw_logs.rtec(FRICTION, TIME)
-BARE_RTEC = raw_logs.rtec(FRICTION, TIME, metadata=False)
-STROKE = ANTON.replace("Angle [\u00b0]".encode("cp1252"), b"Linear Position [mm]")
-PATTERNS = {
-    "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
-    "files": {
-        "log*.txt": {"material": "Armalon"},
-        "*g.txt": {"medium": "liquid nitrogen"},
-        "other.txt": {"material": "PEEK"},
-    },
-}
-ANTON_PAAR = {"sample": "A1", "slip_speed": 0.1, "normal_force": 5.0, "temperature": 295.15}
-CONDITIONS = {
-    "radius 15 mm at 10 cm/s": (ANTON, {}, ANTON_PAAR | {"cycle_time": 2 * math.pi * 0.015 / 0.1}),
-    "forces in mN": (raw_logs.anton_paar(FRICTION, TIME, nano=True), {}, {"normal_force": 5.0}),
-    "the greatest speed of strokes": (STROKE, {}, {"slip_speed": None}),
-    "the map before the metadata": (ANTON, {"test": {"normal_force": "6 N"}}, {"normal_force": 6.0}),
-    "keys over values, and 120 rpm on 20 mm": (
-        RTEC,
-        {"test": {"track_radius": "20 mm", "material": "Armalon"}},
-        {"material": "Armalon", "sample": "disk 7", "slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5},
-    ),
-    "two keys over two values": (b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC, {}, {"sample": "disk 7"}),
-    "one key over one value": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
-    "keys that end in a carriage return": (
-        RTEC.replace(b"Recipe\r\ndisk", b"Recipe\rdisk"),
-        {},
-        {"sample": "disk 7"},
-    ),
-    "a velocity of 240, rpm or mm/s": (raw_logs.umt(FRICTION, TIME), {}, {"slip_speed": None}),
-    "a flat pin of 6 mm under 100 N": (
-        raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}),
-        {"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}},
-        {"pressure": 100.0 / (9.0 * math.pi) * 1e6},
-    ),
-    "keys that are no quantity": (
-        raw_logs.plain_csv(
-            {"time [s]": TIME, "COF": FRICTION},
-            head=["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"],
-        ),
-        {},
-        {"normal_force": 50.0, "slip_speed": None},
-    ),
-    "patterns of names in their order, after what holds for all": (
-        raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION}),
-        PATTERNS,
-        {"environment": "liquid nitrogen, 440C", "material": "Armalon", "temperature": 77.0},
-    ),
-    "a pattern of this folder": (
-        ANTON,
-        {"files": {"logs/*.txt": {"material": "Armalon"}, "log.txt": {"sample": "A"}}},
-        {"material": "Armalon", "sample": "A"},
-    ),
-    "a pattern of another folder": (
-        ANTON,
-        {"files": {"peek/*.txt": {"material": "PEEK"}, "log.txt": {"sample": "A"}}},
-        {"material": None, "sample": "A"},
-    ),
-}
-SAID = {
-    "the greatest speed of strokes": "slip_speed below [test]",
-    "a velocity of 240, rpm or mm/s": 'Velocity 240 has no unit; put slip_speed = "240 <unit>" under [test]\n'
-    'Radius 15.000 has no unit; put track_radius = "15.000 mm" under [test]',
-    "keys that are no quantity": 'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its '
-    "unit under [test]\nSpeed as usual is not understood",
-}
-
-
-@pytest.mark.parametrize("what", CONDITIONS)
-def test_conditions_are_in_si_with_words_on_what_is_not_understood(tmp_path, what):
-    """From metadata, the column map and the names of files; of two decimals, and their products."""
-    content, given, conditions = CONDITIONS[what]
-    (tmp_path / "logs").mkdir()
-    log = read(tmp_path / "logs", content, column_map(given))
-    for key, value in conditions.items():
-        expected = pytest.approx(value, rel=1e-12) if isinstance(value, float) else value
-        assert getattr(log.conditions, key) == expected, key
-    for words in SAID.get(what, "").splitlines():
-        assert any(words in note for note in log.notes), words
-
-
-def test_anton_paar_columns_are_in_si(tmp_path):
-    """Distance and depth; the same test logged in mN has the same forces."""
-    log = read(tmp_path, ANTON)
-    np.testing.assert_array_equal(log.distance, as_written(TIME * 0.1))
-    np.testing.assert_allclose(log.wear_depth, as_written(TIME * 1e-3) * 1e-6, rtol=ULP)
-    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME, nano=True))
-    np.testing.assert_array_equal(log.normal_force, 5.0)
-    np.testing.assert_allclose(log.tangential_force, as_written(FRICTION * 5e3) / 1e3, rtol=ULP)
-
-
 ENCODINGS = ["utf-8", "utf-8-sig", "utf-16-le-mark", "utf-16-be-mark", "utf-16-le", "utf-16-be", "cp1252"]
-
-
-@pytest.mark.parametrize(
-    ("header", "unit"), [("Torque [Nm]", None), ("Drehmoment", "N mm"), ("Moment", "mNm")]
-)
-def test_a_torque_that_the_map_names_is_divided_by_the_radius(tmp_path, header, unit):
-    """0.012 N m at 20 mm are 0.6 N, a friction of 0.06 under 10 N."""
-    size = {"N mm": 1e3, "mNm": 1e3}.get(unit, 1.0)
-    rows = "".join(f"{i},{size * 0.012:.6g},10\n" for i in range(20))
-    named = {"name": header} | ({"unit": unit} if unit else {})
-    chosen = column_map({"columns": {"tangential_force": named}, "test": {"track_radius": "20 mm"}})
-    log = read(tmp_path, f"time [s],{header},Fz [N]\n{rows}".encode(), chosen)
-    np.testing.assert_allclose(log.friction, 0.06, rtol=1e-14)  # rounding
-    assert "divided by the radius of the track" in "\n".join(described(log))
-
-
-@pytest.mark.parametrize("encoding", ENCODINGS)
-@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
-def test_every_encoding_gives_the_same_log(tmp_path, encoding, newline):
-    """The Greek letter in the header and the degree sign in the metadata survive each encoding."""
-    log = read(tmp_path, raw_logs.anton_paar(FRICTION, TIME, encoding=encoding, newline=newline))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    assert log.conditions.temperature == pytest.approx(295.15, rel=1e-12)
-
-
-def test_encoding_after_a_long_ascii_head_is_still_seen(tmp_path):
-    """A letter of Windows-1252 far below the header is no longer taken for UTF-8."""
-    head = [f"remark {i}: {'a' * 90}" for i in range(250)] + ["place: K\u00f6ln"]
-    columns = {"time [s]": TIME, "COF": FRICTION}
-    content = raw_logs.plain_csv(columns, head=head, encoding="cp1252", separator="\t")
-    assert read(tmp_path, content).metadata["place"] == "K\u00f6ln"
-
-
-@pytest.mark.parametrize(
-    ("separator", "decimal"),
-    [
-        (",", "."),
-        ("|", "."),
-        (";", "."),
-        (";", ","),
-        ("\t", "."),
-        ("\t", ","),
-        ("   ", "."),
-        ("  ", ","),
-        (" \t ", "."),
-    ],
-)
-def test_separators_and_decimals_are_told_from_the_rows(tmp_path, separator, decimal):
-    """Comma, semicolon, tab and runs of blanks, with decimal point or comma."""
-    columns = {"time [s]": TIME, "COF": FRICTION, "Fz [N]": FRICTION + 10.0}
-    log = read(tmp_path, raw_logs.plain_csv(columns, separator=separator, decimal=decimal))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    np.testing.assert_array_equal(log.normal_force, as_written(FRICTION + 10.0))
 
 
 @given(
@@ -238,29 +68,6 @@ def test_any_dialect_comes_back_or_is_asked_for(
         np.testing.assert_array_equal(log.friction, as_written(values, digits))
 
 
-UNIT_STYLES = {
-    "in brackets": ({"Time [s]": TIME, "\u00b5 [-]": FRICTION, "Fn [mN]": FRICTION}, ()),
-    "in parentheses": ({"Time (s)": TIME, "COF ()": FRICTION, "Load (mN)": FRICTION}, ()),
-    "after an underscore": ({"Time_s": TIME, "mu": FRICTION, "Fn_mN": FRICTION}, ()),
-    "after a slash": ({"Zeit / s": TIME, "Reibwert": FRICTION, "Normalkraft/mN": FRICTION}, ()),
-    "after in": ({"Zeit in s": TIME, "Reibungszahl": FRICTION, "Normalkraft in mN": FRICTION}, ()),
-    "after a blank": ({"temps s": TIME, "coefficient de frottement": FRICTION, "Fn mN": FRICTION}, ()),
-    "in a row": ({"Time": TIME, "COF": FRICTION, "Fz": FRICTION}, ("s", "-", "mN")),
-    "in a row with brackets": ({"Time": TIME, "COF": FRICTION, "Fz": FRICTION}, ("[s]", "[-]", "[mN]")),
-    "in a row with a gap": ({"T": TIME, "COF": FRICTION, "Fz": FRICTION}, ("sec", "", "mN")),
-}
-
-
-@pytest.mark.parametrize("style", UNIT_STYLES)
-def test_units_are_found_wherever_they_stand(tmp_path, style):
-    """Beside the name, or in a row of their own; mN come to N."""
-    columns, units = UNIT_STYLES[style]
-    log = read(tmp_path, raw_logs.plain_csv(columns, units=units, separator=";"))
-    np.testing.assert_array_equal(log.time, as_written(TIME))
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    np.testing.assert_allclose(log.normal_force, as_written(FRICTION) / 1e3, rtol=ULP)
-
-
 @pytest.mark.parametrize(
     "mark", ["x", "\u00d7", "-", "NaN", "n.a.", "", "#N/A", "#DIV/0!", "1.#QNAN", "inf", " - "]
 )
@@ -278,15 +85,6 @@ def test_missing_values_are_left_out_and_counted(tmp_path, mark, separator):
     np.testing.assert_array_equal(log.friction, as_written(FRICTION[there]))
     np.testing.assert_array_equal(log.time, as_written(TIME[there]))
     assert any("4 of 60 rows are left out" in note for note in log.notes)
-
-
-def test_a_number_can_mean_missing(tmp_path):
-    """-9 of a temperature is a number until the column map says that it is none."""
-    temperature = np.where(np.arange(ROWS) == 5, -9.0, 20.0)
-    content = raw_logs.plain_csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature})
-    columns = column_map({"format": {"missing": ["-9"]}})
-    assert np.nanmin(read(tmp_path, content).temperature) == 264.15
-    assert np.isnan(read(tmp_path, content, columns).temperature).sum() == 1
 
 
 @pytest.mark.parametrize("abscissa", ["time [s]", "distance [m]", "cycles"])
@@ -323,7 +121,55 @@ FORCES = {"tangential_force": {"name": "Fx", "unit": "N"}, "normal_force": {"nam
 BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
 FORMAT = {"separator": ";", "decimal": ",", "header_line": 2, "units_line": 4}
 
+MORE = {"time [s]": TIME, "COF": FRICTION, "Fz [N]": FRICTION + 10.0}
+DIALECTS = [",.", "|.", ";.", ";,", "\t.", "\t,", "   .", "  ,", " \t ."]
+UNIT_STYLES = {
+    "in brackets": ("Time [s];\u00b5 [-];Fn [mN]", ()),
+    "in parentheses": ("Time (s);COF ();Load (mN)", ()),
+    "after an underscore": ("Time_s;mu;Fn_mN", ()),
+    "after a slash": ("Zeit / s;Reibwert;Normalkraft/mN", ()),
+    "after in": ("Zeit in s;Reibungszahl;Normalkraft in mN", ()),
+    "after a blank": ("temps s;coefficient de frottement;Fn mN", ()),
+    "in a row": ("Time;COF;Fz", ("s", "-", "mN")),
+    "in a row with brackets": ("Time;COF;Fz", ("[s]", "[-]", "[mN]")),
+    "in a row with a gap": ("T;COF;Fz", ("sec", "", "mN")),
+}
+TWO_MEANINGS = {"T [sec]": TIME, "t [\u00b0C]": 20 + TIME, "Friction [N]": FRICTION, "Load [N]": ONE}
+
 THE_SAME: dict[str, tuple[bytes, dict | None]] = {
+    "Anton Paar text": (raw_logs.anton_paar(FRICTION, TIME), None),
+    "Anton Paar text, nano": (raw_logs.anton_paar(FRICTION, TIME, nano=True), None),
+    "Rtec CSV": (raw_logs.rtec(FRICTION, TIME), None),
+    "Bruker UMT text": (raw_logs.umt(FRICTION, TIME), None),
+    "Phoenix Compend text": (raw_logs.compend(FRICTION, TIME), None),
+    **{
+        f"{encoding}, {newline!r}": (
+            raw_logs.anton_paar(FRICTION, TIME, encoding=encoding, newline=newline),
+            None,
+        )
+        for encoding in ENCODINGS
+        for newline in ("\n", "\r\n", "\r")
+    },
+    **{
+        f"separator and decimal {of!r}": (csv(MORE, separator=of[:-1], decimal=of[-1]), None)
+        for of in DIALECTS
+    },
+    **{
+        f"units {style}": (
+            csv(
+                dict(zip(names.split(";"), (TIME, FRICTION, FRICTION), strict=True)),
+                units=units,
+                separator=";",
+            ),
+            None,
+        )
+        for style, (names, units) in UNIT_STYLES.items()
+    },
+    "units of names with two meanings": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), None),
+    "a table that is no log, by its first line": (
+        csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n",
+        {"format": {"ends": ["Summary"]}},
+    ),
     "in quotes, as spreadsheets write": (lines('"time [s]";"COF"', '"{T}";"{F}"'), None),
     "decimal commas in quotes between commas": (lines('"time, s","COF, -",note', '"{T}","{F}","a, b"'), None),
     "a remark in quotes leaves the commas of numbers": (
@@ -353,10 +199,6 @@ THE_SAME: dict[str, tuple[bytes, dict | None]] = {
     "lines of names and units by their numbers": (
         lines("first remark\nZeit;Reibwert\nother remark\ns;-", "{T};{F}"),
         {"format": FORMAT},
-    ),
-    "a table that is no log, left out by its first line": (
-        csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n",
-        {"format": {"ends": ["Summary"]}},
     ),
     "the second of two frictions by the map": (
         csv({"time [s]": TIME, "COF": 2 * FRICTION, "mu": FRICTION}),
@@ -390,52 +232,221 @@ THE_SAME: dict[str, tuple[bytes, dict | None]] = {
 }
 
 
+LOGGED = {  # columns beside friction and time
+    "Anton Paar text, nano": {
+        "normal_force": 5.0 * ONE,
+        "tangential_force": as_written(FRICTION * 5e3) / 1e3,
+    },
+    "Anton Paar text": {"distance": as_written(TIME * 0.1), "wear_depth": as_written(TIME * 1e-3) * 1e-6},
+    "separator": {"normal_force": as_written(FRICTION + 10.0)},
+    "units of": {"temperature": 293.15 + as_written(TIME)},
+    "units": {"normal_force": as_written(FRICTION) / 1e3},
+}
+
+
 @pytest.mark.parametrize("what", THE_SAME)
 def test_the_friction_written_is_read(tmp_path, what):
-    """However it is written, and with whatever beside it, above it and below it."""
+    """To the last digit, however it is written, and with whatever beside it, above it and below it."""
     content, given = THE_SAME[what]
     log = read(tmp_path, content, given and column_map(given))
     np.testing.assert_array_equal(log.friction, as_written(FRICTION))
     np.testing.assert_array_equal(log.time, as_written(TIME))
+    assert (log.rows, log.missing, log.checksum) == (ROWS, 0, hashlib.sha256(content).hexdigest())
+    assert log.format.startswith(what) or "text" not in what.split()[-1:]
+    for name, values in next((of for key, of in LOGGED.items() if what.startswith(key)), {}).items():
+        np.testing.assert_allclose(getattr(log, name), values, rtol=ULP)
+
+
+ANTON_PAAR = raw_logs.anton_paar(FRICTION, TIME)
+STROKES = ANTON_PAAR.replace("Angle [\u00b0]".encode("cp1252"), b"Linear Position [mm]")
+UMT, RTEC = raw_logs.umt(FRICTION, TIME), raw_logs.rtec(FRICTION, TIME)
+BARE_RTEC = raw_logs.rtec(FRICTION, TIME, metadata=False)
+GAPS = csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": np.where(TIME < 1.25, np.nan, 20.0)})
+PATTERNS = {
+    "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
+    "files": {
+        "armalon_*.txt": {"material": "Armalon"},
+        "*_ln2.txt": {"medium": "liquid nitrogen"},
+        "other.txt": {"material": "PEEK"},
+    },
+}
+FOLDERS = {"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}}
+CONDITIONS = {
+    "Anton Paar: radius 15 mm at 10 cm/s and 5 N": (
+        ANTON_PAAR,
+        {},
+        {"sample": "A1", "slip_speed": 0.1, "normal_force": 5.0, "temperature": 295.15}
+        | {"cycle_time": 2 * math.pi * 0.015 / 0.1},
+    ),
+    "millinewtons": (raw_logs.anton_paar(FRICTION, TIME, nano=True), {}, {"normal_force": 5.0}),
+    "a stroke's greatest speed is not its sliding speed": (STROKES, {}, {"slip_speed": None}),
+    "UMT keys without units": (UMT, {}, {"slip_speed": None}),
+    "Rtec, 120 rpm on a radius of 20 mm": (
+        RTEC,
+        {"test": {"track_radius": "20 mm", "material": "Armalon"}},
+        {"material": "Armalon", "slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5, "sample": "disk 7"},
+    ),
+    "Rtec, two keys over two values": (
+        b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC,
+        {},
+        {"sample": "disk 7"},
+    ),
+    "Rtec, one key is no table": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
+    "Rtec, a bare carriage return": (RTEC.replace(b"e\r\ndisk", b"e\rdisk"), {}, {"sample": "disk 7"}),
+    "a speed in rpm": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), {}, {"cycle_time": 1.0}),
+    "a comment": (csv(head=["# material: Armalon"]), {}, {"material": "Armalon"}),
+    "a measured column with gaps": (GAPS, {}, {"temperature": 293.15}),
+    "the map before the metadata": (ANTON_PAAR, {"test": {"normal_force": "6 N"}}, {"normal_force": 6.0}),
+    "pressure of a flat pin": (
+        csv(),
+        {"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}},
+        {"pressure": 100.0 / (9.0 * math.pi) * 1e6},
+    ),
+    "patterns, in the order written: armalon_3_ln2.txt": (
+        csv(),
+        PATTERNS,
+        {"environment": "liquid nitrogen, 440C", "material": "Armalon", "temperature": 77.0},
+    ),
+    "a pattern with the folder: armalon/a.csv": (csv(), FOLDERS, {"material": "Armalon", "sample": "A"}),
+    "a pattern with another folder: peek/a.csv": (csv(), FOLDERS, {"material": None, "sample": "A"}),
+    "a load that is known, a diameter that is not": (
+        csv(head=["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"]),
+        {},
+        {"normal_force": 50.0},
+    ),
+}
+NOTES = {
+    "a stroke's": ["slip_speed below [test]"],
+    "UMT": [
+        'Velocity 240 has no unit; put slip_speed = "240 <unit>" under [test]',
+        'Radius 15.000 has no unit; put track_radius = "15.000 mm" under [test]',
+    ],
+    "a load": [
+        'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its unit under [test]',
+        "Speed as usual is not understood",
+    ],
+}
+
+
+@pytest.mark.parametrize("what", CONDITIONS)
+def test_conditions_are_those_of_the_map_and_the_file(tmp_path, what):
+    """In SI, or None with a note: from its lines, its columns, [test] and each pattern that fits."""
+    content, given, conditions = CONDITIONS[what]
+    folder, _, name = what.partition(": ")[2].rpartition("/")
+    (tmp_path / folder).mkdir(exist_ok=True)
+    log = read(tmp_path / folder, content, column_map(given), name if "." in name else "log.txt")
+    found = {key: getattr(log.conditions, key) for key in conditions}
+    near = {key: pytest.approx(of, rel=1e-12) for key, of in conditions.items() if isinstance(of, float)}
+    assert found == conditions | near  # rounding of units
+    notes = "\n".join(log.notes)
+    assert [
+        words for start, of in NOTES.items() if what.startswith(start) for words in of if words not in notes
+    ] == []
+
+
+def test_column_map_says_what_names_do_not(tmp_path):
+    """By name or by number, with a unit and a sign."""
+    content = raw_logs.plain_csv({"a": TIME, "b": FRICTION * 2e3, "c": np.full(ROWS, -2.0)})
+    choices = {
+        "time": {"name": "a", "unit": "min"},
+        "tangential_force": {"name": 2, "unit": "mN"},
+        "normal_force": {"name": "c", "unit": "N", "sign": -1},
+    }
+    log = read(tmp_path, content, column_map({"columns": choices}))
+    np.testing.assert_array_equal(log.time, as_written(TIME) * 60.0)
+    np.testing.assert_allclose(log.friction, as_written(FRICTION * 2e3) / 2e3, rtol=ULP)
+    assert {column.why for column in log.columns} == {"column map"}
 
 
 def test_what_stands_beside_the_numbers_is_kept(tmp_path):
-    """Lines above, a name without the file's mark of byte order, a measured column with gaps, why not."""
+    """Lines above in any code, a name without the file's mark of byte order, a column with gaps, why not."""
     assert read(tmp_path, csv(separator=";", head=LONG_HEAD)).metadata["key 39"] == "value 39"
-    assert read(tmp_path, csv(head=["# material: Armalon"])).conditions.material == "Armalon"
-    assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
+    head = [f"remark {i}: {'a' * 90}" for i in range(250)] + ["place: K\u00f6ln"]
+    assert read(tmp_path, csv(head=head, encoding="cp1252", separator="\t")).metadata["place"] == "K\u00f6ln"
     assert read(tmp_path, RTEC).metadata["Operator"] == "nobody"
+    assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
     assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
-    temperature = np.where(np.arange(ROWS) < 5, np.nan, 20.0)
-    log = read(tmp_path, csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": temperature}))
-    assert (log.rows, np.isnan(log.temperature).sum(), log.conditions.temperature) == (ROWS, 5, 293.15)
+    assert (read(tmp_path, GAPS).rows, np.isnan(read(tmp_path, GAPS).temperature).sum()) == (ROWS, 5)
+    code = csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": np.where(TIME == 1.25, -9.0, 20.0)})
+    assert (
+        np.nanmin(read(tmp_path, code).temperature) == 264.15
+    )  # a number until the map says that it is none
+    known = column_map({"format": {"missing": ["-9"]}})
+    assert np.isnan(read(tmp_path, code, known).temperature).sum() == 1
+
+
+def test_each_step_of_a_file_is_a_log(tmp_path):
+    """Time begins anew in each; 204 gram-force are 2 N; the map may name the tables that are wanted."""
+    first, second = read_all(tmp_path, raw_logs.umt(FRICTION, TIME, steps=2, reciprocating=True))
+    assert [first.source, second.source] == ["log.txt, run 1, step 1", "log.txt, run 1, step 2"]
+    assert second.time[0] == 0.0
+    np.testing.assert_allclose(first.normal_force, 2.0, rtol=1e-8)  # six decimals of 203.94 g
+    np.testing.assert_array_equal(np.concatenate([first.friction, second.friction]), as_written(FRICTION))
+    time = np.concatenate([TIME[:20], TIME[:40]])
+    content = raw_logs.rtec(FRICTION, time, steps=[1] * 20 + [2] * 40)
+    logs = read_all(tmp_path, content)
+    assert [(log.source, log.rows) for log in logs] == [("log.txt, step 1", 20), ("log.txt, step 2", 40)]
+    assert read(tmp_path, content, column_map({"format": {"tables": ["step 2"]}})).rows == 40
 
 
 SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
 LOAD = np.where(np.isin(np.arange(ROWS), (3, 4)), -0.5, 10.0)
 FEW = np.arange(ROWS) % 20 == 5
 TEN = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0}
-DEAD_WEIGHT = {"test": {"normal_force": "10 N"}}
-TENTH = as_written(FRICTION * 10.0) / 10.0
+TORQUES = [("Torque [Nm]", {}, 1.0), ("Drehmoment", {"unit": "N mm"}, 1e3), ("Moment", {"unit": "mNm"}, 1e3)]
 MADE = {
-    "percent": ({"time [s]": TIME, "COF [%]": FRICTION * 100}, None, as_written(FRICTION * 100) / 100, ""),
-    "a load of the map": (
+    "forces of Compend": (
+        raw_logs.compend(FRICTION, TIME, coefficient=False),
+        None,
+        as_written(FRICTION * 20.0) / 20.0,
+        "",
+    ),
+    **{
+        f"a torque that the map names {name}": (
+            {"time [s]": TIME, name: 0.012 * size * ONE, "Fz [N]": 10.0 * ONE},
+            {
+                "columns": {"tangential_force": {"name": name} | unit},
+                "test": {"track_radius": "20 mm"},
+            },
+            0.06 * ONE,
+            "",
+        )
+        for name, unit, size in TORQUES
+    },
+    "percent": (
+        {"time [s]": TIME, "COF [%]": FRICTION * 100.0},
+        None,
+        as_written(FRICTION * 100.0) / 100.0,
+        "",
+    ),
+    "a constant load of the map": (
         TEN,
-        DEAD_WEIGHT,
-        TENTH,
+        {"test": {"normal_force": "10 N"}},
+        as_written(FRICTION * 10.0) / 10.0,
         "friction is |tangential force| / 10 N, the constant given",
     ),
-    "a load of the map and a column without load": (
-        *(TEN | {"Fn [N]": 0.0 * ONE}, DEAD_WEIGHT, TENTH),
+    "a constant load of the map and a column without load": (
+        TEN | {"Fn [N]": 0.0 * ONE},
+        {"test": {"normal_force": "10 N"}},
+        as_written(FRICTION * 10.0) / 10.0,
         "the column of normal force has no load in any row and is not used",
     ),
     "compression that counts negative": (
-        *(TEN | {"Fn [N]": -10.0 * ONE}, None, TENTH),
+        TEN | {"Fn [N]": -10.0 * ONE},
+        None,
+        as_written(FRICTION * 10.0) / 10.0,
         "the normal force is negative in the file: compression counts negative there",
     ),
-    "rows without compression": (TEN | {"Fn [N]": LOAD}, None, TENTH[LOAD > 0], "2 rows without compression"),
+    "rows without compression": (
+        TEN | {"Fn [N]": LOAD},
+        None,
+        as_written(FRICTION * 10.0)[LOAD > 0] / 10.0,
+        "2 rows without compression",
+    ),
     "strokes there and back": (
-        *({"time [s]": TIME, "COF": SIGN * FRICTION}, None, as_written(FRICTION)),
+        {"time [s]": TIME, "COF": SIGN * FRICTION},
+        None,
+        as_written(FRICTION),
         "friction is negative in 30 of 60 rows",
     ),
     **{
@@ -454,8 +465,10 @@ MADE = {
 def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
     """With a note on what was done, and the rows left out counted; a code is not called negative."""
     columns, given, friction, note = MADE[what]
-    log = read(tmp_path, csv(columns), given and column_map(given))
-    np.testing.assert_array_equal(log.friction, friction)
+    content = columns if isinstance(columns, bytes) else csv(columns)
+    log = read(tmp_path, content, given and column_map(given))
+    np.testing.assert_allclose(log.friction, friction, rtol=ULP)
+    assert ("divided by the radius of the track" in "\n".join(described(log))) == ("torque" in what)
     assert log.missing == ROWS - len(friction)
     assert any(one.startswith(note) for one in log.notes) or not note
     assert any("negative" in one for one in log.notes) == ("negative" in note)
@@ -497,61 +510,7 @@ def test_friction_is_tangential_over_normal_force(tmp_path):
     log = read(tmp_path, raw_logs.plain_csv(columns))
     np.testing.assert_array_equal(log.friction, np.abs(log.tangential_force) / log.normal_force)
     assert (log.tangential_force < 0.0).any()
-    compend = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
-    np.testing.assert_array_equal(compend.friction, as_written(FRICTION * 20.0) / 20.0)
     assert log.conditions.normal_force == pytest.approx(np.median(load), abs=1e-6)  # six decimals
-
-
-def test_umt_forces_are_grams_and_every_step_is_a_log(tmp_path):
-    """204 gram-force are 2 N; time begins anew in each step."""
-    first, second = read_all(tmp_path, raw_logs.umt(FRICTION, TIME, steps=2, reciprocating=True))
-    assert first.source == "log.txt, run 1, step 1"
-    assert second.source == "log.txt, run 1, step 2"
-    assert second.time[0] == 0.0
-    np.testing.assert_allclose(first.normal_force, 2.0, rtol=1e-8)  # six decimals of 203.94 g
-    np.testing.assert_array_equal(np.concatenate([first.friction, second.friction]), as_written(FRICTION))
-
-
-def test_rtec_steps_are_logs_of_their_own(tmp_path):
-    """The timestamp begins anew with each step."""
-    time = np.concatenate([TIME[:20], TIME[:40]])
-    logs = read_all(tmp_path, raw_logs.rtec(FRICTION, time, steps=[1] * 20 + [2] * 40))
-    assert [log.source for log in logs] == ["log.txt, step 1", "log.txt, step 2"]
-    assert [log.rows for log in logs] == [20, 40]
-    (second,) = read_all(
-        tmp_path,
-        raw_logs.rtec(FRICTION, time, steps=[1] * 20 + [2] * 40),
-        column_map({"format": {"tables": ["step 2"]}}),
-    )
-    assert second.rows == 40
-
-
-def test_unit_of_a_name_with_two_meanings_decides(tmp_path):
-    """T in sec is time, T in degrees is temperature; speed in rpm is rotation; friction in N is a force."""
-    columns = {
-        "T [sec]": TIME,
-        "t [\u00b0C]": 20 + TIME,
-        "Friction [N]": FRICTION,
-        "Load [N]": FRICTION * 0 + 1,
-    }
-    log = read(tmp_path, raw_logs.plain_csv(columns | {"Speed [rpm]": 60 + 0 * TIME}))
-    np.testing.assert_allclose(log.temperature, 293.15 + as_written(TIME), rtol=ULP)
-    np.testing.assert_array_equal(log.friction, as_written(FRICTION))
-    assert log.conditions.cycle_time == pytest.approx(1.0, rel=1e-12)
-
-
-def test_column_map_says_what_names_do_not(tmp_path):
-    """By name or by number, with a unit and a sign."""
-    content = raw_logs.plain_csv({"a": TIME, "b": FRICTION * 2e3, "c": np.full(ROWS, -2.0)})
-    choices = {
-        "time": {"name": "a", "unit": "min"},
-        "tangential_force": {"name": 2, "unit": "mN"},
-        "normal_force": {"name": "c", "unit": "N", "sign": -1},
-    }
-    log = read(tmp_path, content, column_map({"columns": choices}))
-    np.testing.assert_array_equal(log.time, as_written(TIME) * 60.0)
-    np.testing.assert_allclose(log.friction, as_written(FRICTION * 2e3) / 2e3, rtol=ULP)
-    assert {column.why for column in log.columns} == {"column map"}
 
 
 def test_description_shows_columns_units_and_reasons(tmp_path):
@@ -576,9 +535,3 @@ def test_no_name_and_unit_have_two_meanings():
         for unit in every if len(known) > 1 else ():
             fitting = [meaning for meaning in known if scale_of(unit, meaning) is not None]
             assert len(fitting) <= 1, (name, unit, fitting)
-
-
-def test_conditions_refuse_what_cannot_be():
-    """A record that checks itself."""
-    with pytest.raises(InputError, match=r"Conditions\.temperature must be > 0"):
-        Conditions(temperature=-3.0)

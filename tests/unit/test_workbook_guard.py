@@ -6,7 +6,6 @@ import struct
 import zipfile
 
 import pytest
-from commands import refusal
 from minimal_xlsx import zipped
 
 from separatrix.ground import sheet as workbook_files
@@ -114,8 +113,12 @@ WRONG = {
 @pytest.mark.parametrize(("content", "words"), WRONG.values(), ids=WRONG)
 def test_a_wrong_archive_is_refused_in_one_line(tmp_path, content, words):
     """Each breaks one rule; the refusal says which, with the name of the file, on one line."""
-    text = refusal([words], refuse_unsafe, written(tmp_path / "case.xlsx", content))
+    with pytest.raises(InputError) as refusal:
+        refuse_unsafe(written(tmp_path / "case.xlsx", content))
+    text = str(refusal.value)
     assert text.startswith("case.xlsx ")
+    assert words in text
+    assert "\n" not in text
 
 
 @pytest.mark.parametrize("name", ["one.xml", "folder/two.xml"])

@@ -1,64 +1,95 @@
 """Wrong friction files, and studies that name them: each refused in one line that says what and where."""
 
+import commands
 import pytest
-from commands import refusal, table
+from commands import refusal_line, written
 
 from separatrix.friction.file import FrictionTest, read_friction
 from separatrix.friction.fit import fit_friction
 from separatrix.ground.errors import InputError
-from separatrix.study.reading import read_study
 
-GOOD = '[[test]]\nmaterial = "Armalon"\ncounterface = "440C"\nmedium = "liquid nitrogen"\nfriction = 0.08\n'
+GOOD = """\
+[[test]]
+material = "Armalon"
+counterface = "440C"
+medium = "liquid nitrogen"
+friction = 0.08
+"""
+
+
 WRONG_FILES = r"""
-[[test]] => [test] :: line 1: [test] must be a list in [brackets]; got a table. Write [[test]]
 ^title = "mine" :: friction.toml lacks: test. Write [[test]]
-^ :: friction.toml is empty. `separatrix tribometer
-^test = [] :: line 1: test must have 1 to 10000 items; got 0 of them
-^test = [1] :: line 1: test[1] must be a table with material, counterface, medium, friction; got 1
-"Armalon" => "Armalon " :: line 2: [[test]] material must not begin or end with a space
 nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got "liquid nitrogen, wet"
-+slip_speed = ["5 m/s", "1 m/s"] :: line 6: [[test]] slip_speed must have the lowest value first
+0.08 => 0 :: line 5: [[test]] friction must be > 0; got 0. Its logarithm is fitted
+0.08 => 3 :: line 5: [[test]] friction must be <= 2; got 3
++slip_speed = "0 m/s" :: line 6: [[test]] slip_speed must lie between 1e-09 m/s and 1000 m/s; got 0 m/s
++pressure = "1e9 GPa" :: line 6: [[test]] pressure must lie between 0.001 Pa and 1000 GPa
++temperature = "0 K" :: line 6: [[test]] temperature must lie between 0.1 K
+0.08 => "8 %" :: line 5: [[test]] friction must be a plain number, without a unit; got "8 %". Write 0.08
++run_in_end = "35 N" :: line 6: [[test]] run_in_end must be a time, a distance or a number of cycles
 +checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "a.csv"
     :: line 13: [[test]] checksum is that of test 1 once more. Each log counts once; remove one
 +checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "b.csv"
     :: line 13: [[test]] checksum is that of test 1 once more
 +\n[[test]]\nmaterial = "armalon"\ncounterface = "440C"\nmedium = "liquid  nitrogen"\nfriction = 1
-    :: line 8: [[test]] material differs from that of test 1 only in capitals ; line 10: [[test]] medium
+    :: line 8: [[test]] material differs from that of test 1 only in capitals or spaces; got "armalon"
+    :: line 10: [[test]] medium differs from that of test 1 only in capitals or spaces
 """
 """A change of a good file, one added (+) or the file itself (^); place and rule of each mistake."""
 
 
-@pytest.mark.parametrize(("change", "words"), table(WRONG_FILES))
-def test_a_wrong_friction_file_is_refused_a_line_a_mistake(tmp_path, change, words):
+def wrong_files():
+    """Text of a wrong file, and the begin of each line of its refusal."""
+    for number, line in enumerate(WRONG_FILES.strip().replace("\n    ::", " ::").splitlines()):
+        change, *refusal = line.split(" :: ")
+        change = change.replace(r"\n", "\n").replace("GOOD", GOOD)
+        old, arrow, new = change.removeprefix("^").partition(" =>")
+        text = GOOD + change[1:] + "\n" if change[0] == "+" else change[1:] + "\n"
+        yield pytest.param(
+            GOOD.replace(old, new.strip()) if arrow else text, refusal, id=f"{number} {old[:30]}"
+        )
+
+
+@pytest.mark.parametrize(("text", "refusal"), list(wrong_files()))
+def test_a_wrong_friction_file_is_refused_a_line_a_mistake(tmp_path, text, refusal):
     """The line names the file, the rule and the value; a study that names the file passes it on."""
-    old, _, new = change.replace("GOOD", GOOD).partition(" => ")
-    text = {"+": f"{GOOD}{old[1:]}\n", "^": f"{old[1:]}\n"}.get(old[0], GOOD.replace(old, new))
-    (tmp_path / "friction.toml").write_text(text)
-    (tmp_path / "study.toml").write_text(STUDY + 'friction = "friction.toml"\n')
-    for read, name in ((read_friction, "friction.toml"), (read_study, "study.toml")):
-        refusal(words, read, tmp_path / name, lines=len(words))
+    named = written(tmp_path, 'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n')
+    for found in (
+        commands.refusal(written(tmp_path, text, "friction.toml"), read_friction),
+        commands.refusal(named),
+    ):
+        lines = [line.replace("friction.toml, ", "", 1) for line in found.splitlines()]
+        assert [line[: len(one)] for line, one in zip(lines, refusal, strict=True)] == refusal
 
 
-STUDY = 'extends = "cryogenic-turbopump"\n[ranking]\n'
-WRONG_STUDIES = r"""
-friction = "other.toml" :: [ranking] friction names no file ; other.toml
-friction = "folder.toml" :: names no file beside the study
-friction = "pin-on-disk-77" :: [ranking] friction is not a friction table ; separatrix tribometer
-friction = "friction.toml"\nmaterials = ["Armalom"]
-    :: materials names a material that friction.toml lacks ; Did you mean Armalon?
-friction = "friction.toml"\nfriction_scatter = 0 :: friction_scatter must lie between 0.001 ; got 0
-friction = "friction.toml"\nfriction_scatter = 9
-    :: friction_scatter must lie between 0.001 and 1 ; got 9 ; 0.09 is 9 %
-"""
+WRONG_STUDIES = {
+    "no such file": ('friction = "other.toml"', ("[ranking] friction names no file", "other.toml")),
+    "a folder": ('friction = "folder.toml"', ("names no file beside the study",)),
+    "no such table": (
+        'friction = "pin-on-disk-77"',
+        ("[ranking] friction is not a friction table", "separatrix tribometer"),
+    ),
+    "a material it lacks": (
+        'friction = "friction.toml"\nmaterials = ["Armalom"]',
+        ("materials names a material that friction.toml lacks", "Did you mean Armalon?"),
+    ),
+    "scatter in percent": (
+        'friction = "friction.toml"\nfriction_scatter = 9',
+        ("friction_scatter must lie between 0.001 and 1", "got 9", "0.09 is 9 %"),
+    ),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(("ranking", "words"), table(WRONG_STUDIES))
-def test_a_study_that_asks_wrongly_for_friction_is_refused_in_one_line(tmp_path, ranking, words):
+@pytest.mark.parametrize("name", WRONG_STUDIES)
+def test_a_study_that_asks_wrongly_for_friction_is_refused_in_one_line(tmp_path, name):
     """The line names the study and its key."""
+    ranking, words = WRONG_STUDIES[name]
     (tmp_path / "friction.toml").write_text(GOOD)
     (tmp_path / "folder.toml").mkdir()
-    (tmp_path / "study.toml").write_text(f"{STUDY}{ranking}\n")
-    assert refusal(words, read_study, tmp_path / "study.toml").startswith("study.toml")
+    (tmp_path / "study.toml").write_text(f'extends = "cryogenic-turbopump"\n[ranking]\n{ranking}\n')
+    line = refusal_line(tmp_path / "study.toml")
+    assert line.startswith("study.toml")
+    assert [word for word in words if word not in line] == [], line
 
 
 @pytest.mark.parametrize(

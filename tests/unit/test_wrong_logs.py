@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import raw_logs
-from commands import refusal
+from commands import refusal_line, written
 
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map, read_column_map
@@ -92,30 +92,29 @@ WRONG = {
 def test_a_wrong_log_is_refused_in_one_line(tmp_path, what):
     """The message is one line, names the file, and holds the words that help."""
     content, words = WRONG[what]
-    (tmp_path / "log.txt").write_bytes(content)
-    assert refusal([words], read_log, tmp_path / "log.txt").startswith("log.txt")
+    message = refusal_line(written(tmp_path, content, "log.txt"), read_log)
+    assert words in message
+    assert message.startswith("log.txt")
 
 
 WRONG_MAPS = {
     "an unknown meaning": ({"columns": {"friktion": "a"}}, "[columns] friktion is not the meaning of a column. Did you mean friction?"),
-    "a column without a name": ({"columns": {"time": 0.5}}, "[columns] time.name must be the name or the number of a column; got 0.5. Write friction ="),
     "a column number of zero": ({"columns": {"time": 0}}, "must be the number of a column, counted from 1; got 0"),
+    "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time.unit must be a unit such as s, ms"),
+    "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
+    "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be one of "tab", ";", ",", "|", "blanks"'),
+    "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs header_line"),
+    "a column without a name": ({"columns": {"time": 0.5}}, "[columns] time.name must be the name or the number of a column; got 0.5. Write friction ="),
     "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has an open question: no column "Zeit", which the column map names as time'),
     "a number beyond the columns": ({"columns": {"friction": 7}}, 'has an open question: no column "number 7", which the column map names as friction'),
     "one column for two meanings": ({"columns": {"time": "time [s]", "cycles": 1}}, 'column "time [s]" is both time and cycles in the column map'),
-    "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time.unit must be a unit such as s, ms"),
     "a torque as a force in N": ({"columns": {"tangential_force": {"name": "M [Nm]", "unit": "N"}}, "test": {"track_radius": "20 mm"}}, 'column "M [Nm]" is in "N" by its map; got "Nm" in the file. Below [columns] of a column map: tangential_force = { name = "M [Nm]", unit = "Nm" }.'),
     "a torque without the radius": ({"columns": {"tangential_force": "M [Nm]"}}, 'column "M [Nm]" is a torque, not a force'),
-    "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
-    "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be one of "tab", ";", ",", "|", "blanks"'),
     "comma for both": ({"format": {"separator": ",", "decimal": ","}}, "cannot have a comma both as separator and as decimal"),
     "a wrong encoding": ({"format": {"encoding": "utf-16"}}, "cannot be read as utf-16 text"),
     "a line that is no header": ({"format": {"header_line": 900}}, "header_line = 900 must be a line above the rows; got a file of 22 lines."),
     "a line of names of other length": ({"format": {"header_line": 3, "separator": ";"}}, "has 2 open questions, the first: which column is the friction"),
-    "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs header_line"),
     "a table that is not there": ({"format": {"tables": ["step 9"]}}, 'has no table "step 9". It has one table, without a name.'),
-    "an area without unit": ({"test": {"contact_area": "3"}}, "[test] contact_area needs a unit of area"),
-    "a negative condition": ({"test": {"normal_force": "-3 N"}}, '[test] normal_force must be > 0; got "-3 N"'),
     "a pattern of nothing": ({"files": {"/": {}}}, 'must be a pattern of names of files. Write "peek_*.csv".'),
     "area and diameter": (
         {"test": {"contact_area": "3 mm2", "pin_diameter": "2 mm", "normal_force": "3 N"}},
@@ -132,40 +131,40 @@ WRONG_MAPS = {
 def test_a_wrong_column_map_is_refused_in_one_line(tmp_path, what):
     """When it is read, or when it does not fit the file."""
     document, words = WRONG_MAPS[what]
-    path = tmp_path / "log.txt"
     columns = {"time [s]": TIME, "COF": FRICTION}
     if "M [Nm]" in str(document):
         columns = {"time [s]": TIME, "M [Nm]": FORCE, "Fz [N]": FORCE}
-    path.write_bytes(csv(columns=columns))
-    refusal([words], lambda: read_log(path, column_map(document, "map.toml")))
+    path = written(tmp_path, csv(columns=columns), "log.txt")
+    assert words in refusal_line(path, lambda path: read_log(path, column_map(document, "map.toml")))
 
 
-def test_a_column_of_a_thousand_digits_is_refused(tmp_path):
-    """It is not one of a file."""
-    (tmp_path / "map.toml").write_bytes(b"[columns]\nfriction = 0x" + b"f" * 3900)
-    refusal(["must be the number of a column"], read_column_map, tmp_path / "map.toml")
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"#" * 1_000_001, "is larger than a column map can be, 256 kB"),
+        (b"[format]\nheader_line = 0x" + b"f" * 3900, "must be a whole number"),
+        (b"[columns]\nfriction = 0x" + b"f" * 3900, "must be the number of a column"),
+    ],
+)
+def test_a_file_that_is_no_column_map_is_refused(tmp_path, content, words):
+    """Of a size that a person writes; a number of thousands of digits is not one of a line."""
+    assert words in refusal_line(written(tmp_path, content, "map.toml"), read_column_map)
 
 
 def test_what_is_not_there_or_no_file_is_refused(tmp_path):
-    """A missing log, a folder, a missing column map."""
-    refusal(["none.txt cannot be read: no such file"], read_log, tmp_path / "none.txt")
-    refusal(["is a folder"], read_log, tmp_path)
-    refusal(["none.toml cannot be read: no such file"], read_column_map, tmp_path / "none.toml")
-
-
-def test_a_file_of_ten_gigabytes_is_refused_before_it_is_read(tmp_path):
-    """A sparse file of that size: only its length is looked at."""
-    path = tmp_path / "long.csv"
-    with path.open("wb") as file:
+    """A missing log, a folder, a missing column map; of 10 GB (a sparse file) only the length is looked at."""
+    assert "none.txt cannot be read: no such file" in refusal_line(tmp_path / "none.txt", read_log)
+    assert "is a folder" in refusal_line(tmp_path, read_log)
+    assert "none.toml cannot be read: no such file" in refusal_line(tmp_path / "none.toml", read_column_map)
+    with (tmp_path / "long.csv").open("wb") as file:
         file.truncate(10_000_000_000)
-    refusal(["long.csv is too large: at most 2 GB; got 10.0 GB"], read_log, path)
+    line = refusal_line(tmp_path / "long.csv", read_log)
+    assert "long.csv is too large: at most 2 GB; got 10.0 GB" in line
 
 
 def test_a_column_map_file_is_read(tmp_path):
     """As a user writes it, with a byte order mark from Notepad."""
-    path = tmp_path / "map.toml"
     text = '[columns]\nfriction = "COF"\nnormal_force = { name = "Fz", unit = "N" }\n[test]\ncontact_area = "3 mm²"\n'
-    path.write_text(text, encoding="utf-8-sig")
-    read = read_column_map(path)
+    read = read_column_map(written(tmp_path, "\ufeff" + text, "map.toml"))
     assert read.columns["normal_force"].unit == "N"
     assert read.test.contact_area == pytest.approx(3e-6, rel=1e-15)  # one rounding

@@ -1,14 +1,9 @@
 """Wrong library files and wrong calls of `materials`: a line a mistake, exit status 2."""
 
-import shlex
-
 import pytest
-from commands import refusal, table
+from commands import refusal, refusal_line, refused, written
 
-from separatrix.cli import main
-from separatrix.ground.errors import InputError
 from separatrix.study.library import with_files
-from separatrix.study.reading import read_study
 
 RATIO = 'poisson_ratio = { value = 0.3, source = "our test", confidence = "measured" }'
 MODULUS = 'elastic_modulus = { value = "5 GPa", source = "our test", confidence = "measured" }'
@@ -27,13 +22,10 @@ FLUID = '[fluid."slush"]\nsubstance = "nitrogen"\nphase = "liquid"\n'
 
 
 EDITS = r"""
-MATERIAL: "Ours" => "" :: line 1: [cage_material] "", its name, must be one line
-MATERIAL: Ours => Ours  :: line 1: [cage_material] Ours , its name, must not begin or end with a space
-MATERIAL: DATUM => 5
-    :: line 2: [cage_material] Ours.elastic_modulus must be a table with value, source, confidence
-MATERIAL: DATUM => [] :: line 2: [cage_material] Ours.elastic_modulus must have 1 to 100 items
-MATERIAL: DATUM => [DATUM, DATUM]
-    :: line 2: [cage_material] Ours.elastic_modulus has two with the same temperature, pressure
+MATERIAL: 5 GPa => 0 GPa
+    :: line 2: [cage_material] Ours.elastic_modulus.value must lie between 100 kPa and 5000 GPa
+MATERIAL: 0.3 => 0.5 :: line 3: [cage_material] Ours.poisson_ratio.value must lie between 0.001 and 0.499
+FLUID:  => aliases = []\n :: line 4: [fluid] slush.aliases must have 1 to 20 items
 MATERIAL: "5 GPa", => "5 GPa", range = ["6 GPa", "9 GPa"],
     :: line 2: [cage_material] Ours.elastic_modulus.range must have the value between its ends
 MATERIAL:  => replaces = true\n :: line 1: [cage_material] Ours replaces a cage material that is not shipped
@@ -46,105 +38,112 @@ FLUID:  => coolprop = "REFPROP::N2"\n :: line 4: [fluid] slush.coolprop must be 
 TABLE: 0.2 => 0.0 :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be above 0
 TABLE: 0.2 => { mean = 1e-200, standard_deviation = 0.1 }
     :: line 8: [friction_table] rig.friction.Ours."air, 440C".mean must be >= 1e-05 where there is
+TABLE: ["air, 440C"] => ["air"]
+    :: line 6: [friction_table] rig.environments lacks an environment that the table uses
 TABLE: ["air, 440C"] => ["air, 440C", "air, 440C"]
     :: line 6: [friction_table] rig.environments names an environment twice
-TABLE: "air, 440C" = 0.2\n =>  :: line 7: [friction_table] rig.friction.Ours must have 1 to 2000 names
 TITLE:  => \n :: ours.toml has no record: it needs a section
-TITLE: title = "Ours"\n => # nothing :: ours.toml is empty. `separatrix materials show 440C` shows
 TITLE: title = "Ours"\n => [[film]]\nname = 1\n :: line 1: [[film]] must be a table of names with their values
 """
 """A file, an edit of it, place and rule of one line of its refusal. A text alone is added behind."""
 
 
-FILES = {"MATERIAL": MATERIAL, "TABLE": TABLE, "FLUID": FLUID, "TITLE": 'title = "Ours"\n'}
+def cases():
+    """Text of a wrong file, and words of its refusal."""
+    files = {"MATERIAL": MATERIAL, "TABLE": TABLE, "FLUID": FLUID, "TITLE": 'title = "Ours"\n'}
+    for number, line in enumerate(EDITS.strip().replace("\n    ::", " ::").splitlines()):
+        edit, _, words = line.partition(" :: ")
+        for name, datum in (("DATUM", MODULUS), ("RATIO", RATIO)):
+            edit = edit.replace(name, datum.partition(" = ")[2])
+        base, _, edit = edit.replace(r"\n", "\n").partition(": ")
+        old, _, new = edit.partition("=> ")
+        old, text = old.removesuffix(" "), files[base]
+        start = text.replace(old, new, 1) if old else text + new
+        assert old in text
+        yield pytest.param(start, words, id=f"{number} {new[:40]}")
 
 
-@pytest.mark.parametrize(("edit", "words"), table(EDITS))
-def test_a_wrong_library_is_refused_in_one_line(edit, words, tmp_path):
+@pytest.mark.parametrize(("text", "words"), list(cases()))
+def test_a_wrong_library_is_refused_in_one_line(text, words, tmp_path):
     """File, line, key and rule; nothing beside it appears."""
-    for name, datum in (("DATUM", MODULUS), ("RATIO", RATIO)):
-        edit = edit.replace(name, datum.partition(" = ")[2])
-    base, _, edit = edit.partition(": ")
-    old, _, new = edit.partition("=> ")
-    old, text = old.removesuffix(" "), FILES[base]
-    assert old in text
-    path = tmp_path / "ours.toml"
-    path.write_text(text.replace(old, new, 1) if old else text + new)
-    assert refusal(words, with_files, [path]).startswith("ours.toml")
+    message = refusal_line(written(tmp_path, text, "ours.toml"), lambda path: with_files([path]))
+    assert words in message
+    assert message.startswith("ours.toml")
     assert [p.name for p in tmp_path.iterdir()] == ["ours.toml"]
 
 
-@pytest.mark.parametrize("text", [MATERIAL, TABLE, FLUID])
-def test_the_files_that_are_changed_are_right(text, tmp_path):
-    """So that each refusal is for its change alone."""
-    path = tmp_path / "ours.toml"
-    path.write_text(text)
-    with_files([path])
+STUDIES = {
+    "a film that no library has": ('[film]\nmaterial = "Ourz"\n', "is not a film of the library"),
+    "a near miss of a user's record": ('[cage]\nmaterial = "Oors"\n', "Did you mean Ours?"),
+    "a near miss of a user's table": ('[ranking]\nfriction = "rigg"\n', "Did you mean rig?"),
+    "a material that the table lacks": (
+        '[ranking]\nfriction = "rig"\nmaterials = ["Armalon"]\n',
+        "names a material that rig lacks",
+    ),
+    "a cage material for a ball": (
+        '[bearing]\nball_material = "Ours"\n',
+        "is not a bearing material of the library",
+    ),
+    "a library that is missing": (
+        'library = "no.toml"\n',
+        'library does not name a file or folder; got "no.toml"',
+    ),
+    "an empty folder": ('library = "empty"\n', "names a folder without a .toml file"),
+    "a library that is a study": ('library = "case.toml"\n', "is not a key of a library of materials"),
+    "a library with an endless name": (f'library = "{"x" * 300}"\n', "does not name a file or folder"),
+}
 
 
-STUDIES = r"""
-[film]\nmaterial = "Ourz" :: is not a film of the library
-[cage]\nmaterial = "Oors" :: Did you mean Ours?
-[ranking]\nfriction = "rigg" :: Did you mean rig?
-[ranking]\nfriction = "rig"\nmaterials = ["Armalon"] :: names a material that rig lacks
-[bearing]\nball_material = "Ours" :: is not a bearing material of the library
-library = 5 :: library[1] must be text; got 5. Give the path of a file or a folder
-library = "no.toml" :: library does not name a file or folder; got "no.toml"
-library = [] :: library must have 1 to 20 items
-library = "empty" :: names a folder without a .toml file
-library = "case.toml" :: is not a key of a library of materials
-library = "LONG" :: does not name a file or folder
-"""
-
-
-@pytest.mark.parametrize(("text", "words"), table(STUDIES))
-def test_a_study_that_names_a_wrong_record_is_refused_in_one_line(text, words, tmp_path):
+@pytest.mark.parametrize("what", STUDIES)
+def test_a_study_that_names_a_wrong_record_is_refused_in_one_line(what, tmp_path):
     """Names of users' records get the same help as shipped ones."""
+    text, words = STUDIES[what]
     (tmp_path / "materials.toml").write_text(MATERIAL + TABLE)
     (tmp_path / "empty").mkdir()
-    path = tmp_path / "case.toml"
-    path.write_text(f'extends = "cryogenic-turbopump"\n{text.replace("LONG", "x" * 300)}\n')
-    refusal(words, read_study, path, lines=0)
+    top, _, sections = text.partition("[")
+    case = f'extends = "cryogenic-turbopump"\n{top}' + "[" * bool(sections) + sections
+    assert words in refusal(written(tmp_path, case, "case.toml"))
 
 
 def test_a_study_beside_a_wrong_library_is_refused_for_the_library(tmp_path):
     """Even if it names nothing in it: what would have been replaced is not known."""
-    (tmp_path / "materials.toml").write_text(MATERIAL.replace("5 GPa", "5 mm"))
-    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
-    with pytest.raises(InputError, match=r"^materials.toml, line 2: \[cage_material\] Ours.elastic_modulus"):
-        read_study(tmp_path / "case.toml")
+    written(tmp_path, MATERIAL.replace("5 GPa", "5 mm"), "materials.toml")
+    line = refusal_line(written(tmp_path, 'extends = "cryogenic-turbopump"\n'))
+    assert line.startswith("materials.toml, line 2: [cage_material] Ours.elastic_modulus")
 
 
 def test_one_name_in_two_libraries_is_refused(tmp_path):
     """Which one was meant is not guessed; both places are named."""
     (tmp_path / "materials").mkdir()
     for name in ("materials.toml", "materials/more.toml"):
-        (tmp_path / name).write_text(MATERIAL)
-    (tmp_path / "case.toml").write_text('extends = "cryogenic-turbopump"\n')
-    with pytest.raises(InputError, match=r"more.toml, line 1.* is in materials.toml, line 1 too"):
-        read_study(tmp_path / "case.toml")
+        written(tmp_path, MATERIAL, name)
+    line = refusal_line(written(tmp_path, 'extends = "cryogenic-turbopump"\n'))
+    assert "more.toml, line 1" in line
+    assert "is in materials.toml, line 1 too" in line
 
 
-CALLS = """
-none :: Missing command
-lst :: No such command 'lst'
-list --kind flim :: Did you mean film?
-list --library no.toml :: --library does not name a file or folder
-show :: Missing argument 'NAME'
-show "440 C" :: Did you mean 440C?
-show "" :: is not a record of the library
-show 440C --kind film :: is not a film of the library
-show PTFE --temperature 77 :: Write "77 K"
-show PTFE --temperature "77 m" :: needs a unit of temperature
-show PTFE --temperature "-1 K" :: --temperature must lie between
-"""
+CALLS = {
+    "no verb": ([], "Missing command"),
+    "an unknown verb": (["lst"], "No such command 'lst'"),
+    "an unknown kind": (["list", "--kind", "flim"], "Did you mean film?"),
+    "a library that is missing": (
+        ["list", "--library", "no.toml"],
+        "--library does not name a file or folder",
+    ),
+    "no name": (["show"], "Missing argument 'NAME'"),
+    "an unknown name": (["show", "440 C"], "Did you mean 440C?"),
+    "an empty name": (["show", ""], "is not a record of the library"),
+    "a name of another kind": (["show", "440C", "--kind", "film"], "is not a film of the library"),
+    "a temperature without unit": (["show", "PTFE", "--temperature", "77"], 'Write "77 K"'),
+    "a temperature of a length": (["show", "PTFE", "--temperature", "77 m"], "needs a unit of temperature"),
+    "a temperature below zero": (["show", "PTFE", "--temperature", "-1 K"], "--temperature must lie between"),
+}
 
 
-@pytest.mark.parametrize(("call", "words"), table(CALLS))
-def test_a_wrong_call_is_refused_in_one_line(call, words, capsys):
+@pytest.mark.parametrize("what", CALLS)
+def test_a_wrong_call_is_refused_in_one_line(what, capsys):
     """Exit status 2, and nothing on standard output."""
-    assert main(["materials", *(shlex.split(call) if call != "none" else ())]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert all(line.startswith("separatrix: ") for line in err.splitlines())
-    assert words[0] in err
+    arguments, words = CALLS[what]
+    line = refused(capsys, "materials", *arguments)
+    assert line.startswith("separatrix: ")
+    assert words in line

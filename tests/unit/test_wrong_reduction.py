@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from commands import refusal
+from commands import refusal_line
 
 from separatrix.friction.file import place
 from separatrix.friction.logs.log import Conditions, RawLog
@@ -57,16 +57,19 @@ LOGS = [
 ]
 
 
-@pytest.mark.parametrize(("what", "end", "words"), ENDS)
-def test_a_wrong_end_of_running_in_is_refused_in_one_line(what, end, words):
+@pytest.mark.parametrize(("end", "words"), [row[1:] for row in ENDS], ids=[row[0] for row in ENDS])
+def test_a_wrong_end_of_running_in_is_refused_in_one_line(end, words):
     """Each wrong end has its rule, its value and, where there is one, the cure."""
-    assert refusal([words], place, end, "run_in_end").startswith("run_in_end ")
+    line = refusal_line(end, lambda end: place(end, "run_in_end"))
+    assert line.startswith("run_in_end ")
+    assert words in line
 
 
-@pytest.mark.parametrize(("what", "changes", "end", "words"), LOGS)
-def test_a_wrong_log_is_refused_in_one_line(what, changes, end, words):
+@pytest.mark.parametrize(("changes", "end", "words"), [row[1:] for row in LOGS], ids=[row[0] for row in LOGS])
+def test_a_wrong_log_is_refused_in_one_line(changes, end, words):
     """Each log that cannot be reduced says why; nothing is repaired or guessed."""
-    refusal([words], reduce_log, log(**changes), end and place(end, "run_in_end"))
+    cut = end and place(end, "run_in_end")
+    assert words in refusal_line(cut, lambda cut: reduce_log(log(**changes), cut))
 
 
 def test_the_log_without_a_fault_is_reduced():

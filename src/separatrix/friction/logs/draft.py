@@ -468,9 +468,10 @@ def _decimal(block: tables.Block, draft: Draft, cells: Sequence[Sequence[str]]) 
 
 
 def _conditions(block: tables.Block, draft: Draft) -> None:
-    """A question on each condition above the table whose number can be read in two ways."""
+    """A question on each condition above the table that can be read in two ways; names to fill in."""
     text = "".join("".join(column[:SAMPLE]) for column in draft.cells)
     decimal = "," if "," in text else "." if "." in text or block.separator == "," else ""
+    known = set(draft.stated)
     for key, value in metadata_of(block.above).items():
         meant = [
             one for one, names in naming.KEYS.items() if naming.plain(naming.header_parts(key)[0][0]) in names
@@ -478,3 +479,11 @@ def _conditions(block: tables.Block, draft: Draft) -> None:
         if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
             question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
             draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
+        known |= set(meant[:1])
+    for name, what in NAMED.items():
+        if name not in known:
+            draft.test.append(f'# {name} = "{UNKNOWN}"  # {what}; the log does not state it')
+
+
+NAMED = {"material": "of the cage", "counterface": "of ball or race", "medium": "the gas or liquid around"}
+"""What a friction file needs beside the friction."""
