@@ -64,6 +64,12 @@ TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\
 
 
 EDITS = r"""
+model = "free" => model = "jones" :: "outer race control" ; got "jones"
+runs = 64 => duration = "-1 s" :: [stability] duration must be > 0
+runs = 64 => seed = -1 :: [stability] seed must be a whole number from 0
+[film] => [traction]\npressure = "own"\n[film] :: [traction] pressure must be "hertz" or "coated"
+mass = "25 g" => mass = "25 g"\npocket_contact = "soft" :: must be "linear" or "hertz"; got "soft"
+mass = "25 g" => mass = "25 g"\nball_diameter_scatter = "-1 um" :: ball_diameter_scatter must be >= 0
 bore = "50 mm" => axial_load = "3 N" :: line 10 ; [bearing] axial_load ; belongs in [operation]
 title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
 [operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]

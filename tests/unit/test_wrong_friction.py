@@ -18,6 +18,9 @@ friction = 0.08
 
 
 WRONG_FILES = r"""
+^test = [] :: line 1: test must have 1 to 10000 items; got 0 of them
+"Armalon" => "Armalon " :: line 2: [[test]] material must not begin or end with a space
++slip_speed = ["5 m/s", "1 m/s"] :: line 6: [[test]] slip_speed must have the lowest value first
 ^title = "mine" :: friction.toml lacks: test. Write [[test]]
 nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got "liquid nitrogen, wet"
 0.08 => 0 :: line 5: [[test]] friction must be > 0; got 0. Its logarithm is fitted

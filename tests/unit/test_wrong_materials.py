@@ -22,6 +22,8 @@ FLUID = '[fluid."slush"]\nsubstance = "nitrogen"\nphase = "liquid"\n'
 
 
 EDITS = r"""
+MATERIAL: DATUM => [DATUM, DATUM]
+    :: line 2: [cage_material] Ours.elastic_modulus has two with the same temperature, pressure
 MATERIAL: 5 GPa => 0 GPa
     :: line 2: [cage_material] Ours.elastic_modulus.value must lie between 100 kPa and 5000 GPa
 MATERIAL: 0.3 => 0.5 :: line 3: [cage_material] Ours.poisson_ratio.value must lie between 0.001 and 0.499
