@@ -118,7 +118,6 @@ material = "PTFE transfer film" => elastic_modulus = "4 GPa" :: [film] poisson_r
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
 land_clearance = "1 mm"\n =>  :: [cage] land_clearance is missing ; outer
 "0.1 m/s" => "0 m/s" :: [stability] kicks ; > 1e-09
-runs = 64 => seed = -1 :: [stability] seed must be a whole number from 0
 runs = 64 => runs = 0 :: [stability] runs must be a whole number from 1 ; got 0
 runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
 to = 0.95 => to = 1.0 :: [stability] restitution_factors ; < 1
