@@ -15,12 +15,12 @@ from dataclasses import replace
 
 from separatrix.cage import MovingCage, moving_cage
 from separatrix.chain.solution import solve
-from separatrix.limits.point import critical_friction
-from separatrix.limits.response import SEARCHED_FRICTION, cage_at
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
+from separatrix.verdict.critical_friction import critical_friction
 from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.response import SEARCHED_FRICTION, cage_at
 
 SEEDS = (101, 102)
 FACTORS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9)

@@ -23,12 +23,12 @@ import numpy as np
 from scipy.special import expit
 
 from separatrix.cage import Ensemble, RunOutcome, moving_cage
-from separatrix.explore.drivers import FEWEST, fitted
 from separatrix.ground.units import Array
-from separatrix.limits.point import critical_friction
-from separatrix.ranking.drawn import Case, DrawnBearings, drawn_bearings
 from separatrix.study.reading import read_study
 from separatrix.study.study import Study
+from separatrix.verdict.critical_friction import critical_friction
+from separatrix.verdict.drawn_frictions import Case, DrawnBearings, drawn_bearings
+from separatrix.verdict.drivers import FEWEST, fitted
 from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.verdict.long_jobs import Runner, joined
 

@@ -42,9 +42,9 @@ from separatrix.figures.style import (
     settled,
 )
 from separatrix.ground.units import Array
-from separatrix.limits.point import critical_friction, linear_limit
-from separatrix.limits.response import LADDER, Crossing, GrowthCounter
 from separatrix.study.study import StabilitySettings
+from separatrix.verdict.critical_friction import critical_friction, linear_limit
+from separatrix.verdict.response import LADDER, Crossing, GrowthCounter
 
 MASS, RADIUS, HALF_PLAY, STIFFNESS = 0.05, 0.03, 0.3e-3, 3e6
 CAGE = MovingCage(

@@ -15,10 +15,10 @@ import distributed
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import ValidityWarning
-from separatrix.limits.curve import stability_curve
 from separatrix.study.reading import read_study
 from separatrix.verdict.cluster import cluster
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.stability_curve import stability_curve
 
 
 def main() -> None:

@@ -13,14 +13,14 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import root
 
+from separatrix.chain import exact
 from separatrix.chain.contacts import RaceContact, race_tracks
 from separatrix.chain.equilibrium.balance import inertia_loads, slip_coefficients
 from separatrix.chain.equilibrium.groove import Touch, touch
 from separatrix.chain.equilibrium.problem import problem
+from separatrix.chain.impact_restitution import contact_damping
 from separatrix.chain.race_curve import contact_problem, exact_slope
-from separatrix.chain.restitution import contact_damping
 from separatrix.chain.solution import solve
-from separatrix.chain.traction import exact
 from separatrix.ground.errors import ValidityWarning
 from separatrix.study.reading import read_study
 from separatrix.study.study import Film, Race, Study, TractionModel, TractionSettings

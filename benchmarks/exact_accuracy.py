@@ -25,13 +25,13 @@ from test_exact_rolling import (
 )
 from test_exact_slope import INNER, OUTER, WORN, problem
 
+from separatrix.chain.exact.influence import Layer, solid
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact
+from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.slope import traction_slope
+from separatrix.chain.exact.transient import shift, transient
+from separatrix.chain.film_profile import worn_band
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact
-from separatrix.chain.traction.exact.influence import Layer, solid
-from separatrix.chain.traction.exact.slip import FrictionLaw
-from separatrix.chain.traction.exact.slope import traction_slope
-from separatrix.chain.traction.exact.transient import shift, transient
-from separatrix.chain.traction.profile import worn_band
 from separatrix.ground.errors import ValidityWarning
 
 

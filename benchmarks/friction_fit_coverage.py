@@ -18,8 +18,8 @@ from math import exp, hypot, log, sqrt
 import numpy as np
 from scipy.special import ndtri
 
-from separatrix.friction.file import FrictionTest
-from separatrix.friction.fit import FrictionFit, MaterialFit, fit_friction, linear_model
+from separatrix.friction.friction_file import FrictionTest
+from separatrix.friction.friction_fit import FrictionFit, MaterialFit, fit_friction, linear_model
 from separatrix.friction.scatter import variance_components
 from separatrix.verdict.judgement import wilson_interval
 

@@ -9,8 +9,8 @@ import warnings
 from dataclasses import replace
 
 from separatrix.chain.contacts import race_tracks
+from separatrix.chain.impact_restitution import restitution
 from separatrix.chain.race_curve import exact_slope, strips
-from separatrix.chain.restitution import restitution
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import SeparatrixError, ValidityWarning
 from separatrix.study.reading import read_study

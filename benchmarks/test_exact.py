@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from separatrix.chain.creep import Creep
+from separatrix.chain.exact.influence import Body, Layer, solid
+from separatrix.chain.exact.pressure import pressed_contact
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
+from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve_each
-from separatrix.chain.traction.exact.influence import Body, Layer, solid
-from separatrix.chain.traction.exact.pressure import pressed_contact
-from separatrix.chain.traction.exact.slip import FrictionLaw
-from separatrix.chain.traction.exact.slope import traction_slope
 
 STEEL = solid(200e9, 0.25)
 BARE = Body(base=STEEL)

@@ -6,10 +6,10 @@ a point, and points that were not run but inferred.
 
 import pytest
 
-from separatrix.limits.map import stability_map
-from separatrix.limits.map_records import MapAxis, MapQuestion
 from separatrix.study.reading import read_study
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.map_records import MapAxis, MapQuestion
+from separatrix.verdict.stability_map import stability_map
 
 JOBS = 2
 

@@ -13,7 +13,7 @@ playwright_api = pytest.importorskip("playwright.sync_api", reason='needs the ex
 
 from browser_tests.conftest import ARGUMENTS, CHROMIUM, STUDY, Server  # noqa: E402
 
-from separatrix.cli import main  # noqa: E402
+from separatrix.front import main  # noqa: E402
 
 VERBS = (["rank"], ["map", "--points", "4", "--runs", "2"], ["simulate"])
 

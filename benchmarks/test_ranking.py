@@ -5,11 +5,11 @@ import pytest
 from separatrix.cage import moving_cage
 from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.chain.solution import solve
-from separatrix.limits.point import critical_friction
-from separatrix.limits.response import GrowthCounter
-from separatrix.ranking.rank import rank
 from separatrix.study.reading import read_study
+from separatrix.verdict.critical_friction import critical_friction
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.ranking import rank
+from separatrix.verdict.response import GrowthCounter
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,10 @@ import numpy as np
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from separatrix.chain.contacts import bearing_state, race_traction
-from separatrix.explore.sweep import Sweep, sweep
 from separatrix.ground.errors import ValidityWarning
 from separatrix.study.reading import read_study
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.swept_cases import Sweep, sweep
 
 
 def test_sweep_of_the_chain(benchmark: BenchmarkFixture) -> None:

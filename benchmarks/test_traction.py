@@ -4,8 +4,9 @@ import numpy as np
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction import solve_strip, traction_curve, traction_slope
-from separatrix.chain.traction.master import film_tables
+from separatrix.chain.master_curve import film_tables
+from separatrix.chain.strip import solve_strip
+from separatrix.chain.traction_curve import traction_curve, traction_slope
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 FILM = 0.3 * ELLIPSE.semi_minor / ELLIPSE.contact_modulus

@@ -25,7 +25,7 @@ from separatrix.cage.ensemble import Piece, Runs, follow, piece_of
 from separatrix.cage.moving_cage import turned_forward
 from separatrix.cage.numbers import numbers_of
 from separatrix.cage.rows import of
-from separatrix.chain.pocket import pocket_speed
+from separatrix.chain.pocket_friction import pocket_speed
 from separatrix.chain.solution import Solution, solve
 from separatrix.verdict.judgement import wilson_interval
 

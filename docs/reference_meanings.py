@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from separatrix.present.nodes import field_axes, field_units
+from separatrix.ground.plain_data import field_axes, field_units
 
 NOMENCLATURE = Path(__file__).parent / "reference" / "nomenclature.md"
 ROW = re.compile(r"^\|[^|]*\|([^|]*`[^|]*)\|([^|]*)\|([^|]*)\|$", re.MULTILINE)

@@ -10,13 +10,11 @@ from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
 from reference_meanings import Line, lines_of
 
-from separatrix import answers
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
-from separatrix.chain.restitution import Restitution
+from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.solution import Solution
 from separatrix.comparing.records import Comparison
-from separatrix.explore.sweep import Duty, Sweep, WorstCase
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
 from separatrix.ground.schema import Described, is_record, keys_of
@@ -24,6 +22,8 @@ from separatrix.ground.units import UNITS, format_quantity
 from separatrix.study import study
 from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
+from separatrix.verbs import answer_records as answers
+from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study
 

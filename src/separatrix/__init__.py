@@ -10,7 +10,7 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "api": "Answer bearing check compare map mobility rank report restitution "
+    "front.api": "Answer bearing check compare map mobility rank report restitution "
     "sensitivity simulate stability sweep traction",
     "chain.ball_traction": "BallTraction",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
@@ -22,27 +22,33 @@ _PUBLIC = {
     "ellipse_of_curvatures race_curvatures",
     "chain.lubrication": "LubricationCurve lubrication_curve",
     "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
-    "chain.restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping restitution_factor",
+    "chain.impact_restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping "
+    "restitution_factor",
     "chain.solution": "Solution solve",
-    "chain.traction.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
+    "chain.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
     "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
-    "chain.traction.exact.cases": "ContactAnswer ContactCase ContactMotion ContactQuestion ContactSetup Gap "
+    "chain.exact.cases": "ContactAnswer ContactCase ContactMotion ContactQuestion ContactSetup Gap "
     "SolvedCase exact_contact rolling_cases",
-    "chain.traction": "ShearField TractionCurve film_compliance shear_field traction_curve traction_slope",
+    "chain.film_compliance": "film_compliance",
+    "chain.shear": "ShearField shear_field",
+    "chain.traction_curve": "TractionCurve traction_curve traction_slope",
     "comparing.records": "Comparison",
     "comparing.saved": "load",
-    "data_answers": "Materials TribometerAnswer materials tribometer",
+    "verbs.without_bearing": "Materials TribometerAnswer materials tribometer",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
-    "explore.sweep": "Sweep SweptCase",
+    "verdict.swept_cases": "Sweep SweptCase",
     "friction.logs": "read_log",
     "friction.reduction": "reduce_log",
-    "friction.tribometer": "ReducedLogs",
+    "friction.log_series": "ReducedLogs",
     "verdict.ledger": "Ledger",
     "reporting.record": "Report",
     "verdict.long_jobs": "Interrupted Runner",
-    "ranking": "Ranking",
-    "present": "dataset document save to_dataframe to_xarray",
-    "limits": "StabilityCurve critical_friction restitution_threshold stability_curve",
+    "verdict.ranking_records": "Ranking",
+    "present.dataset_arrays": "dataset save",
+    "verbs.answer_files": "document",
+    "verbs.shapes": "to_dataframe to_xarray",
+    "verdict.critical_friction": "critical_friction",
+    "verdict.stability_curve": "StabilityCurve restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Kinematics Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
     "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn shipped_studies",

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 import sys
 
-from separatrix.cli import main
+from separatrix.front import main
 
 sys.exit(main())

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 from exact_cases import body, contact, kalker
 
+from separatrix.chain.exact.rolling import ContactProblem, rolling_contact
+from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.contact import ContactProblem, rolling_contact
-from separatrix.chain.traction.exact.slip import FrictionLaw
 
 TABLE = Path(__file__).parent / "sources" / "kalker_c11.csv"
 

@@ -12,13 +12,13 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.chain.restitution import SOLID_LUBRICATION_LIMIT
-from separatrix.ranking.rank import rank
-from separatrix.ranking.records import NotMeasured, Ranked
+from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import Verdict
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.ranking import rank
+from separatrix.verdict.ranking_records import NotMeasured, Ranked
 
 SETTINGS = StabilitySettings(
     kicks=(0.5,), runs=24, duration=0.1, restitution_factors=(0.1, 0.3, 0.5, 0.7, 0.9), seed=1

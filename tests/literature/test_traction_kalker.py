@@ -16,7 +16,7 @@ import pytest
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction import traction_slope
+from separatrix.chain.traction_curve import traction_slope
 
 TABLE = Path(__file__).parent / "sources" / "kalker_c11.csv"
 

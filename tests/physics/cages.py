@@ -10,12 +10,12 @@ from separatrix.cage import Cause, Ensemble, History, MovingCage, RunOutcome
 from separatrix.cage.closed_forms import felt_mass, whirl_rate
 from separatrix.cage.course import follow_start
 from separatrix.cage.disturbance import Starts
-from separatrix.limits.curve import Tracer, rising, threshold_factors
-from separatrix.limits.response import GrowthCounter
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import settled_in, with_values
 from separatrix.study.study import BallBearing, Guidance, Material, PocketShape, Study
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.response import GrowthCounter
+from separatrix.verdict.stability_curve import Tracer, rising, threshold_factors
 
 AT_REST = MovingCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,

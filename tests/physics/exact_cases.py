@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
+from separatrix.chain.exact.grid import Grid
+from separatrix.chain.exact.influence import Body, Layer, Solid
+from separatrix.chain.exact.operator import rolling_operator
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve
+from separatrix.chain.exact.slip import FrictionLaw, settle
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
-from separatrix.chain.traction.exact.grid import Grid
-from separatrix.chain.traction.exact.influence import Body, Layer, Solid
-from separatrix.chain.traction.exact.operator import rolling_operator
-from separatrix.chain.traction.exact.slip import FrictionLaw, settle
 
 MU = 0.1
 P0 = 1e-3  # over G

@@ -12,8 +12,8 @@ from cages import SMALL as CAGE
 from cages import whirl_probability
 
 from separatrix.cage import linear_critical_friction, run_ensemble
-from separatrix.limits.response import cage_at
 from separatrix.study.study import StabilitySettings
+from separatrix.verdict.response import cage_at
 
 MASS, STIFFNESS, HALF_PLAY = CAGE.mass, CAGE.ball_cage_stiffness, CAGE.half_play
 CROSSINGS = 250

@@ -13,12 +13,12 @@ from separatrix.cage import moving_cage
 from separatrix.chain.clearances import mean_expansion, ring_growth, running_clearances
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.ranking.reason import pocket_of
 from separatrix.study.ball_bearing import Expansion
 from separatrix.study.distribution import Uniform
 from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
 from separatrix.study.study import CageDesign, ClearanceState, Guidance, Material
+from separatrix.verdict.beyond_models import pocket_of
 from separatrix.verdict.draws import sample
 
 STUDY = read_study("cryogenic-turbopump")

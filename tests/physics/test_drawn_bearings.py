@@ -9,14 +9,14 @@ from cages import with_distributions
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.disturbance import settings_for
 from separatrix.chain.solution import solve
-from separatrix.ranking.drawn import Case, drawn_bearings
-from separatrix.ranking.rank import rank
 from separatrix.study.distribution import Normal, Samples, Uniform
 from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction
+from separatrix.verdict.drawn_frictions import Case, drawn_bearings
 from separatrix.verdict.draws import sample
 from separatrix.verdict.judgement import Verdict, judge
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.ranking import rank
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 

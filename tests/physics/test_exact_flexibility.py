@@ -5,7 +5,7 @@ import pytest
 from exact_cases import body
 from scipy.integrate import dblquad
 
-from separatrix.chain.traction.exact.influence import (
+from separatrix.chain.exact.influence import (
     IMAGES,
     Images,
     body_images,

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
-from separatrix.chain.traction.exact import (
+from separatrix.chain.exact import (
     Body,
     ContactProblem,
     FrictionLaw,
@@ -25,8 +24,9 @@ from separatrix.chain.traction.exact import (
     transient,
     worn_band,
 )
-from separatrix.chain.traction.exact.cases import rolling_cases
-from separatrix.chain.traction.exact.grid import cell_counts
+from separatrix.chain.exact.cases import rolling_cases
+from separatrix.chain.exact.grid import cell_counts
+from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.ground.errors import InputError
 
 STEEL = Body(base=solid(200e9, 0.3))

@@ -7,12 +7,12 @@ import pytest
 from exact_cases import MU, body, kalker
 from scipy.optimize import brentq
 
+from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure, pressed_grid, row_ends
+from separatrix.chain.exact.influence import flexibility, half_space_flexibility, pair_images
+from separatrix.chain.exact.pressure import film_strain, press, pressed_box, pressed_contact
+from separatrix.chain.exact.rolling import ContactProblem, gap_contact, rolling_contact
+from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_curvatures
-from separatrix.chain.traction.exact.contact import ContactProblem, gap_contact, rolling_contact
-from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure, pressed_grid, row_ends
-from separatrix.chain.traction.exact.influence import flexibility, half_space_flexibility, pair_images
-from separatrix.chain.traction.exact.pressure import film_strain, press, pressed_box, pressed_contact
-from separatrix.chain.traction.exact.slip import FrictionLaw
 from separatrix.ground.errors import InputError
 
 RIGID = body(0.3, G=1e9)

@@ -9,8 +9,8 @@ from exact_cases import MU, P0, body, contact, ellipse, kalker, saturation
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
-from separatrix.chain.traction.exact.slip import FrictionLaw
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve
+from separatrix.chain.exact.slip import FrictionLaw
 
 quick = settings(derandomize=True, max_examples=12, deadline=None)
 shape = st.floats(-1.0, 0.5).map(lambda x: 10.0**x)

@@ -13,16 +13,10 @@ from exact_cases import MU, P0, body, contact, kalker, saturation, strip, strip_
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from separatrix.chain.traction.exact.contact import (
-    ContactProblem,
-    rigid_slip,
-    rolling_contact,
-    solve,
-    solve_each,
-)
-from separatrix.chain.traction.exact.grid import elliptic_grid, end_normals
-from separatrix.chain.traction.exact.operator import ROLLING
-from separatrix.chain.traction.exact.slip import FrictionLaw, settle
+from separatrix.chain.exact.grid import elliptic_grid, end_normals
+from separatrix.chain.exact.operator import ROLLING
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve, solve_each
+from separatrix.chain.exact.slip import FrictionLaw, settle
 from separatrix.ground.errors import ConvergenceError, ValidityWarning
 
 BARE = (body(0.25), body(0.25))
@@ -69,7 +63,7 @@ def cauchy_slope(coated, n=160):
     edges = np.linspace(0.0, 40.0 / h, 41)
     k = (0.5 * np.diff(edges)[:, None] * (k_nodes + 1.0) + edges[:-1, None]).ravel()
     wk = (0.5 * np.diff(edges)[:, None] * k_weights).ravel()
-    from separatrix.chain.traction.exact.influence import flexibility, half_space_flexibility
+    from separatrix.chain.exact.influence import flexibility, half_space_flexibility
 
     surface = half_space_flexibility(coated.surface)[0]
     excess = (flexibility(coated, k)[0] - surface) * wk
@@ -314,7 +308,7 @@ def test_a_curve_is_its_points():
 
 def test_a_case_that_does_not_settle_is_its_error(monkeypatch):
     """The others of the batch are solved; the error has its passes and residual."""
-    from separatrix.chain.traction.exact import contact as module
+    from separatrix.chain.exact import rolling as module
 
     made = contact(0.3, columns=8, rows=8)
     slips = [rigid_slip(made.grid, longitudinal=q) for q in (1e-5, 2e-5, 3e-5)]

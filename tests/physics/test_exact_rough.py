@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve_each
-from separatrix.chain.traction.exact.grid import elliptic_grid
-from separatrix.chain.traction.exact.operator import rolling_operator
-from separatrix.chain.traction.exact.slip import FrictionLaw, rough_compliance
-from separatrix.chain.traction.exact.slope import traction_slope
-from separatrix.chain.traction.exact.transient import shift, transient
+from separatrix.chain.exact.grid import elliptic_grid
+from separatrix.chain.exact.operator import rolling_operator
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
+from separatrix.chain.exact.slip import FrictionLaw, rough_compliance
+from separatrix.chain.exact.slope import traction_slope
+from separatrix.chain.exact.transient import shift, transient
 
 quick = settings(derandomize=True, max_examples=12, deadline=None)
 B = 0.2

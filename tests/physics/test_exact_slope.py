@@ -8,15 +8,15 @@ from exact_cases import MU, P0, body, contact, kalker, saturation
 from scipy.optimize import brentq
 
 from separatrix.chain.creep import Creep
+from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure
+from separatrix.chain.exact.influence import Body, Layer, solid
+from separatrix.chain.exact.pressure import film_strain, pressure_slip
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve
+from separatrix.chain.exact.slip import FrictionLaw, over_cells
+from separatrix.chain.exact.slope import traction_slope
+from separatrix.chain.exact.transient import shift, transient
+from separatrix.chain.film_profile import Profile, worn_band
 from separatrix.chain.hertz import ContactEllipse, ellipse_shape
-from separatrix.chain.traction.exact.contact import ContactProblem, rigid_slip, rolling_contact, solve
-from separatrix.chain.traction.exact.grid import elliptic_grid, elliptic_pressure
-from separatrix.chain.traction.exact.influence import Body, Layer, solid
-from separatrix.chain.traction.exact.pressure import film_strain, pressure_slip
-from separatrix.chain.traction.exact.slip import FrictionLaw, over_cells
-from separatrix.chain.traction.exact.slope import traction_slope
-from separatrix.chain.traction.exact.transient import shift, transient
-from separatrix.chain.traction.profile import Profile, worn_band
 from separatrix.ground.errors import ConvergenceError
 
 STEEL = solid(200e9, 0.285)
@@ -151,7 +151,7 @@ def test_symmetric_cases_roll_freely_without_offset():
 
 def test_free_rolling_that_is_not_found_is_an_error(monkeypatch):
     """With the force it came to."""
-    from separatrix.chain.traction.exact import slope as module
+    from separatrix.chain.exact import slope as module
 
     monkeypatch.setattr(module, "LARGEST_STEPS", 1)
     with pytest.raises(ConvergenceError, match="Free rolling was not found in 1 steps"):

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from exact_cases import body, kalker
 
+from separatrix.chain.exact import ContactProblem, FrictionLaw, rolling_contact, solve_two_way
+from separatrix.chain.exact import two_way as module
+from separatrix.chain.exact.influence import half_space_flexibility
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction.exact import ContactProblem, FrictionLaw, rolling_contact, solve_two_way
-from separatrix.chain.traction.exact import two_way as module
-from separatrix.chain.traction.exact.influence import half_space_flexibility
 from separatrix.ground.errors import ConvergenceError, InputError
 
 BALL, TRACK = body(0.1), body(0.1, G=20.0)

@@ -8,15 +8,15 @@ from scipy.integrate import solve_ivp
 
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.pocket import contact_radius, impact_force, sliding_speed, with_scatter
-from separatrix.chain.restitution import damping_ratio, hertz_coefficient
-from separatrix.friction.file import FrictionTest
-from separatrix.friction.fit import TestedFriction, fit_friction
-from separatrix.friction.law import StatedFriction
+from separatrix.chain.impact_restitution import damping_ratio, hertz_coefficient
+from separatrix.chain.pocket_friction import contact_radius, impact_force, sliding_speed, with_scatter
+from separatrix.friction.friction_file import FrictionTest
+from separatrix.friction.friction_fit import TestedFriction, fit_friction
+from separatrix.friction.friction_law import StatedFriction
 from separatrix.friction.scatter import LinearModel, conditional, variance_components
-from separatrix.ranking.records import lowest_among, lowest_of, may_be_lower
-from separatrix.ranking.records import measured as measured_mean
 from separatrix.study.reading import read_study
+from separatrix.verdict.ranking_records import lowest_among, lowest_of, may_be_lower
+from separatrix.verdict.ranking_records import measured as measured_mean
 
 ENVIRONMENT = "liquid nitrogen, 440C"
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from cages import BEARING
 
+from separatrix.chain import exact
 from separatrix.chain.contacts import race_tracks
 from separatrix.chain.race_curve import (
     beyond_strips,
@@ -17,7 +18,6 @@ from separatrix.chain.race_curve import (
     strips,
 )
 from separatrix.chain.solution import solve
-from separatrix.chain.traction import exact
 from separatrix.ground.errors import InputError
 from separatrix.study.study import (
     CageDesign,

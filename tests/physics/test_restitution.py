@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import beta
 
 from separatrix.chain.hertz import contact_modulus
-from separatrix.chain.restitution import (
+from separatrix.chain.impact_restitution import (
     ball_pocket_stiffness,
     damping_for,
     damping_ratio,

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from separatrix.chain.traction import solve_strip
-from separatrix.chain.traction.master import film_tables, master_traction, matched_knots, nested_sticks
-from separatrix.chain.traction.strip import node_positions, node_pressure, strip_influence
+from separatrix.chain.master_curve import film_tables, master_traction, matched_knots, nested_sticks
+from separatrix.chain.strip import node_positions, node_pressure, solve_strip, strip_influence
 
 
 def toeplitz(nodes, lam):

@@ -7,10 +7,11 @@ import pytest
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction import shear_field, solve_strip, traction_curve, traction_slope
-from separatrix.chain.traction.curve import reach
-from separatrix.chain.traction.ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges
-from separatrix.chain.traction.master import film_tables
+from separatrix.chain.master_curve import film_tables
+from separatrix.chain.shear import shear_field
+from separatrix.chain.strip import solve_strip
+from separatrix.chain.traction_curve import reach, traction_curve, traction_slope
+from separatrix.chain.traction_ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 A, B, P0, E, N = ELLIPSE.semi_major, ELLIPSE.semi_minor, ELLIPSE.max_pressure, ELLIPSE.contact_modulus, 500.0

@@ -12,11 +12,11 @@ from separatrix.cage.closed_forms import drive_energy
 from separatrix.cage.outcome import LIMITS, end_of_motion
 from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.chain.solution import solve
-from separatrix.limits.response import cage_at
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance, StabilitySettings
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
+from separatrix.verdict.response import cage_at
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 

@@ -9,15 +9,10 @@ from hypothesis import strategies as st
 from test_exact_slope import INNER, OUTER
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.traction import (
-    Profile,
-    film_compliance,
-    shear_field,
-    track_of,
-    traction_curve,
-    traction_slope,
-    worn_band,
-)
+from separatrix.chain.film_compliance import film_compliance, track_of
+from separatrix.chain.film_profile import Profile, worn_band
+from separatrix.chain.shear import shear_field
+from separatrix.chain.traction_curve import traction_curve, traction_slope
 from separatrix.ground.errors import InputError
 from separatrix.study.study import Film, Material, Race, Wear, Worn
 

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from separatrix.friction.file import FrictionTest, Place, friction_text, read_friction
-from separatrix.friction.fit import fit_friction
-from separatrix.ranking.records import lowest_of
+from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
+from separatrix.friction.friction_fit import fit_friction
+from separatrix.verdict.ranking_records import lowest_of
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)

@@ -6,7 +6,7 @@ import pytest
 from rank_answers import contradictions
 from sane_studies import sane_text
 
-from separatrix.cli import main
+from separatrix.front import main
 
 
 @pytest.mark.parametrize("seed", [1, 14, 26])

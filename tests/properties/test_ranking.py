@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.ranking.records import ranks
+from separatrix.verdict.ranking_records import ranks
 
 threshold = st.tuples(st.floats(0, 1), st.floats(0, 0.2), st.floats(0, 0.2)).map(
     lambda t: (t[0], t[0] - t[1], t[0] + t[2])

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.chain.restitution import (
+from separatrix.chain.impact_restitution import (
     damping_for,
     damping_ratio,
     hertzian_restitution_factor,

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
 
-from separatrix.friction.fit import TestedFriction
+from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError
 from separatrix.study.distribution import Normal, Samples, Uniform
 from separatrix.study.reading import read_study

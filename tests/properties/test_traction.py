@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.traction import solve_strip, traction_curve, traction_slope
-from separatrix.chain.traction.strip import strip_influence
+from separatrix.chain.strip import solve_strip, strip_influence
+from separatrix.chain.traction_curve import traction_curve, traction_slope
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 A, B, P0, E = ELLIPSE.semi_major, ELLIPSE.semi_minor, ELLIPSE.max_pressure, ELLIPSE.contact_modulus

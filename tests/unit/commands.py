@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.app.worker import work
-from separatrix.cli import main
+from separatrix.front import main
+from separatrix.front.page.worker import work
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
@@ -22,7 +22,7 @@ COMMAND = [sys.executable, "-m", "separatrix"]
 
 
 def work_undrawn(pipe: Connection) -> None:
-    """Compute for the page as `separatrix.app.worker.work` does, but leave pictures out."""
+    """Compute for the page as `separatrix.front.page.worker.work` does, but leave pictures out."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("separatrix.figures.save_all", lambda *_: None)
         work(pipe)

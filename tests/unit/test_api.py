@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import separatrix
-from separatrix import api
-from separatrix.cli import main
+from separatrix.front import api, main
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.verdict.long_jobs import Interrupted
 

@@ -13,11 +13,11 @@ from commands import work_undrawn
 from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
-from separatrix.app.jobs import Job, Jobs
-from separatrix.app.page import TEMPLATES, Folder, Page
-from separatrix.app.server import application
-from separatrix.app.worker import Task
 from separatrix.comparing.saved import load
+from separatrix.front.page.folder import TEMPLATES, Folder, Page
+from separatrix.front.page.jobs import Job, Jobs
+from separatrix.front.page.server import application
+from separatrix.front.page.worker import Task
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
 PATIENCE = 300.0
@@ -37,7 +37,7 @@ def root(tmp_path_factory):
 def page(root):
     """The page of that folder, with its answers to `rank` and to a small `map`; no picture is written."""
     with pytest.MonkeyPatch.context() as patch, TestClient(application(root)) as client:
-        patch.setattr("separatrix.app.jobs.work", work_undrawn)
+        patch.setattr("separatrix.front.page.jobs.work", work_undrawn)
         client.post("/run/small.toml", data={"verb": "rank"})
         axes = {"x": "restitution_factor=0.3..0.9:2", "y": "ball_cage_friction=0.05..0.5:2"}
         client.post("/run/small.toml", data={"verb": "map", "runs": "1", **axes})

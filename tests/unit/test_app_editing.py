@@ -7,10 +7,10 @@ import pytest
 from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
-from separatrix.app import draft
-from separatrix.app.editing import edited_by
-from separatrix.app.form import form
-from separatrix.app.server import application
+from separatrix.front.page import drafts as draft
+from separatrix.front.page.editing import edited_by
+from separatrix.front.page.form import form
+from separatrix.front.page.server import application
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import is_record, keys_of
 from separatrix.study.reading import read_study

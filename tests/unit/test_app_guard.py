@@ -14,7 +14,7 @@ from urllib.parse import parse_qs, quote, urlsplit
 import pytest
 from test_cli_answers import SMALL
 
-from separatrix.app.server import MOST_BYTES, Server
+from separatrix.front.page.server import MOST_BYTES, Server
 
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 HOSTILE = f'title = "{SCRIPT}"\n'

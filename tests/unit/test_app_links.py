@@ -7,8 +7,8 @@ import pytest
 from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
-from separatrix.app.server import application
-from separatrix.app.worker import Task, _answered
+from separatrix.front.page.server import application
+from separatrix.front.page.worker import Task, _answered
 from separatrix.ground.errors import InputError
 from separatrix.verdict.ledger import NAME
 

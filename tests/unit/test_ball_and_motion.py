@@ -11,7 +11,6 @@ from separatrix.cage import MovingCage, RunOutcome, moving_cage, run_ensemble, s
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
-from separatrix.limits.response import cage_at
 from separatrix.study.cage_body import cage_inertia, ring_body
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
@@ -23,6 +22,7 @@ from separatrix.study.study import (
     with_models,
 )
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.response import cage_at
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
 

@@ -4,13 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix.answers import OfCage
 from separatrix.cage import MovingCage, moving_cage, settings_for
-from separatrix.chain.restitution import ball_pocket_stiffness, hertz_coefficient
+from separatrix.chain.impact_restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError, ValidityWarning
-from separatrix.present import plain
-from separatrix.present.shapes import shape
+from separatrix.ground.plain_data import plain
 from separatrix.present.text.chain import basis
 from separatrix.study.candidates import require_friction
 from separatrix.study.reading import read_study
@@ -26,6 +24,8 @@ from separatrix.study.study import (
     PocketShape,
     StabilitySettings,
 )
+from separatrix.verbs.answer_records import OfCage
+from separatrix.verbs.shapes import shape
 
 STUDY = read_study("cryogenic-turbopump")
 POLYMER = Material(name="polymer", elastic_modulus=5e9, poisson_ratio=0.4)

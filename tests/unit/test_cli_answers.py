@@ -13,8 +13,8 @@ from matplotlib import image
 
 import separatrix
 from separatrix import figures
-from separatrix.cli import main
-from separatrix.questions import VERBS
+from separatrix.front import main
+from separatrix.verbs import VERBS
 from separatrix.verdict.ledger import NAME
 
 SMALL = """

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.cli import main
+from separatrix.front import main
 
 VALID = """
 [bearing]

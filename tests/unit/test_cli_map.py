@@ -14,10 +14,10 @@ from commands import COMMAND, document, pieces, refused
 
 import separatrix
 from separatrix.chain.solution import solve
-from separatrix.cli import main
-from separatrix.explore.cases import read_axis
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
+from separatrix.verdict.parameter_axes import read_axis
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import separatrix
-from separatrix.cli import main
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 
 OURS = """\
@@ -173,7 +173,7 @@ def test_nothing_calls_out_and_help_stays_light(folder):
         "import socket, sys\n"
         "def never(*_, **__): raise RuntimeError('network')\n"
         "socket.socket = socket.create_connection = never\n"
-        "from separatrix.cli import main\n"
+        "from separatrix.front import main\n"
         "assert main(['materials', 'list', '--json']) == 0\n"
         "sys.exit('numba' in sys.modules)\n"
     )

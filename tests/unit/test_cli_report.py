@@ -18,8 +18,7 @@ import pytest
 from commands import document, refused
 from pypdf import PdfReader
 
-from separatrix import api, verbs
-from separatrix.cli import main
+from separatrix.front import api, main
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.reporting.content import answers, read_document
 from separatrix.reporting.record import Kept
@@ -155,7 +154,7 @@ def found(folder):
     out = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(out):
         for verb in ("bearing", "traction", "restitution", "rank"):
-            patch.setattr(verbs, verb, never)
+            patch.setattr(f"separatrix.verbs.{verb}.compute", never)
         study = str(folder.parent / "hostile.toml")
         assert main(["report", study, "--json", "--pdf", "--quiet", "--out", str(folder)]) == 0
     return json.loads(out.getvalue())
@@ -284,7 +283,7 @@ def test_the_chain_that_a_folder_lacks_is_computed(folder, monkeypatch, capsys):
 
     Path("d").mkdir()
     shutil.copy(folder / "bearing.json", "d")
-    monkeypatch.setattr(verbs, "traction", refuse)
+    monkeypatch.setattr("separatrix.verbs.traction.compute", refuse)
     found = document(capsys, "report", "d")
     assert found["answers"] == ["bearing", "restitution"]
     assert "`traction` was not computed: [film] of hostile is too thin" in json.dumps(found)
@@ -311,7 +310,7 @@ def test_a_study_without_a_cage_has_what_could_be_computed(monkeypatch, capsys):
     def refuse(study):
         raise InputError("[film]", "is too thin")
 
-    monkeypatch.setattr(verbs, "traction", refuse)
+    monkeypatch.setattr("separatrix.verbs.traction.compute", refuse)
     Path("bare.toml").write_text(STUDY)
     found = document(capsys, "report", "bare.toml")
     assert found["answers"] == ["bearing"]

@@ -13,9 +13,9 @@ import pytest
 from commands import document, refused
 
 import separatrix
-from separatrix.cli import main
-from separatrix.explore import uncertain
 from separatrix.figures import draw
+from separatrix.front import main
+from separatrix.verdict import input_shares as uncertain
 
 SMALL = """
 extends = "cryogenic-turbopump"

@@ -15,9 +15,9 @@ from commands import document, refused
 import separatrix
 from separatrix import figures
 from separatrix.cage import run_ensemble, settings_for
-from separatrix.cli import main
 from separatrix.figures.animation import animate
 from separatrix.figures.view import page, view
+from separatrix.front import main
 
 SMALL = """
 extends = "cryogenic-turbopump"

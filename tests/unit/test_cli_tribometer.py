@@ -10,10 +10,10 @@ import time
 import numpy as np
 import pytest
 
-from separatrix.cli import main
-from separatrix.cli.without_bearing import file_name
-from separatrix.friction.file import read_friction
+from separatrix.friction.friction_file import read_friction
 from separatrix.friction.logs.column_map import column_map
+from separatrix.front import main
+from separatrix.front.commands_without_bearing import file_name
 from separatrix.study.reading import read_study
 
 MAP = """

@@ -10,11 +10,11 @@ import pytest
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
-from separatrix.limits.curve import stability_curve
 from separatrix.study.reading import read_study
 from separatrix.verdict import cluster as clusters
 from separatrix.verdict.cluster import cluster
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.stability_curve import stability_curve
 
 STUDY = read_study("momentum-wheel")
 CAGE = moving_cage(solve(STUDY), 0.0)

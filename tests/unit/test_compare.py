@@ -13,10 +13,10 @@ from commands import document, refused
 
 import separatrix
 from separatrix import figures
-from separatrix.cli import main
 from separatrix.comparing.results import difference_interval, differing, units
 from separatrix.comparing.saved import read_answers
 from separatrix.comparing.shown import pictures
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.verdict.judgement import wilson_interval
 

@@ -5,7 +5,7 @@ import json
 import pytest
 from commands import document, refused
 
-from separatrix.cli import main
+from separatrix.front import main
 
 STUDY = {
     "cage": {"mass": {"value": 0.025, "unit": "kg", "origin": "default"}},

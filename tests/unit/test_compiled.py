@@ -19,7 +19,7 @@ PACKAGE = Path(separatrix.__file__).parent
 SOME_KERNELS = """
 import json
 from separatrix.chain import hertz
-from separatrix.chain.traction import strip
+from separatrix.chain import strip
 
 values = [*hertz.ellipse_shape(3.0, 0.0), *strip.strip_influence(20, 0.3), *strip.node_pressure(20)]
 stats = [kernel.stats for kernel in (hertz.ellipse_shape, strip.strip_influence, strip.node_pressure)]

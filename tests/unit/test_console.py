@@ -17,8 +17,8 @@ from pathlib import Path
 
 import pytest
 
-from separatrix.cli import console
-from separatrix.cli.console import Interruptible, one_line
+from separatrix.front import console
+from separatrix.front.console import Interruptible, one_line
 from separatrix.ground.compiled import part
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.errors import InputError, ValidityWarning, noted_warnings

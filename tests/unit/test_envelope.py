@@ -15,21 +15,21 @@ from commands import document, refused
 
 import separatrix
 from separatrix import present
-from separatrix.app.plotly import spec
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.cli import main
-from separatrix.explore.sweep import duty, orders, sweep, time_shares, worst_case
 from separatrix.figures import draw
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
+from separatrix.front import main
+from separatrix.front.page.plotly import spec
 from separatrix.ground.errors import InputError
-from separatrix.limits.curve import COARSE, own_threshold, restitution_threshold
-from separatrix.present import to_xarray
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import Kept
 from separatrix.study.reading import read_study
 from separatrix.study.study import ClearanceState
+from separatrix.verbs.shapes import to_xarray
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.stability_curve import COARSE, own_threshold, restitution_threshold
+from separatrix.verdict.swept_cases import duty, orders, sweep, time_shares, worst_case
 
 STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.004))

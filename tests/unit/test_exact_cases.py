@@ -10,7 +10,7 @@ import pytest
 
 import separatrix
 from separatrix import ContactCase, ContactMotion, ContactQuestion, ContactSetup
-from separatrix.chain.traction.exact import cases as module
+from separatrix.chain.exact import cases as module
 from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
 
 STEEL = separatrix.Body(base=separatrix.solid(200e9, 0.285))

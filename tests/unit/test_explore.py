@@ -8,13 +8,13 @@ import pytest
 from scipy.special import expit, ndtr
 
 from separatrix.cage import Ensemble, RunOutcome
-from separatrix.explore import counting
-from separatrix.explore.counting import is_plain, settles_more
-from separatrix.explore.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares, sobol_shares
-from separatrix.ranking.drawn import Case
 from separatrix.study.distribution import LogNormal, Normal
 from separatrix.study.study import Candidate, Friction
+from separatrix.verdict import counting
+from separatrix.verdict.counting import is_plain, settles_more
+from separatrix.verdict.drawn_frictions import Case
 from separatrix.verdict.draws import UncertainInput
+from separatrix.verdict.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval
 
 CASE = Case("A", "air")

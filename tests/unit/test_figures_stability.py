@@ -6,7 +6,7 @@ import drawn
 import numpy as np
 import pytest
 
-from separatrix.chain.restitution import restitution_factor
+from separatrix.chain.impact_restitution import restitution_factor
 from separatrix.figures import map as maps
 from separatrix.figures import stability
 from separatrix.figures.style import journal

@@ -12,11 +12,11 @@ from subprocess import run
 import pytest
 from commands import document, written
 
-from separatrix.chain.pocket import PocketConditions, friction_in_pocket
+from separatrix.chain.pocket_friction import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
-from separatrix.cli import main
-from separatrix.friction.file import FrictionTest, Place, friction_text, read_friction
-from separatrix.friction.fit import TestedFriction
+from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
+from separatrix.friction.friction_fit import TestedFriction
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
@@ -130,7 +130,8 @@ def test_only_four_keys_are_needed(tmp_path):
     """What slid on what, in what, and the friction; nothing else is made up, and numpy is not imported."""
     path = written(tmp_path, SMALL, "friction.toml")
     code = (
-        "import sys, json; from pathlib import Path; from separatrix.friction.file import read_friction; "
+        "import sys, json; from pathlib import Path\n"
+        "from separatrix.friction.friction_file import read_friction\n"
         "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)

@@ -21,8 +21,8 @@ FORBIDDEN_CALLS = {"print", "eval", "exec", "breakpoint", "input"}
 FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "requests", "urllib", "http", "socket"}
 NETWORK = {
     "verdict/cluster.py": {"socket"},  # it reaches the scheduler that a user names
-    "app/server.py": {"socket", "http", "urllib"},  # it listens on this machine; statuses, addresses
-    "app/page.py": {"urllib"},
+    "front/page/server.py": {"socket", "http", "urllib"},  # it listens on this machine; statuses, addresses
+    "front/page/folder.py": {"urllib"},
 }
 """File -> what it may import of the forbidden modules."""
 
@@ -99,7 +99,7 @@ def _sizes(tree: ast.AST) -> list[int]:
 def test_importing_the_package_is_light():
     """`import separatrix` and the command line's own modules load neither numpy nor matplotlib nor xarray."""
     code = (
-        "import sys, separatrix, separatrix.cli.app\n"
+        "import sys, separatrix, separatrix.front.cli\n"
         "heavy = {'numpy', 'scipy', 'numba', 'matplotlib', 'xarray', 'rich'}\n"
         "sys.exit(', '.join(heavy & set(sys.modules)) or 0)"
     )

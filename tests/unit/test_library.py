@@ -333,7 +333,8 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
     """The documentation of the contract is complete."""
     from pathlib import Path
 
-    from separatrix.study.library import reading, records
+    from separatrix.study.library import library_file as reading
+    from separatrix.study.library import records
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import separatrix
-from separatrix import api, figures
-from separatrix.cli import main
+from separatrix import figures
+from separatrix.front import api, main
 from separatrix.ground.errors import ValidityWarning
 from separatrix.study.study import Wear, Worn
 

@@ -6,18 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from separatrix import verbs
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import ValidityWarning
-from separatrix.ranking.reason import (
-    Moved,
-    beyond_motion,
-    pocket_pressure,
-    transmitted_force,
-)
 from separatrix.study.cautions import beyond_bearings, plausible_cage_masses
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallBearing, Operation, PocketShape, Study
+from separatrix.verbs import restitution
+from separatrix.verdict.beyond_models import Moved, beyond_motion, pocket_pressure, transmitted_force
 
 SHIPPED = read_study("cryogenic-turbopump")
 CAGE = SHIPPED.cage
@@ -97,11 +92,11 @@ def test_an_overdamped_impact_is_called_so():
     """MoS2 on the shipped races: eta is 0, and the answer says what follows from it."""
     slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
     with pytest.warns(ValidityWarning, match=r"eta = 0: .* C_mu = 87 N s/m is below .* = 137 N s/m; every"):
-        found = verbs.restitution(slippery).solution.restitution
+        found = restitution.compute(slippery).solution.restitution
     assert found.race_damping < found.least_damping
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert verbs.restitution(SHIPPED).solution.restitution.restitution_factor > 0.0
+        assert restitution.compute(SHIPPED).solution.restitution.restitution_factor > 0.0
 
 
 SOFT = replace(SHIPPED.ranking.candidates[0].material, compressive_strength=100e6)

@@ -8,13 +8,25 @@ import numpy as np
 import pytest
 
 from separatrix.cage import moving_cage
-from separatrix.chain.pocket import with_scatter
+from separatrix.chain.pocket_friction import with_scatter
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
-from separatrix.limits.curve import RestitutionThreshold
-from separatrix.ranking.rank import _row, rank
-from separatrix.ranking.reason import Pocket, disagreement, reason
-from separatrix.ranking.records import (
+from separatrix.study.reading import read_study
+from separatrix.study.study import (
+    BallModel,
+    Candidate,
+    Friction,
+    Material,
+    RankingQuestion,
+    StabilitySettings,
+)
+from separatrix.verdict.beyond_models import Pocket, disagreement, reason
+from separatrix.verdict.draws import Case
+from separatrix.verdict.judgement import Judgement, Verdict, judge
+from separatrix.verdict.ledger import NAME, Ledger
+from separatrix.verdict.long_jobs import Interrupted, Runner
+from separatrix.verdict.ranking import _row, rank
+from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
     NotMeasured,
@@ -27,20 +39,8 @@ from separatrix.ranking.records import (
     ranks,
     same_rank,
 )
-from separatrix.study.reading import read_study
-from separatrix.study.study import (
-    BallModel,
-    Candidate,
-    Friction,
-    Material,
-    RankingQuestion,
-    StabilitySettings,
-)
-from separatrix.verdict.draws import Case
-from separatrix.verdict.judgement import Judgement, Verdict, judge
-from separatrix.verdict.ledger import NAME, Ledger
-from separatrix.verdict.long_jobs import Interrupted, Runner
 from separatrix.verdict.reasons import CageMotion
+from separatrix.verdict.stability_curve import RestitutionThreshold
 from separatrix.verdict.which_ball import transmitted_force
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)

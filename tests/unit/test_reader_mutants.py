@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 from rich_studies import SPACE
 
-from separatrix.friction.file import read_friction
+from separatrix.friction.friction_file import read_friction
 from separatrix.ground.errors import InputError
-from separatrix.study.library.reading import read_library
+from separatrix.study.library.library_file import read_library
 from separatrix.study.reading import read_study
 
 pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")

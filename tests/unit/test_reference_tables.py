@@ -10,8 +10,8 @@ from reference_meanings import lines_of
 from reference_tables import VERBS, json_page, names_of, records_of, study_page
 
 import separatrix
-from separatrix.ranking.records import Ranked
 from separatrix.study.template import sections, study_keys
+from separatrix.verdict.ranking_records import Ranked
 
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""

@@ -5,8 +5,8 @@ import os
 import pytest
 
 import separatrix
-from separatrix.cli import main
 from separatrix.friction.logs.binary import tdms_groups
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of
 from separatrix.ground.sheet import refuse_unsafe

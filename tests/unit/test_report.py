@@ -7,16 +7,16 @@ from types import SimpleNamespace
 
 import pytest
 
-from separatrix.chain.pocket import PocketConditions
-from separatrix.present import in_words, whereabouts
+from separatrix.chain.pocket_friction import PocketConditions
 from separatrix.present.text import ranking
+from separatrix.present.text.answer import in_words, whereabouts
 from separatrix.present.text.cage import judgement_facts
 from separatrix.present.text.sensitivity import marks
 from separatrix.present.text.sentences import verdict_sentences
-from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, MotionModel
 from separatrix.verdict.judgement import Judgement, KickCount, Verdict
+from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
 from separatrix.verdict.reasons import CageMotion
 
 STUDY = read_study("cryogenic-turbopump")

@@ -6,13 +6,13 @@ from dataclasses import replace
 import pytest
 
 import separatrix
-from separatrix import verbs
 from separatrix.ground.errors import ValidityWarning
 from separatrix.present.text.sentences import verdict_sentences
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.record import Facts, Kept, Paragraph, Table
 from separatrix.reporting.stages import bearing_and_cage
 from separatrix.study.study import ClearanceState
+from separatrix.verbs import restitution
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 HERE = {"restitution_factor": 0.769, "critical_friction": 0.104, "scatter_low": 0.0865, "scatter_high": 0.144}
@@ -95,7 +95,7 @@ def test_the_note_on_overdamped_impacts_holds_for_cages_of_one_stiffness_only():
     """Candidates of another stiffness have another eta: the full threshold is not every material's margin."""
     slippery = replace(SHIPPED, film=replace(SHIPPED.film, race_friction=0.02))
     with pytest.warns(ValidityWarning, match=r"whose cage has this k_BC and M_C has its full threshold"):
-        verbs.restitution(slippery)
+        restitution.compute(slippery)
 
 
 def bearing_of(study):

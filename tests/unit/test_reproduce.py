@@ -12,7 +12,7 @@ import pytest
 from commands import document, refused
 
 import separatrix
-from separatrix.cli import main
+from separatrix.front import main
 from separatrix.study import sources
 from separatrix.study.reading import read_study
 from separatrix.study.sources import provenance_of

@@ -10,15 +10,17 @@ from typing import Annotated
 import numpy as np
 import pytest
 
-from separatrix import answers
 from separatrix.chain.solution import solve
-from separatrix.explore import sweep
+from separatrix.ground.plain_data import NotFiniteError, field_units, plain
 from separatrix.ground.units import Newton, Ratio, Rows
-from separatrix.present import NotFiniteError, dataset, document, plain, to_dataframe, to_xarray
-from separatrix.present.nodes import field_units
-from separatrix.ranking.records import NotMeasured, Ranked
+from separatrix.present.dataset_arrays import dataset
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
+from separatrix.verbs import answer_records as answers
+from separatrix.verbs.answer_files import document
+from separatrix.verbs.shapes import to_dataframe, to_xarray
+from separatrix.verdict import swept_cases as sweep
+from separatrix.verdict.ranking_records import NotMeasured, Ranked
 
 STUDY = read_study("cryogenic-turbopump")
 
@@ -179,7 +181,7 @@ def test_an_answer_is_a_table():
 
 def test_every_answer_of_a_verb_is_arranged():
     """Each record of `answers` is a shape of its own: none is shown field by field by accident."""
-    from separatrix.present.shapes import shape
+    from separatrix.verbs.shapes import shape
 
     records = {one for one in vars(answers).values() if getattr(one, "__name__", "").endswith("Answer")}
     assert len(records) == 9

@@ -10,17 +10,13 @@ import pytest
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import ValidityWarning
-from separatrix.limits.curve import (
-    COARSE,
-    FINEST,
-    Tracer,
-    bends,
-    finer,
-    restitution_threshold,
-    threshold_factors,
-)
-from separatrix.limits.point import CriticalFriction, critical_friction, own_restitution_factor
-from separatrix.limits.response import (
+from separatrix.present.text.stability import curve
+from separatrix.study.reading import read_study
+from separatrix.study.study import BallModel, StabilitySettings
+from separatrix.verdict import long_jobs as runner
+from separatrix.verdict.critical_friction import CriticalFriction, critical_friction, own_restitution_factor
+from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.response import (
     LADDER,
     Count,
     Crossing,
@@ -31,11 +27,15 @@ from separatrix.limits.response import (
     cell_of,
     with_damping,
 )
-from separatrix.present.text.stability import curve
-from separatrix.study.reading import read_study
-from separatrix.study.study import BallModel, StabilitySettings
-from separatrix.verdict import long_jobs as runner
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.stability_curve import (
+    COARSE,
+    FINEST,
+    Tracer,
+    bends,
+    finer,
+    restitution_threshold,
+    threshold_factors,
+)
 
 SHIPPED = solve(read_study("cryogenic-turbopump"))
 CAGE = moving_cage(SHIPPED, 0.1)

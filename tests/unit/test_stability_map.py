@@ -12,13 +12,12 @@ from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.closed_forms import drifts
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
-from separatrix.limits.map import (
-    AGREED,
-    PointFinder,
-    inference,
-    stability_map,
-)
-from separatrix.limits.map_fill import (
+from separatrix.study.reading import read_study
+from separatrix.study.study import Guidance, MotionModel, PocketShape, Wear
+from separatrix.verdict.judgement import Verdict, is_calm, judge, wilson_interval
+from separatrix.verdict.ledger import NAME, Ledger
+from separatrix.verdict.long_jobs import Interrupted, Runner
+from separatrix.verdict.map_fill import (
     AGREEING,
     CHECK_EVERY,
     Filled,
@@ -34,13 +33,9 @@ from separatrix.limits.map_fill import (
     settled,
     wrong_side_probability,
 )
-from separatrix.limits.map_records import MapAxis, MapPoint, MapQuestion, parameters, side, value_in, varied
-from separatrix.limits.response import cage_at
-from separatrix.study.reading import read_study
-from separatrix.study.study import Guidance, MotionModel, PocketShape, Wear
-from separatrix.verdict.judgement import Verdict, is_calm, judge, wilson_interval
-from separatrix.verdict.ledger import NAME, Ledger
-from separatrix.verdict.long_jobs import Interrupted, Runner
+from separatrix.verdict.map_records import MapAxis, MapPoint, MapQuestion, parameters, side, value_in, varied
+from separatrix.verdict.response import cage_at
+from separatrix.verdict.stability_map import AGREED, PointFinder, inference, stability_map
 
 KICKS = MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))
 

@@ -8,8 +8,8 @@ import numpy as np
 import openpyxl
 import pytest
 
-from separatrix.cli import main
 from separatrix.friction.logs import UnmappedError, read_column_map, read_log
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 
 ROWS = 120

@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 from scipy.stats import lognorm
 
-from separatrix.answers import CheckAnswer
 from separatrix.ground.errors import InputError
-from separatrix.limits.map_records import varied
-from separatrix.present import in_words
-from separatrix.ranking.records import measured
+from separatrix.present.text.answer import in_words
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
+from separatrix.verbs.answer_records import CheckAnswer
 from separatrix.verdict.draws import sample, uncertain_inputs
+from separatrix.verdict.map_records import varied
+from separatrix.verdict.ranking_records import measured
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
 

@@ -6,13 +6,13 @@ from commands import document, refusal, refusal_line
 from test_study_refusals import VALID
 from test_workbook import workbook
 
-from separatrix.cli import main
+from separatrix.front import main
 from separatrix.ground.errors import InputError
-from separatrix.limits.map_records import value_in, varied
 from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
+from separatrix.verdict.map_records import value_in, varied
 
 BAND = '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3\n'
 PLACES = '[film.wear]\nacross = ["-0.1 mm", "0.1 mm"]\nthicknesses = ["0 um", "0.2 um"]\nfriction = 0.3\n'

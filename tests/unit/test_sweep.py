@@ -12,12 +12,12 @@ from commands import document, refused
 
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.cli import main
-from separatrix.explore.sweep import MOST_CASES, sweep
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.verdict.judgement import judge
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.swept_cases import MOST_CASES, sweep
 from separatrix.verdict.which_ball import transmitted_force
 
 STUDY = read_study("momentum-wheel")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import separatrix
-from separatrix.cli import main
 from separatrix.friction.logs import column_map
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 
 MAP = {"test": {"material": "Armalon", "counterface": "440C", "medium": "air"}}

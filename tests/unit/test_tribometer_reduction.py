@@ -12,7 +12,7 @@ from synthetic_friction import Recipe, made
 from separatrix.figures.tribometer import heading, page
 from separatrix.friction import steady
 from separatrix.friction.cycles import oscillation
-from separatrix.friction.file import place
+from separatrix.friction.friction_file import place
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log, reduction
 from separatrix.present.tribometer import page_data

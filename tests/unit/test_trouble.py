@@ -12,13 +12,14 @@ import pytest
 from cages import ON_A_LAND
 from commands import refused
 
-from separatrix import verbs
 from separatrix.cage import Cause, RunOutcome, run_ensemble
-from separatrix.chain.restitution import damping_for
-from separatrix.cli import main
-from separatrix.present import document, in_words
+from separatrix.chain.impact_restitution import damping_for
+from separatrix.front import main
+from separatrix.present.text.answer import in_words
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
+from separatrix.verbs import simulate
+from separatrix.verbs.answer_files import document
 from separatrix.verdict.judgement import Verdict, judge
 
 BASE = """
@@ -142,7 +143,7 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
 def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))
-    answer = verbs.simulate(asked)
+    answer = simulate.compute(asked)
     lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.FALLING)
     answer = replace(answer, history=lost)
     found = document("simulate", answer, asked, [])

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import separatrix
-from separatrix.cli import main
+from separatrix.front import main
 
 FOLDER = Path(__file__).parents[2] / "docs" / "tutorials"
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)

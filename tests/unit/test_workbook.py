@@ -14,15 +14,15 @@ from minimal_xlsx import Formula, Shown, workbook
 from rich_studies import PLANE, SPACE
 
 import separatrix
-from separatrix.cli import main
+from separatrix.front import main
 from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.sheet import add_sheet, new_workbook, put, text_for_cell, workbook_bytes
 from separatrix.ground.units import parse
 from separatrix.ground.workbook import COLUMNS, sheets_of
-from separatrix.saving import write_ranking
 from separatrix.study.reading import read_study
 from separatrix.study.study import ORDER, shipped_studies
 from separatrix.study.template import study_keys, template, template_workbook
+from separatrix.verbs.answer_files import write_ranking
 
 STUDY = """
 title = "= A title that begins like a formula"

@@ -4,8 +4,8 @@ import commands
 import pytest
 from commands import refusal_line, written
 
-from separatrix.friction.file import FrictionTest, read_friction
-from separatrix.friction.fit import fit_friction
+from separatrix.friction.friction_file import FrictionTest, read_friction
+from separatrix.friction.friction_fit import fit_friction
 from separatrix.ground.errors import InputError
 
 GOOD = """\

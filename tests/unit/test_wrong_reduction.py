@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from commands import refusal_line
 
-from separatrix.friction.file import place
+from separatrix.friction.friction_file import place
 from separatrix.friction.logs.log import Conditions, RawLog
 from separatrix.friction.reduction import reduce_log
 

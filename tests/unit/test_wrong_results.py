@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import separatrix
-from separatrix.cli import main
 from separatrix.comparing.saved import MOST_BYTES
 from separatrix.figures import draw
 from separatrix.figures.style import heading, literal_texts
+from separatrix.front import main
 from separatrix.ground.errors import InputError
 
 ANSWER = separatrix.bearing("cryogenic-turbopump").document()

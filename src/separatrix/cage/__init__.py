@@ -1,9 +1,6 @@
 """The motion of the cage among its balls, from the forces to the evidence of an ensemble."""
 
-from separatrix.cage.closed_forms import (
-    linear_critical_friction,
-    linear_whirl_frequency,
-)
+from separatrix.cage.closed_forms import linear_critical_friction, linear_whirl_frequency
 from separatrix.cage.course import CourseAnalysis, History, analyse, simulate
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble, Stop, longest_duration, run_ensemble

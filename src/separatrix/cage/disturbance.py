@@ -17,7 +17,7 @@ from numpy.random import Generator, Philox
 from separatrix.cage import rows
 from separatrix.cage.numbers import ball_level, pocket_rectangle
 from separatrix.cage.rows import of
-from separatrix.chain.pocket import REFERENCE, pocket_speed
+from separatrix.chain.pocket_friction import REFERENCE, pocket_speed
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.study import LEAST_KICK, NO_KICK, StabilitySettings

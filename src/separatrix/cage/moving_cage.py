@@ -11,7 +11,7 @@ import numpy as np
 
 from separatrix.cage.disturbance import free_leads
 from separatrix.chain.ball_traction import BallTraction, FreeBall
-from separatrix.chain.restitution import hertz_coefficient_for
+from separatrix.chain.impact_restitution import hertz_coefficient_for
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.ground.schema import (
     Fault,

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import lru_cache
 from typing import Annotated, NamedTuple
 
@@ -28,6 +27,7 @@ from separatrix.chain.equilibrium.problem import Problem, copy, problem, work
 from separatrix.chain.race_curve import race_slope
 from separatrix.ground.compiled import kernel
 from separatrix.ground.errors import ConvergenceError, InputError
+from separatrix.ground.schema import Spelled
 from separatrix.ground.units import (
     Array,
     Kilogram,
@@ -43,7 +43,7 @@ from separatrix.ground.units import (
 from separatrix.study.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
 
 
-class SlipLaw(Enum):
+class SlipLaw(Spelled):
     """Which slip speed rounds the corner of Coulomb's law in a contact."""
 
     ELASTIC = "elastic creep"

@@ -19,12 +19,12 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.equilibrium.balance import LEAST_SHARE
+from separatrix.chain.exact import RaceSlope
 from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.impact_restitution import contact_damping
 from separatrix.chain.orbit import mean_speed
 from separatrix.chain.race_curve import RaceTrack, race_curve, race_slope
-from separatrix.chain.restitution import contact_damping
-from separatrix.chain.traction import TractionCurve
-from separatrix.chain.traction.exact import RaceSlope
+from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     MetrePerSecond,

@@ -9,8 +9,9 @@ from typing import Annotated
 import numpy as np
 
 from separatrix.chain.contacts import RaceContact
-from separatrix.chain.restitution import Restitution, contact_damping, restitution
-from separatrix.chain.traction import film_compliance, traction_slope
+from separatrix.chain.film_compliance import film_compliance
+from separatrix.chain.impact_restitution import Restitution, contact_damping, restitution
+from separatrix.chain.traction_curve import traction_slope
 from separatrix.ground.units import Array, Kilogram, Metre, NewtonPerMetre, Ratio
 from separatrix.study.study import Film, Material
 

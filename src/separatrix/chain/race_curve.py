@@ -13,13 +13,13 @@ from math import pi
 
 import numpy as np
 
+from separatrix.chain import exact
 from separatrix.chain.creep import Creep
+from separatrix.chain.exact.pressure import pressed_contact
+from separatrix.chain.exact.slope import COLUMNS, ROWS
+from separatrix.chain.film_compliance import track_of
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction import exact
-from separatrix.chain.traction.curve import TractionCurve, traction_curve
-from separatrix.chain.traction.exact.pressure import pressed_contact
-from separatrix.chain.traction.exact.slope import COLUMNS, ROWS
-from separatrix.chain.traction.film import track_of
+from separatrix.chain.traction_curve import TractionCurve, traction_curve
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Pascal, Ratio
 from separatrix.study.study import (

@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from separatrix.chain.film_compliance import track_of
 from separatrix.chain.race_curve import RaceTrack, exact_curve, strips
-from separatrix.chain.traction import ShearField, TractionCurve, shear_field, track_of
+from separatrix.chain.shear import ShearField, shear_field
+from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.units import Ratio
 from separatrix.study.study import ContactPressure, TractionModel, TractionSettings
 

@@ -25,9 +25,10 @@ from separatrix.chain.contacts import (
     race_traction,
     require_rolling,
 )
+from separatrix.chain.impact_restitution import Restitution, ball_pocket_stiffness, restitution
 from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
 from separatrix.chain.orbit import OrbitalWaves, orbital_waves
-from separatrix.chain.pocket import (
+from separatrix.chain.pocket_friction import (
     REFERENCE,
     PocketConditions,
     friction_in_pocket,
@@ -35,7 +36,6 @@ from separatrix.chain.pocket import (
     pocket_conditions,
     pocket_speed,
 )
-from separatrix.chain.restitution import Restitution, ball_pocket_stiffness, restitution
 from separatrix.ground.errors import InputError, ValidityWarning
 from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.ball_bearing import NAMELESS

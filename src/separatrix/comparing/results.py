@@ -15,12 +15,12 @@ from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import get_args, get_type_hints
 
-from separatrix import answers
 from separatrix.comparing.records import Noise, Plain, Row, Value, is_number
-from separatrix.explore.sweep import Sweep
+from separatrix.ground.plain_data import field_units
 from separatrix.ground.units import printable
-from separatrix.present.nodes import field_units
+from separatrix.verbs import answer_records as answers
 from separatrix.verdict.judgement import NORMAL_95, Judgement, KickCount
+from separatrix.verdict.swept_cases import Sweep
 
 Place = tuple[str, ...]
 Nodes = dict[Place, dict[str, Plain]]

@@ -11,8 +11,8 @@ from separatrix.comparing.records import Comparison, Noise, Row, Value, is_numbe
 from separatrix.comparing.results import UNCOUNTED_VERBS
 from separatrix.comparing.saved import Saved, arrays
 from separatrix.ground.errors import InputError, harmless, json_text
+from separatrix.ground.plain_data import plain
 from separatrix.ground.units import printable
-from separatrix.present import plain
 from separatrix.present.text.tables import (
     ABSENT,
     facts,

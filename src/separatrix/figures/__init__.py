@@ -8,15 +8,7 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
-from separatrix.figures import (
-    chain,
-    envelope,
-    map,
-    ranking,
-    sensitivity,
-    simulation,
-    stability,
-)
+from separatrix.figures import chain, envelope, map, ranking, sensitivity, simulation, stability
 from separatrix.figures.style import headed, journal, literal, literal_texts, save, settled
 from separatrix.ground.errors import InputError
 

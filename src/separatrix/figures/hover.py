@@ -22,16 +22,7 @@ from separatrix.figures.stability import (
     linear_limit,
     own_point,
 )
-from separatrix.figures.style import (
-    BLACK,
-    BLUE,
-    CYCLE,
-    GREY,
-    VERDICT_COLOURS,
-    VERMILION,
-    Json,
-    with_ends,
-)
+from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, VERDICT_COLOURS, VERMILION, Json, with_ends
 from separatrix.present.text.sentences import pocket_force
 from separatrix.present.text.tables import ABSENT, interval, number, significant
 

@@ -15,16 +15,7 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 from separatrix.figures.stability import ETA_LABEL, FRICTION_LABEL, draw_linear_limit
-from separatrix.figures.style import (
-    BLACK,
-    GREY,
-    PAGE,
-    VERMILION,
-    Look,
-    canvas,
-    colour_bar,
-    legend_below,
-)
+from separatrix.figures.style import BLACK, GREY, PAGE, VERMILION, Look, canvas, colour_bar, legend_below
 from separatrix.ground.units import Array, format_quantity, parse
 
 Mask = NDArray[np.bool_]

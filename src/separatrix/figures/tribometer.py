@@ -27,7 +27,7 @@ from separatrix.figures.style import (
     literal,
     settled,
 )
-from separatrix.friction.file import in_words
+from separatrix.friction.friction_file import in_words
 from separatrix.friction.reduction import GIVEN
 from separatrix.ground.units import format_number, format_quantity
 

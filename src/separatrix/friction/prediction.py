@@ -27,7 +27,7 @@ class Prediction:
 
 
 class FrictionLaw(Protocol):
-    """Friction as a function of the conditions, from tests, as `separatrix.friction.fit.TestedFriction`."""
+    """Friction as a function of the conditions, from tests, as `friction_fit.TestedFriction`."""
 
     def at(
         self,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from separatrix.friction import cycles, steady
-from separatrix.friction.file import in_words
+from separatrix.friction.friction_file import in_words
 from separatrix.friction.logs.log import Conditions, RawLog, of_log
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.steady import LONG, METHOD, RunIn, run_in

@@ -48,6 +48,10 @@ OPEN = "?"
 Open = Annotated[float, "?"]
 
 
+class Spelled(Enum):
+    """An enumeration whose values are shown; of another the names."""
+
+
 class Fault(NamedTuple):
     """A mistake of a record: its key, or the path to a value inside; empty for the record as a whole."""
 

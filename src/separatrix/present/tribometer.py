@@ -10,15 +10,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from separatrix.friction import steady
-from separatrix.friction.fit import FrictionFit
-from separatrix.friction.law import in_words as range_words
+from separatrix.friction.friction_fit import FrictionFit
+from separatrix.friction.friction_law import in_words as range_words
+from separatrix.friction.log_series import ReducedLogs
 from separatrix.friction.logs import described
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.reduction import Reduction, TestFriction
-from separatrix.friction.tribometer import ReducedLogs
+from separatrix.ground.plain_data import Document, Leaf, plain
 from separatrix.ground.units import Array
-from separatrix.present.arrays import variable
-from separatrix.present.nodes import Document, Leaf, plain
+from separatrix.present.dataset_arrays import variable
 from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
 
 Node = dict[str, Leaf]

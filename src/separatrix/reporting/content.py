@@ -22,22 +22,12 @@ from separatrix.comparing.shown import (
 )
 from separatrix.ground.errors import InputError, grouped, noted_warnings
 from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
-from separatrix.questions import Computed, Verb, verb_named
 from separatrix.reporting.evidence import evidence, inputs, outside, provenance, uncertainty
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.pictures import picture, picture_of
-from separatrix.reporting.record import (
-    Block,
-    Facts,
-    Kept,
-    Paragraph,
-    Report,
-    Row,
-    Section,
-    Table,
-    quantity,
-)
+from separatrix.reporting.record import Block, Facts, Kept, Paragraph, Report, Row, Section, Table, quantity
 from separatrix.reporting.stages import bearing_and_cage, stages
+from separatrix.verbs import Computed, Verb, verb_named
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -283,7 +273,7 @@ def verbs_of(study: Study) -> Iterator[str]:
 def answers(kept: Kept, study: Study) -> bool:
     """Whether an answer is complete, from this version, and to this study."""
     from separatrix import __version__
-    from separatrix.present import plain
+    from separatrix.ground.plain_data import plain
     from separatrix.study.sources import resolved
 
     found = kept.document
@@ -296,8 +286,7 @@ def keeping(
     compute: Callable[[Verb], Computed], notes: list[str], folder: Path | None
 ) -> Callable[[str], Kept]:
     """Return what computes an answer; its files are written if there is a folder, without figures."""
-    from separatrix.present import document
-    from separatrix.saving import save_answer
+    from separatrix.verbs.answer_files import document, save_answer
 
     def kept(verb: str) -> Kept:
         with noted_warnings() as own:

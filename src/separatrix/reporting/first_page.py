@@ -16,16 +16,7 @@ from separatrix.present.text.sentences import (
 )
 from separatrix.present.text.tables import ABSENT, number, significant
 from separatrix.reporting.pictures import own_candidates, picture
-from separatrix.reporting.record import (
-    Block,
-    Kept,
-    Paragraph,
-    Row,
-    Section,
-    Table,
-    own_rows,
-    quantity,
-)
+from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, own_rows, quantity
 
 MOST_CAVEATS = 5
 HEAD = (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from enum import Enum
 from functools import partial
 from itertools import pairwise
 from typing import Any, ClassVar, cast
@@ -15,6 +14,7 @@ from separatrix.ground.schema import (
     Fault,
     Faults,
     Only,
+    Spelled,
     all_or_none,
     between,
     check,
@@ -49,7 +49,7 @@ SIGMAS = 3.0
 _FULL_TURN = 2.0 * math.pi
 
 
-class Guidance(Enum):
+class Guidance(Spelled):
     """What guides the cage; BALL means it has no land."""
 
     OUTER = "outer"
@@ -57,21 +57,21 @@ class Guidance(Enum):
     BALL = "ball"
 
 
-class ClearanceState(Enum):
+class ClearanceState(Spelled):
     """What the stated clearances are those of: the running bearing, or its parts at 293 K at rest."""
 
     RUNNING = "as running"
     AT_REST = "at rest, 293 K"
 
 
-class PocketContact(Enum):
+class PocketContact(Spelled):
     """How the force between ball and pocket grows: with the approach, or with its power 1.5."""
 
     LINEAR = "linear"
     HERTZ = "hertz"
 
 
-class BallModel(Enum):
+class BallModel(Spelled):
     """What a ball does that its pocket pushes (docs/theory/cage.md).
 
     A damper as in the paper; one state, with inertia and saturating traction; free, with its three spins;
@@ -84,7 +84,7 @@ class BallModel(Enum):
     AUTO = "auto"
 
 
-class MotionModel(Enum):
+class MotionModel(Spelled):
     """Where the cage moves: in the bearing plane as in the paper, or in space."""
 
     PLANE = "plane"

@@ -9,8 +9,8 @@ from math import exp, log
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from separatrix.friction.file import CONDITIONS, FrictionFile
-from separatrix.friction.law import StatedFriction
+from separatrix.friction.friction_file import CONDITIONS, FrictionFile
+from separatrix.friction.friction_law import StatedFriction
 from separatrix.friction.prediction import LEAST_FRICTION, SCATTER_CURE, SCATTER_RULE, Friction
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Elsewhere, Reading, Refused, read_text
@@ -25,7 +25,7 @@ from separatrix.study.library.records import FrictionTable
 from separatrix.study.uncertain import deviation_of, number
 
 if TYPE_CHECKING:
-    from separatrix.friction.fit import TestedFriction
+    from separatrix.friction.friction_fit import TestedFriction
     from separatrix.study.study import Study
 
 FROM_LOGS = " The friction file of your own logs (.toml) is written by `separatrix tribometer`."
@@ -212,7 +212,7 @@ def _of_file(
     content: str | None, section: RankingSection, temperature: Kelvin | None
 ) -> tuple[tuple[str, ...], dict[str, dict[str, Friction | None]]]:
     """Environments and frictions of a friction file, in the order in which they are first tested."""
-    from separatrix.friction.fit import TestedFriction  # which imports numpy: only for such studies
+    from separatrix.friction.friction_fit import TestedFriction  # which imports numpy: only for such studies
 
     label = label_of(Path(section.friction or ""))
     if content is None:

@@ -11,6 +11,7 @@ from separatrix.ground.schema import (
     Fault,
     Faults,
     Only,
+    Spelled,
     all_or_none,
     between,
     check,
@@ -26,7 +27,7 @@ from separatrix.study.ball_bearing import MODULI, MODULUS, POISSON, Material
 from separatrix.study.profile import MOST_PLACES, Profile, read_profile
 
 
-class Worn(Enum):
+class Worn(Spelled):
     """The races whose film is worn."""
 
     BOTH = "both"
@@ -184,21 +185,21 @@ def _wear_of_the_film(wear: Wear, thickness: Metre | None, race_friction: Ratio)
         yield Fault("race_friction", "must be > 0 where a film is worn")
 
 
-class TractionModel(Enum):
+class TractionModel(Spelled):
     """Contacts of ball and race: plane strips side by side (the paper's), or the whole contact."""
 
     STRIPS = "strips"
     EXACT = "exact"
 
 
-class ContactPressure(Enum):
+class ContactPressure(Spelled):
     """Pressure in these contacts: Hertz's of the bodies without film, or that of the coated bodies."""
 
     HERTZ = "hertz"
     COATED = "coated"
 
 
-class PressureSlip(Enum):
+class PressureSlip(Spelled):
     """Whether the slip counts that the pressure causes between unlike or coated bodies."""
 
     NEGLECTED = "neglected"

@@ -7,13 +7,13 @@ a round one there is less clearance, and the contact leans towards the axis.
 from __future__ import annotations
 
 import math
-from enum import Enum
 from typing import Protocol
 
+from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Metre, Ratio
 
 
-class PocketShape(Enum):
+class PocketShape(Spelled):
     """Wall of a pocket, seen along the radius."""
 
     SQUARE = "square"

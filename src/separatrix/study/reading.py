@@ -24,15 +24,9 @@ from separatrix.study.distribution import Distribution
 from separatrix.study.helper import StudyHelper
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
 from separatrix.study.library import Library, beside, joined, library_files
-from separatrix.study.library.reading import library_of_text
+from separatrix.study.library.library_file import library_of_text
 from separatrix.study.library.records import Content
-from separatrix.study.study import (
-    Study,
-    chosen_models,
-    shipped_studies,
-    stiffness_is_known,
-    with_models,
-)
+from separatrix.study.study import Study, chosen_models, shipped_studies, stiffness_is_known, with_models
 from separatrix.study.uncertain import written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"

@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
-from separatrix.friction.file import FrictionTest
+from separatrix.friction.friction_file import FrictionTest
 from separatrix.ground.schema import keys_of
 from separatrix.ground.units import unit_of
 from separatrix.study.candidates import RankingSection, cage_candidate, environment_of
@@ -150,7 +150,7 @@ def _material(material: Material, distributions: Mapping[str, Distribution]) -> 
 
 
 def _ranking(study: Study, question: RankingQuestion) -> dict[str, object]:
-    from separatrix.friction.fit import TestedFriction
+    from separatrix.friction.friction_fit import TestedFriction
 
     candidates = [
         {
@@ -178,7 +178,7 @@ def _ranking(study: Study, question: RankingQuestion) -> dict[str, object]:
 
 def _friction(friction: Friction) -> dict[str, object]:
     """A friction, and every test behind it if it comes from a friction file."""
-    from separatrix.friction.fit import TestedFriction
+    from separatrix.friction.friction_fit import TestedFriction
 
     names = ("mean", "standard_deviation", "count", "source", "confidence")
     item: dict[str, object] = {name: getattr(friction, name) for name in names}

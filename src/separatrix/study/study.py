@@ -20,6 +20,7 @@ from separatrix.ground.reader import Reading
 from separatrix.ground.schema import (
     Fault,
     Faults,
+    Spelled,
     between,
     check,
     key,
@@ -75,14 +76,14 @@ _LIFTS = "A load the other way lifts the inner ring off its balls; turn the bear
 _START = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
 
 
-class Race(Enum):
+class Race(Spelled):
     """One of the two raceways."""
 
     INNER = "inner"
     OUTER = "outer"
 
 
-class KinematicModel(Enum):
+class KinematicModel(Spelled):
     """How the ball's spin axis is found."""
 
     FREE = "free"

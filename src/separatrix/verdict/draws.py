@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from separatrix.friction.fit import TestedFriction
+from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Ratio
 from separatrix.study.distribution import Distribution, LogNormal

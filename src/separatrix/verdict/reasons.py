@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from enum import Enum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from separatrix.cage.closed_forms import drift_rate_law, room
 from separatrix.cage.outcome import GROWN, Cause, RunOutcome
+from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Array, Metre, Newton, format_number, format_quantity
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ CAUSES = {
 }
 
 
-class CageMotion(Enum):
+class CageMotion(Spelled):
     """What the cage does at the end of the runs; ROLLING: in its pockets."""
 
     CENTRED = "CENTRED"

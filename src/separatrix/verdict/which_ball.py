@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from separatrix.cage.closed_forms import felt_mass
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.chain.pocket import REFERENCE
+from separatrix.chain.pocket_friction import REFERENCE
 from separatrix.study.study import BallModel
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.chain.equilibrium.balance import inertia_loads, slip_coefficients
-from separatrix.chain.equilibrium.ball import (
+from separatrix.chain.equilibrium.ball_balance import (
     SMOOTHING,
     kinematic_start,
     slopes_with_ring,

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from separatrix.chain.equilibrium.balance import STEEPEST, inertia_loads
+from separatrix.chain.equilibrium.ball_set import Equilibrium
 from separatrix.chain.equilibrium.groove import chebyshev_nodes, static_split
 from separatrix.chain.equilibrium.problem import Method, Problem, problem
-from separatrix.chain.equilibrium.record import Equilibrium
 from separatrix.chain.equilibrium.ring import (
     FREE,
     STATIC,

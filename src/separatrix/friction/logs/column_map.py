@@ -9,7 +9,7 @@ from importlib.resources import files as files_of
 from pathlib import Path, PurePosixPath
 from typing import Any, ClassVar, Literal
 
-from separatrix.friction.file import Place, place
+from separatrix.friction.friction_file import Place, place
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, SHAPES, known_units, scale_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Document, read_document, read_text

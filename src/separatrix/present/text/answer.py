@@ -8,10 +8,8 @@ from itertools import groupby
 from math import asin, degrees, isclose, pi
 from operator import itemgetter
 
-from separatrix.answers import CheckAnswer
+from separatrix.ground.plain_data import Document
 from separatrix.ground.units import format_quantity
-from separatrix.present.nodes import Document
-from separatrix.present.shapes import all_notes
 from separatrix.present.text.cage import simulate
 from separatrix.present.text.chain import bearing, mobility, restitution, running_clearances, traction
 from separatrix.present.text.ranking import every_environment, only_table, rank
@@ -32,6 +30,8 @@ from separatrix.study.cage_body import cage_inertia
 from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.sources import inputs_of, resolved
 from separatrix.study.study import ORDER, CageDesign, ClearanceState, Guidance, Study
+from separatrix.verbs.answer_records import CheckAnswer
+from separatrix.verbs.shapes import all_notes
 
 INCOMPLETE = "INCOMPLETE: interrupted. What was not finished is left out, or has a dash in its place."
 

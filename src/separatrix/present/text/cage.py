@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import math
 
-from separatrix.answers import SimulationAnswer
 from separatrix.cage import History, MovingCage
 from separatrix.cage.closed_forms import drift_rate_law
-from separatrix.limits.point import own_restitution_factor
-from separatrix.present.shapes import outcome_sentence, rubbing_power
 from separatrix.present.text.chain import basis, running_clearances
 from separatrix.present.text.sentences import pocket_force
 from separatrix.present.text.tables import (
@@ -23,6 +20,9 @@ from separatrix.present.text.tables import (
 )
 from separatrix.study.candidates import cage_candidate, environment_of
 from separatrix.study.study import Guidance, Study
+from separatrix.verbs.answer_records import SimulationAnswer
+from separatrix.verbs.shapes import outcome_sentence, rubbing_power
+from separatrix.verdict.critical_friction import own_restitution_factor
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CageMotion, ball_words
 

@@ -7,13 +7,11 @@ from math import degrees
 
 import numpy as np
 
-from separatrix.answers import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
 from separatrix.chain.ball_mobility import Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.present.nodes import Leaf, Node, field_units, fields_of, plain
-from separatrix.present.shapes import shape
+from separatrix.ground.plain_data import Leaf, Node, field_units, fields_of, plain
 from separatrix.present.text.sentences import strain_facts
 from separatrix.present.text.tables import (
     facts,
@@ -26,6 +24,8 @@ from separatrix.present.text.tables import (
     table,
 )
 from separatrix.study.study import PressureSlip, Study, Worn
+from separatrix.verbs.answer_records import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
+from separatrix.verbs.shapes import shape
 
 BALL_HEADERS = (
     *("ball", "azimuth\ndeg", "angle in\ndeg", "angle out\ndeg", "load in\nN", "load out\nN"),

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from separatrix.answers import RankingAnswer
-from separatrix.present.nodes import Document, plain
+from separatrix.ground.plain_data import Document, plain
 from separatrix.present.text.cage import judgement_facts, motion_words
 from separatrix.present.text.chain import basis
 from separatrix.present.text.sentences import (
@@ -33,9 +32,17 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.ranking.records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking, Row
 from separatrix.study.study import Study
+from separatrix.verbs.answer_records import RankingAnswer
 from separatrix.verdict.judgement import Judgement, Verdict
+from separatrix.verdict.ranking_records import (
+    NotFinished,
+    NotMeasured,
+    Ranked,
+    RankedEnvironment,
+    Ranking,
+    Row,
+)
 
 HEADERS = (*("rank", "material", "friction", "threshold\n(95 %)", "margin", "P(stable)\n(95 %)", "verdict"),)
 TILT, ROLL = "tilt\nmrad", "of them\nroll"

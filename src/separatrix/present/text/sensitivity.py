@@ -5,17 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from separatrix.answers import SensitivityAnswer
-from separatrix.explore.records import (
-    AllowedFilm,
-    Drivers,
-    NotDrawn,
-    Share,
-    UncertainMaterial,
-    UncertainRow,
-    UncertainStudy,
-)
-from separatrix.present.nodes import plain
+from separatrix.ground.plain_data import plain
 from separatrix.present.text.chain import basis
 from separatrix.present.text.ranking import newtons
 from separatrix.present.text.sentences import next_test
@@ -33,6 +23,16 @@ from separatrix.present.text.tables import (
     table,
 )
 from separatrix.study.study import Study
+from separatrix.verbs.answer_records import SensitivityAnswer
+from separatrix.verdict.uncertain_records import (
+    AllowedFilm,
+    Drivers,
+    NotDrawn,
+    Share,
+    UncertainMaterial,
+    UncertainRow,
+    UncertainStudy,
+)
 
 HEADERS = (
     *("material", "friction of\na new cage", "P(stable)\n(95 %)", "verdict", "motion"),

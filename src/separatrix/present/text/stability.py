@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from separatrix.answers import MapAnswer, StabilityAnswer
-from separatrix.explore.sweep import Sweep, SweptCase
-from separatrix.limits.curve import StabilityCurve
-from separatrix.limits.map_records import NOT_RUN, Inference, MapAxis, MapChange, StabilityMap, Stopping
-from separatrix.present.nodes import field_units, plain
+from separatrix.ground.plain_data import field_units, plain
 from separatrix.present.text.cage import friction_text
 from separatrix.present.text.chain import basis
 from separatrix.present.text.sentences import deciding, drift_sentence, time_shares
@@ -28,6 +24,10 @@ from separatrix.present.text.tables import (
 )
 from separatrix.study.candidates import cage_candidate
 from separatrix.study.study import Study
+from separatrix.verbs.answer_records import MapAnswer, StabilityAnswer
+from separatrix.verdict.map_records import NOT_RUN, Inference, MapAxis, MapChange, StabilityMap, Stopping
+from separatrix.verdict.stability_curve import StabilityCurve
+from separatrix.verdict.swept_cases import Sweep, SweptCase
 
 HEADERS = (
     *("restitution\nfactor", "critical friction\n(95 %)", "band\nlow", "band\nhigh"),

@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from separatrix.ground.plain_data import field_units
 from separatrix.ground.units import format_quantity
-from separatrix.present.nodes import field_units
 
 if TYPE_CHECKING:
     from separatrix.study.study import Friction

@@ -16,7 +16,7 @@ from separatrix.ground.errors import DataError, InputError
 from separatrix.ground.toml import folded, path_text
 from separatrix.ground.units import Kelvin, printable, shown
 from separatrix.study.ball_bearing import ROOM, Expansion, Material
-from separatrix.study.library.reading import read_library
+from separatrix.study.library.library_file import read_library
 from separatrix.study.library.records import (
     AnyRecord,
     Fluid,

@@ -1,1 +1,0 @@
-"""Many bearings: cases of a sweep, and what uncertain inputs do to verdicts and choice of material."""

@@ -1,0 +1,244 @@
+"""Friction of each material in each environment as a function of slip speed and pressure, from all tests.
+
+The logarithm of friction is fitted: friction is positive, tests scatter by a share of it, and a power law of
+speed, pressure or pV is a straight line (docs/theory/friction.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from math import exp, hypot, sqrt
+
+import numpy as np
+
+from separatrix.friction.friction_file import CONDITIONS, PRODUCT, FrictionTest
+from separatrix.friction.friction_law import (
+    Covariates,
+    Range,
+    at_temperature,
+    covariates,
+    limited,
+    other_medium,
+    tested_range,
+    values_of,
+)
+from separatrix.friction.prediction import Prediction
+from separatrix.friction.scatter import (
+    LinearModel,
+    Posterior,
+    VarianceComponents,
+    posteriors,
+    variance_components,
+)
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
+
+DEFAULT_SCATTER: Ratio = 0.09
+"""Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess. A 25 %
+repeatability limit over 2.8, borrowed from ASTM D2981, which states it for wear life and not for friction."""
+
+LEAST_SCATTER, MOST_SCATTER = 1e-3, 1.0
+GroupKey = tuple[str, str]  # material and environment
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """A coefficient with its standard error and its 95 % interval."""
+
+    value: float
+    standard_error: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MaterialFit:
+    """Friction of one material in one environment.
+
+    `slopes` are exponents, by the name of their condition; `scatter` is the relative standard deviation of a
+    new sample [-].
+    """
+
+    tests: tuple[FrictionTest, ...]
+    covariates: Covariates
+    posterior: Posterior
+    slopes: Mapping[str, Estimate]
+    ranges: Mapping[str, Range | None]
+    scatter: Ratio
+    scatter_source: str
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None = None,
+        pressure: Pascal | None = None,
+        temperature: Kelvin | None = None,
+        medium: str | Sequence[str] | None = None,
+    ) -> Prediction:
+        """Friction predicted for these conditions; one that is None stays at the middle of the tests.
+
+        The medium may be given by several names: a test under any of them was run in it.
+
+        Outside the tests the mean stays that of the nearest tested condition, the standard deviation
+        grows by a stated rule (`separatrix.friction.friction_law`), and `extrapolation` reports it.
+        """
+        conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
+        # how steep friction may be, from the measured slopes and their errors
+        steep = {name: sqrt(s.value**2 + s.standard_error**2) for name, s in self.slopes.items()}
+        if PRODUCT in steep:
+            steep = dict.fromkeys(("slip_speed", "pressure", PRODUCT), steep[PRODUCT])
+        values, sentences, widening = limited(conditions, self.ranges, steep)
+        chosen = self.covariates  # conditions that are not given stay at their centre
+        middle = {name: exp(centre) for name, centre in zip(chosen.names, chosen.centres, strict=True)}
+        contrast = np.array(chosen.row({**middle, **values}))
+        log_mean, error = self.posterior.moments(contrast)
+        mean = exp(log_mean)
+        media = tuple(dict.fromkeys(test.medium for test in self.tests))
+        return Prediction(
+            mean=mean,
+            standard_error=mean * error,
+            standard_deviation=mean * hypot(self.scatter, widening),
+            extrapolation=(*sentences, *other_medium(medium, media)),
+            widening=mean * widening,
+            assumed_scatter=not self.scatter_source.startswith(OWN),
+        )
+
+    def log_mean(self, *, slip_speed: Array, pressure: Array) -> Array:
+        """Logarithm of the mean that `at` predicts, for many conditions, each limited to its tested range.
+
+        Slip speed [m/s] and pressure [Pa] have the shape (sample,).
+        """
+        known = {"slip_speed": slip_speed, "pressure": pressure}
+        known = {name: np.clip(x, *r) for name, x in known.items() if (r := self.ranges[name]) is not None}
+        if (both := self.ranges[PRODUCT]) is not None and len(known) == len((slip_speed, pressure)):
+            known[PRODUCT] = np.clip(known["slip_speed"] * known["pressure"], *both)
+        coefficients = self.posterior.weight @ self.posterior.fit.mean
+        mean = np.full(slip_speed.shape, coefficients[0])
+        chosen = self.covariates
+        for name, centre, slope in zip(chosen.names, chosen.centres, coefficients[1:], strict=True):
+            mean += slope * (np.log(known[name]) - centre)
+        return mean
+
+
+ASSUMED = "assumed"
+OWN, OTHERS = "its own tests", "tests of other materials, and assumed"
+MANY = 60
+"""Tests beyond the coefficients from which 9 % moves a scatter of 2 to 30 % by about a tenth at most."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FrictionFit:
+    """Fits of all materials in all environments."""
+
+    groups: Mapping[GroupKey, MaterialFit]
+    default_scatter: Ratio
+
+    def components(self) -> VarianceComponents | None:
+        """Scatter that all groups share, by restricted maximum likelihood; None if nothing was repeated."""
+        return variance_components([linear_model(one.tests, one.covariates) for one in self.groups.values()])
+
+    def of(self, material: str, environment: str) -> MaterialFit:
+        """Fit of one material in one environment."""
+        if (material, environment) not in self.groups:
+            rule = f'holds no test of "{material}" in "{environment}"'
+            raise InputError("The friction file", rule)
+        return self.groups[material, environment]
+
+
+def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT_SCATTER) -> FrictionFit:
+    """Fit friction over conditions to tests, each material in each environment by itself.
+
+    An unrepeated test is assumed to have the default scatter, a relative standard deviation [-].
+    """
+    if not tests:
+        raise InputError("The friction file", "holds no test")
+    if not LEAST_SCATTER <= default_scatter <= MOST_SCATTER:
+        rule = f"must lie between {LEAST_SCATTER:g} and {MOST_SCATTER:g} [-]"
+        raise InputError("friction_scatter", rule, f"{default_scatter:g}", "0.09 is 9 %.")
+    return _fit(tuple(tests), default_scatter)
+
+
+@lru_cache(maxsize=16)
+def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit:
+    grouped: dict[GroupKey, list[FrictionTest]] = {}
+    for test in tests:
+        grouped.setdefault((test.material, test.environment), []).append(test)
+    chosen = {key: covariates(group) for key, group in grouped.items()}
+    models = {key: linear_model(group, chosen[key]) for key, group in grouped.items()}
+    found = posteriors(list(models.values()), default_scatter)
+    others = OTHERS if any(model.shows_scatter for model in models.values()) else ASSUMED
+    few = f"{OWN}, drawn towards the assumed {100.0 * default_scatter:g} %"
+    groups = {}
+    for (key, model), posterior in zip(models.items(), found, strict=True):
+        estimates = []
+        for contrast in np.eye(1 + len(chosen[key].names))[1:]:
+            value, error = posterior.moments(contrast)
+            low, high = (posterior.quantile(contrast, p) for p in (0.025, 0.975))
+            estimates.append(Estimate(value=value, standard_error=error, low=low, high=high))
+        groups[key] = MaterialFit(
+            tests=tuple(grouped[key]),
+            covariates=chosen[key],
+            posterior=posterior,
+            slopes=dict(zip(chosen[key].names, estimates, strict=True)),
+            ranges={name: tested_range(grouped[key], name) for name in (*CONDITIONS, PRODUCT)},
+            scatter=posterior.scatter,
+            scatter_source=(OWN if model.freedom >= MANY else few) if model.shows_scatter else others,
+        )
+    return FrictionFit(groups=groups, default_scatter=default_scatter)
+
+
+def linear_model(tests: Sequence[FrictionTest], chosen: Covariates) -> LinearModel:
+    """Tests of one group as a linear model of ln f."""
+    numbers: dict[str, int] = {}
+    sample = [numbers.setdefault(t.sample or f"\0{i}", len(numbers)) for i, t in enumerate(tests)]
+    return LinearModel(
+        y=np.log([test.friction for test in tests]),
+        design=np.array([chosen.row(values_of(test, chosen.names)) for test in tests]),
+        error=np.array([(test.standard_error or 0.0) / test.friction for test in tests]),
+        sample=np.array(sample),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestedFriction:
+    """What a candidate of a study carries: all tests of its file, which of them are its own, the scatter.
+
+    All tests, because the scatter is pooled over the materials. Nothing is fitted before `at` is called. Of
+    tests at different temperatures those nearest to the requested one serve.
+    """
+
+    __test__ = False
+
+    material: str
+    environment: str
+    tests: tuple[FrictionTest, ...] = field(repr=False)
+    default_scatter: Ratio
+
+    @property
+    def own(self) -> tuple[FrictionTest, ...]:
+        """Tests of this material in this environment."""
+        mine = (self.material, self.environment)
+        return tuple(test for test in self.tests if (test.material, test.environment) == mine)
+
+    def serving(self, temperature: Kelvin | None) -> tuple[FrictionTest, ...]:
+        """Those of its own tests that serve at a temperature."""
+        return at_temperature(self.own, temperature)
+
+    def fitted(self, temperature: Kelvin | None) -> MaterialFit:
+        """Fit of its own tests that serve at a temperature, with the scatter pooled over all materials."""
+        tests = at_temperature(self.tests, temperature)
+        return fit_friction(tests, self.default_scatter).of(self.material, self.environment)
+
+    def at(
+        self,
+        *,
+        slip_speed: MetrePerSecond | None = None,
+        pressure: Pascal | None = None,
+        temperature: Kelvin | None = None,
+        medium: str | Sequence[str] | None = None,
+    ) -> Prediction:
+        """Friction predicted for these conditions, as `MaterialFit.at`."""
+        fitted = self.fitted(temperature)
+        return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)

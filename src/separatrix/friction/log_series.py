@@ -1,0 +1,234 @@
+"""Logs of tribometers to friction tests and the fit to them: the verb `tribometer`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import TypeVar
+
+from separatrix.friction.friction_file import CONDITIONS, NAMES, FrictionTest, Place, place
+from separatrix.friction.friction_fit import FrictionFit, fit_friction
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.column_map import ColumnMap, read_column_map
+from separatrix.friction.logs.log import RawLog, in_order, joined, of_log
+from separatrix.friction.prediction import FRICTION_LIMIT
+from separatrix.friction.reduction import RUN_IN_END, Cut, Reduction, TestFriction, reduction, with_outliers
+from separatrix.ground.errors import InputError, together
+from separatrix.ground.units import printable
+
+_T = TypeVar("_T")
+_S = TypeVar("_S")
+Progress = Callable[[int, int], None]  # called with the number of steps done and their total
+
+OTHERS = frozenset(
+    {".toml", ".md", ".json", ".nc", ".png", ".jpg", ".jpeg", ".pdf", ".py", ".svg", ".gif", ".docx"}
+)
+"""Suffixes of files in a folder that are not logs."""
+
+MOST_FILES = 10_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ReducedLogs:
+    """What logs of tribometers show: each test, and the friction of each material from all of them."""
+
+    reductions: tuple[Reduction, ...]
+    """One for each test, with its log, its friction and the series behind it."""
+    friction_tests: tuple[FrictionTest, ...] | None
+    """The tests as a friction file keeps them; None where some do not state what slid on what."""
+    fit: FrictionFit | None  # friction of each material over the conditions; None as above
+    notes: tuple[str, ...] = ()  # what concerns all of them together
+
+    @property
+    def logs(self) -> list[RawLog]:
+        """The log of each test."""
+        return [one.log for one in self.reductions]
+
+    @property
+    def tests(self) -> list[TestFriction]:
+        """Friction of each test."""
+        return [one.test for one in self.reductions]
+
+
+def tribometer(
+    paths: str | Path | Sequence[str | Path],
+    *,
+    column_map: ColumnMap | str | Path | None = None,
+    run_in: str | None = None,
+    join: bool = False,
+    complete: bool = False,
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> ReducedLogs:
+    """Read logs of tribometers and reduce each test to its steady friction, as `separatrix.tribometer`."""
+    files = _files([paths] if isinstance(paths, (str, Path)) else paths)
+    chosen = read_column_map(column_map) if isinstance(column_map, (str, Path)) else column_map or ColumnMap()
+    idle = chosen.unused(files)
+    if idle and complete:
+        raise together(idle)
+    cut = None if run_in is None else place(run_in, RUN_IN_END)
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        logs = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
+        tests = _tests_of(list(zip(files, logs, strict=True)), join=join, complete=complete)
+        reduced = _each(pool, lambda test: _reduced(*test, chosen, cut), tests, progress, 500)
+    finally:  # nothing new is begun once the work is interrupted
+        pool.shutdown(wait=True, cancel_futures=True)
+    reductions = with_outliers(reduced)
+    friction_tests: list[FrictionTest] = []
+    wrong: list[InputError] = []
+    for one in reductions:
+        try:
+            friction_tests.append(friction_test(one.test))
+        except InputError as error:
+            wrong.append(error)
+    if wrong and complete:
+        raise _with_others(wrong)
+    return ReducedLogs(
+        reductions=tuple(reductions),
+        friction_tests=None if wrong else tuple(friction_tests),
+        fit=None if wrong else fit_friction(friction_tests),
+        notes=tuple(f"{one} A friction file is not written with it." for one in idle),
+    )
+
+
+def _files(paths: Sequence[str | Path]) -> list[Path]:
+    """The files named, and those in the folders named, in the order of their names and numbers."""
+    found: list[Path] = []
+    for path in map(Path, paths):
+        try:
+            is_folder = path.is_dir()
+        except OSError:
+            is_folder = False  # `read_log` reports why
+        if not is_folder:
+            found.append(path)
+            continue
+        inside = [one for one in path.iterdir() if one.is_file() and not one.name.startswith(".")]
+        logs = [one for one in inside if one.suffix.lower() not in OTHERS]
+        if not logs:
+            raise InputError(printable(str(path), 200), "is a folder without a log", cure="Name another.")
+        found += sorted(logs, key=lambda one: in_order(one.name))
+    if len(found) > MOST_FILES:
+        raise InputError("FILES", f"must be at most {MOST_FILES}", str(len(found)))
+    known: set[Path] = set()
+    for path in found:
+        if path.resolve() in known:
+            raise InputError(printable(str(path), 200), "is named twice", cure="A test counts once.")
+        known.add(path.resolve())
+    return found
+
+
+def _each(
+    pool: ThreadPoolExecutor,
+    work: Callable[[_S], _T],
+    items: Sequence[_S],
+    progress: Progress | None,
+    start: float,
+) -> list[_T]:
+    """What the work returns for each item, in their order, or the refusal of the first that is wrong."""
+    found: list[_T] = []
+    wrong: list[InputError] = []
+    for done, job in enumerate([pool.submit(work, item) for item in items], 1):
+        try:
+            found.append(job.result())
+        except InputError as error:
+            wrong.append(error)
+        if progress is not None:
+            progress(round(start + 500 * done / len(items)), 1000)
+    if wrong:
+        raise _with_others(wrong)
+    return found
+
+
+def _with_others(wrong: Sequence[InputError]) -> InputError:
+    """The first refusal, and how many other files are refused."""
+    first, others = wrong[0], len(wrong) - 1
+    if others:
+        first.cure += f" {others} other file{'s are' if others > 1 else ' is'} refused too."
+    return first
+
+
+def _tests_of(
+    files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool, complete: bool
+) -> list[tuple[Path, RawLog]]:
+    """Logs of tests, each with its first file: parts joined on request, or as their headers state.
+
+    The same content in two files is refused: it would count as a repeated test.
+    """
+    first: dict[str, Path] = {}
+    for path, (log, *_) in files:
+        if log.checksum in first:
+            rule = f"has the same content as {printable(str(first[log.checksum]), 200)}"
+            cure = "A test counts once; leave one of them out."
+            raise InputError(printable(str(path), 200), rule, cure=cure)
+        first[log.checksum] = path
+    home = {log.source: path for path, logs in files for log in logs}
+    if join:
+        folders: dict[Path, list[RawLog]] = {}
+        for path, logs in files:
+            folders.setdefault(path.absolute().parent, []).extend(logs)
+        return [(home[parts[0].source], joined(parts)) for parts in folders.values()]
+    series: dict[tuple[str, int], list[RawLog]] = {}
+    for i, log in enumerate(log for _, logs in files for log in logs):
+        series.setdefault((log.series, 0 if log.series else i), []).append(log)
+    tests = []
+    for parts in series.values():  # those of one series in several files are one test
+        several = len({part.checksum for part in parts}) > 1
+        tests += [
+            (home[one[0].source], joined(one)) for one in ([parts] if several else [[p] for p in parts])
+        ]
+    counts = Counter(log.series for _, log in tests if log.series)
+    found = []
+    for path, log in tests:
+        count = counts[log.series]
+        if count > 1 and complete:
+            rule = f"is one of {count} strokes or parts of one test by the header"
+            raise InputError(log.source, rule, cure="Add --join: a test counts once.")
+        note = f"one of {count} parts of one test by the header: --join counts them as one"
+        found.append((path, replace(log, notes=(*log.notes, note)) if count > 1 else log))
+    return found
+
+
+def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Cut | None) -> Reduction:
+    try:
+        return reduction(log, cut or chosen.conditions(path).get("run_in_end"))
+    except InputError as error:
+        if error.path != RUN_IN_END:
+            raise
+        raise error.at(f"{printable(path.name, 150)}: the end of running-in") from None
+
+
+def friction_test(test: TestFriction) -> FrictionTest:
+    """Test of a reduced log as a friction file keeps it.
+
+    Raises
+    ------
+    InputError
+        The log and its column map do not state what slid on what, or the friction is not above zero.
+    """
+    from separatrix import __version__
+
+    known = test.conditions
+    if missing := [name for name in NAMES if getattr(known, name) is None]:
+        cure = "Give it under [test] of a column map: --map map.toml."
+        raise InputError(test.source, f"does not state: {', '.join(missing)}", cure=cure)
+    own = {f.name for f in fields(FrictionTest)}
+    given = {f.name: getattr(one, f.name) for one in (known, test) for f in fields(one) if f.name in own}
+    given |= {name: (given[name], given[name]) for name in CONDITIONS if given[name] is not None}
+    given["run_in_end"] = Place(test.run_in_axis, test.run_in_end)
+    try:
+        return FrictionTest(reduced_by=f"separatrix {__version__}", **given)
+    except InputError as error:
+        refused = of_log(error, test.source)
+        if test.friction <= 0.0:
+            cure = "Its friction is zero in every row used: check its column, or leave the log out."
+        elif test.friction > FRICTION_LIMIT:
+            cure = (
+                "If a force was read as friction, map it as tangential_force below [columns] of a column map."
+            )
+        else:
+            cure = refused.cure
+        raise refused.at(refused.path, cure=cure) from None

@@ -1,0 +1,36 @@
+"""The command line: `separatrix VERB STUDY [--json] [--out DIR] [--quiet] [--jobs N]`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+__all__ = ["main"]
+
+BLAS_THREADS = "OPENBLAS_NUM_THREADS"
+"""Our threads are those of --jobs; our matrices are small, and more threads in a product would only wait."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows the program's name; by default what the process was given.
+
+    Returns
+    -------
+    int
+        0 answered, 1 a fault of ours, 2 a wrong input (on standard error a line for each mistake),
+        130 interrupted.
+    """
+    os.environ.setdefault(BLAS_THREADS, "1")  # read when numpy is first imported, below
+    try:
+        from separatrix.front.cli import run_command_line
+
+        return run_command_line(arguments)
+    except KeyboardInterrupt:
+        from separatrix.front.console import interrupted
+
+        return interrupted("no file was written.")

@@ -1,0 +1,299 @@
+"""The verbs as Python functions: each takes a study and returns an `Answer`, as the command line gives it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from separatrix.chain.contacts import BearingState
+from separatrix.ground.errors import ValidityWarning, grouped, noted_warnings
+from separatrix.ground.units import MetrePerSecond, Ratio
+from separatrix.study.reading import read_study, require
+from separatrix.study.study import Study
+from separatrix.verbs import computed, verb_named
+from separatrix.verbs.answer_records import (
+    CheckAnswer,
+    MapAnswer,
+    MobilityAnswer,
+    RankingAnswer,
+    RestitutionAnswer,
+    SensitivityAnswer,
+    SimulationAnswer,
+    StabilityAnswer,
+    TractionAnswer,
+)
+from separatrix.verbs.sensitivity import SAMPLES
+from separatrix.verdict.long_jobs import Interrupted, Progress
+from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
+from separatrix.verdict.swept_cases import Sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from separatrix.comparing.records import Comparison
+    from separatrix.ground.plain_data import Document
+    from separatrix.reporting.record import Report
+
+Record = TypeVar("Record")
+
+# A study, the path of its file, or the name of a shipped one.
+Asked = Study | str | Path
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(Generic[Record]):
+    """What a verb answers to a study; the names of its record are its own, too.
+
+    `record` was computed for `study`; `notes` are about where a model leaves its range.
+    """
+
+    verb: str
+    record: Record
+    study: Study
+    notes: tuple[str, ...]
+    question: Mapping[str, object] = field(default_factory=dict)
+
+    def __getattr__(self, name: str) -> Any:
+        """Name of the record."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.record, name)
+
+    def __repr__(self) -> str:
+        """Verb and study; `summary` has the answer."""
+        return f"<{self.verb} of {self.study.name}: summary(), to_dataframe(), to_xarray(), plot()>"
+
+    def document(self) -> Document:
+        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+        from separatrix.verbs.answer_files import document
+
+        return document(self.verb, self.record, self.study, list(self.notes), self.question)
+
+    def summary(self, *, full: bool = False) -> str:
+        """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
+        from separatrix.present.text.answer import in_words
+
+        return in_words(self.verb, self.record, self.study, list(self.notes), full=full)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Labelled arrays with their units, as they are saved in netCDF files."""
+        from separatrix.present.dataset_arrays import dataset
+
+        return dataset(self.document())
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """One row for each ball, point, material or case."""
+        from separatrix.verbs.shapes import to_dataframe
+
+        return to_dataframe(self.record)
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Return the first figure of the answer, or the one whose file has this name."""
+        from separatrix.figures import plot
+
+        return plot(self.verb, self.to_xarray(), name)
+
+
+def _answer(verb: str, study: Asked, question: Mapping[str, object] | None = None, **how: Any) -> Answer[Any]:
+    """Answer of a verb with its notes, which are warnings for the caller, too; `how` is as for `computed`."""
+    with noted_warnings() as notes:
+        asked = study if isinstance(study, Study) else read_study(study)
+        require(asked, verb, *verb_named(verb).needs)
+        found = computed(verb_named(verb), asked, question or {}, **how)
+    answer = Answer(
+        verb=verb, record=found.record, study=asked, notes=tuple(grouped(notes)), question=found.question
+    )
+    if not found.is_complete:
+        raise Interrupted(answer)
+    for note in answer.notes:
+        warnings.warn(note, ValidityWarning, stacklevel=3)
+    return answer
+
+
+def check(study: Asked) -> Answer[CheckAnswer]:
+    """Inputs of a study with their sources, and the bearing at standstill."""
+    return _answer("check", study)
+
+
+def bearing(study: Asked) -> Answer[BearingState]:
+    """Ball equilibrium, and the contacts of the most loaded ball."""
+    return _answer("bearing", study)
+
+
+def traction(study: Asked) -> Answer[TractionAnswer]:
+    """Traction curves of ball on race, and their slopes."""
+    return _answer("traction", study)
+
+
+def restitution(study: Asked) -> Answer[RestitutionAnswer]:
+    """Restitution factor of an impact of ball and cage."""
+    return _answer("restitution", study)
+
+
+def mobility(study: Asked) -> Answer[MobilityAnswer]:
+    """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
+    return _answer("mobility", study)
+
+
+def simulate(
+    study: Asked,
+    *,
+    kick: str | MetrePerSecond | None = None,
+    run: int = 0,
+    restitution_factor: str | Ratio | None = None,
+) -> Answer[SimulationAnswer]:
+    """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
+    question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
+    return _answer("simulate", study, question)
+
+
+def stability(
+    study: Asked,
+    *,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[StabilityAnswer]:
+    """Critical friction against restitution factor.
+
+    Parameters
+    ----------
+    study : Study, str or Path
+        A study, the path of its file, or the name of a shipped one.
+    jobs : int, optional
+        Threads, by default one for each processor; the numbers do not depend on it.
+    folder : str or Path, optional
+        Where finished runs are kept: a later call takes them from there.
+    cluster : str, optional
+        Address of a Dask scheduler, or ``"local:N"`` for N processes here.
+    progress : callable, optional
+        Called with (done, total) points.
+
+    Raises
+    ------
+    InputError
+        The study, or one of these arguments, is wrong.
+    Interrupted
+        With the answer made of what was finished.
+    """
+    return _answer("stability", study, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+
+
+def map(
+    study: Asked,
+    x: str = DEFAULT_X,
+    y: str = DEFAULT_Y,
+    *,
+    points: int = 100,
+    runs: int = 16,
+    kick: str | MetrePerSecond | None = None,
+    adaptive: bool = False,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[MapAnswer]:
+    """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
+    question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
+    return _answer("map", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+
+
+def rank(
+    study: Asked,
+    *,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[RankingAnswer]:
+    """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
+    return _answer("rank", study, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+
+
+def sensitivity(
+    study: Asked,
+    *,
+    samples: int = SAMPLES,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[SensitivityAnswer]:
+    """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
+    question = {"samples": samples}
+    return _answer(
+        "sensitivity", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress
+    )
+
+
+def sweep(
+    study: Asked,
+    vary: str | Sequence[str] = (),
+    *,
+    cases: Path | Sequence[Case] | None = None,
+    verdicts: bool = False,
+    margins: bool = False,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Answer[Sweep]:
+    """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
+    ranges = (vary,) if isinstance(vary, str) else tuple(vary)
+    question = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
+    return _answer("sweep", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+
+
+def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Comparison:
+    """Two answers of one verb: what differs, and whether by more than counting noise.
+
+    Parameters
+    ----------
+    first, second : Answer, str or Path
+        An answer, or the folder or file of a saved one.
+
+    Raises
+    ------
+    InputError
+        One of them is not an answer, or they are of different verbs.
+    """
+    from separatrix.comparing.pair import compared, pair_of
+    from separatrix.comparing.saved import Saved, read_answers
+
+    def saved(one: Answer[Any] | str | Path) -> dict[str, Saved]:
+        if not isinstance(one, Answer):
+            return read_answers(Path(one))
+        return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document())}
+
+    return compared(*pair_of(saved(first), saved(second)))
+
+
+def report(
+    study: Asked,
+    *,
+    jobs: int | None = None,
+    folder: str | Path | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+) -> Report:
+    """Everything on a study as one document; parameters are those of `stability`.
+
+    Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
+    """
+    from separatrix.reporting.content import answers_of, report_of
+    from separatrix.reporting.record import Kept
+
+    asked = study if isinstance(study, Study) else read_study(study)
+
+    def compute(verb: str) -> Kept:
+        answer = _answer(verb, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        return Kept(answer.document())
+
+    kept, missing, _ = answers_of(asked, None, compute)
+    return report_of(kept, missing)

@@ -1,0 +1,230 @@
+"""The process that computes for the page: one question after another, so that its kernels stay loaded."""
+
+from __future__ import annotations
+
+import _thread
+import signal
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from importlib.util import find_spec
+from multiprocessing.connection import Connection
+from pathlib import Path
+from queue import SimpleQueue
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from separatrix.ground.errors import InputError, SeparatrixError
+from separatrix.ground.units import shown
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs import Computed, Verb
+
+REPORT = "report"
+"""In the place of a verb: the report of a study."""
+
+END = "end"
+"""What the page sends when it is closed."""
+
+AGAIN = 0.05
+"""Time after which a cancel that came in the middle of an import is tried again [s]."""
+
+INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
+
+EVERY = 0.2
+"""Least time between two reports of progress [s]."""
+
+
+Send = Callable[..., None]
+"""Sends the page what has changed of a job, by the names of `separatrix.front.page.jobs.Job`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A question: verb, study file, folder of the answer, options of the verb with the models of motion."""
+
+    number: int
+    verb: str
+    study: Path
+    folder: Path
+    root: Path
+    question: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Cancel:
+    """A cancel of one job, which has begun or not, and of no other."""
+
+    number: int
+
+
+class Reporter:
+    """Reports how far a long job is."""
+
+    def __init__(self, send: Send) -> None:
+        self.send, self._last = send, 0.0
+
+    def __call__(self, done: int, total: int) -> None:
+        """Report the points done, now and then and at the end."""
+        now = time.monotonic()
+        if done == total or now - self._last > EVERY:
+            self._last = now
+            self.send(done=done, total=total)
+
+
+def work(pipe: Connection) -> None:
+    """Compute tasks from a pipe until it ends; the body of the process.
+
+    A cancel interrupts its own task as Ctrl-C would, also before it began: what was finished is kept and
+    answered. It waits for the end of an import, since a module that was cut off may never load again. A
+    fault of ours ends the process with its place in the terminal, and the page begins another one.
+    """
+    waiting: SimpleQueue[Task | None] = SimpleQueue()
+    in_hand: list[int] = []
+    cancelled: set[int] = set()
+    is_ended = threading.Event()
+
+    def break_in(number: int) -> None:
+        if number in in_hand:
+            _thread.interrupt_main()
+
+    def interrupt(_: int, frame: FrameType | None) -> None:
+        if is_importing(frame):
+            for number in in_hand:
+                threading.Timer(AGAIN, break_in, (number,)).start()
+        else:
+            refuse_cancelled()
+
+    def refuse_cancelled() -> None:
+        for number in in_hand:
+            if is_ended.is_set() or number in cancelled:
+                cancelled.discard(number)
+                raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
+
+    def listen() -> None:
+        while True:
+            try:
+                message = pipe.recv()
+            except (EOFError, OSError):  # the page is gone
+                message = END
+            if isinstance(message, Task):
+                waiting.put(message)
+                continue
+            if isinstance(message, Cancel):
+                cancelled.add(message.number)
+                break_in(message.number)
+                continue
+            is_ended.set()
+            for number in in_hand:
+                break_in(number)
+            waiting.put(None)
+            return
+
+    threading.Thread(target=listen, daemon=True).start()
+
+    def send(number: int, **changes: object) -> None:
+        try:
+            pipe.send((number, changes))
+        except OSError:  # the page is gone; the task ends by itself
+            in_hand.clear()
+
+    while True:
+        task = waiting.get()
+        if task is None:
+            return
+        _compute(task, in_hand, refuse_cancelled, partial(send, task.number))
+
+
+def is_importing(frame: FrameType | None) -> bool:
+    """Whether a module is being imported at a place in the program, or in what called it."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None], send: Send) -> None:
+    try:
+        in_hand.append(task.number)
+        refuse_cancelled()  # one that was cancelled before it began
+        send(state="running")
+        state, message = _answered(task, send)
+    except KeyboardInterrupt:
+        state, message = "cancelled", "Cancelled before anything was finished."
+    except SeparatrixError as error:
+        problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
+        state, message = "refused", "\n".join(str(one) for one in problems)
+    finally:
+        in_hand.clear()  # nothing interrupts the end
+    send(state=state, message=message)
+
+
+def _answered(task: Task, send: Send) -> tuple[str, str]:
+    """Compute and write one answer, or a report; return how it ended, and a message."""
+    from separatrix.ground.errors import grouped, noted_warnings
+    from separatrix.ground.files import reading_only_in
+    from separatrix.study.reading import read_study
+    from separatrix.verbs import asked_study, computed, verb_named
+    from separatrix.verbs.answer_files import document, save_answer
+
+    question = dict(task.question)
+    models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
+    with noted_warnings() as notes, reading_only_in(task.root):
+        verb = None if task.verb == REPORT else verb_named(task.verb)
+        study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
+        _refuse_links_out(task)
+        task.folder.mkdir(parents=True, exist_ok=True)
+
+        def compute(one: Verb) -> Computed:
+            progress = Reporter(send)
+            return computed(one, study, question, folder=task.folder, progress=progress)
+
+        if verb is None:
+            return _reported(task, study, notes, compute, send)
+        found = compute(verb)
+        send(message="Drawing the figures and writing the files.")
+        answer = document(verb.name, found.record, found.study, grouped(notes), found.question)
+        save_answer(task.folder, found.record, found.study, answer)
+        if not found.is_complete:
+            return INTERRUPTED
+        taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
+        return "finished", taken
+
+
+def _refuse_links_out(task: Task) -> None:
+    """Refuse to write where a link leads out of the folder of the page."""
+    from separatrix.ground.files import is_inside
+
+    for path in (task.folder, *(task.folder.iterdir() if task.folder.is_dir() else ())):
+        if not is_inside(path, task.root):
+            rule = "leads out of the folder of the studies"
+            raise InputError(shown(path.name), rule, cure="Remove this link.")
+
+
+def _reported(
+    task: Task,
+    study: Study,
+    notes: list[str],
+    compute: Callable[[Verb], Computed],
+    send: Send,
+) -> tuple[str, str]:
+    """Write the report of a study; answers that it lacks are computed first, as the command does."""
+    from separatrix.reporting.content import answers_of, keeping, report_of
+    from separatrix.reporting.formats import write
+
+    def announced(verb: Verb) -> Computed:
+        send(message=f"Computing {verb.name} for the report.")
+        return compute(verb)
+
+    found, missing, is_complete = answers_of(study, task.folder, keeping(announced, notes, task.folder))
+    if not is_complete:
+        return INTERRUPTED
+    send(message="Writing the report.")
+    write(report_of(found, missing), task.folder, with_pdf=find_spec("typst") is not None)
+    return "finished", ""

@@ -1,0 +1,133 @@
+"""What each verb answers: records of the chain and of ensembles, with what belongs beside them.
+
+The answer of `bearing` is a `BearingState`, that of `sweep` a `Sweep`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
+from separatrix.chain.ball_mobility import LinearMobility, Mobility
+from separatrix.chain.clearances import Clearances
+from separatrix.chain.contacts import BearingState
+from separatrix.chain.lubrication import LubricationCurve
+from separatrix.chain.shear import ShearField
+from separatrix.chain.solution import Solution
+from separatrix.chain.traction_curve import TractionCurve
+from separatrix.ground.units import Metre, MetrePerSecond, Newton, Ratio
+from separatrix.verdict.map_records import StabilityMap
+from separatrix.verdict.ranking_records import Ranking
+from separatrix.verdict.stability_curve import StabilityCurve
+from separatrix.verdict.uncertain_records import UncertainStudy
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckAnswer:
+    """The bearing at standstill, and the running clearances of the cage; None with the reason if refused.
+
+    The clearances are also None, without a reason, for a study that states the running ones.
+    """
+
+    static: BearingState | None  # contacts of the most loaded ball at standstill; null if refused
+    static_reason: str = ""  # why there are no contacts at standstill; empty if there are
+    clearances: Clearances | None = None  # running clearances; null if refused, or if the study states them
+    clearances_reason: str = ""  # why the running clearances were refused; empty if they were not
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TractionAnswer:
+    """Traction curves by the study's model, by strips at other pivoting-to-rolling ratios, and the shear."""
+
+    race_friction: Ratio
+    bearing: BearingState  # equilibrium and contacts
+    inner: TractionCurve  # curve of the inner race by the study's model
+    outer: TractionCurve  # curve of the outer race by the study's model
+    inner_others: tuple[TractionCurve, ...]  # inner race at other pivoting-to-rolling ratios
+    outer_others: tuple[TractionCurve, ...]  # outer race at other pivoting-to-rolling ratios
+    inner_shear: ShearField  # shear of strips in free rolling, inner race
+    outer_shear: ShearField  # shear of strips in free rolling, outer race
+    outside: tuple[str, ...]  # where the strips leave their range, a sentence each
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestitutionAnswer:
+    """Restitution factor, and what it would be with other films; None without a film material."""
+
+    solution: Solution  # the chain
+    film_thickness: Metre  # film thickness of the study
+    lubrication: LubricationCurve | None  # restitution factor against the thickness of other films
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MobilityAnswer:
+    """Mobility of the most loaded ball, and its small motion between rigid bodies."""
+
+    mobility: Mobility  # by the slip fields of the study's contacts
+    rigid: LinearMobility  # small motion of the same ball between rigid bodies
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OfCage:
+    """The chain, and the cage that an answer is for."""
+
+    solution: Solution  # the chain
+    cage: MovingCage  # the cage with its pockets, land and balls, as the runs use it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StabilityAnswer(OfCage):
+    """Stability curve of the cage."""
+
+    curve: StabilityCurve  # critical friction against the restitution factor
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapAnswer(OfCage):
+    """The map, and the cage of the study itself."""
+
+    map: StabilityMap  # the two axes, the points and the boundary between them
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationAnswer(OfCage):
+    """One run of the ensemble, from one kick.
+
+    `force_limit` is the force of a pocket beyond which its ball has no meaning: None without one.
+    """
+
+    history: History  # the motion, sampled
+    analysis: CourseAnalysis  # means, extremes, whirl and spectra
+    kick: MetrePerSecond
+    run: int  # number of the run in the ensemble, from 0
+    force_limit: Newton | None  # its friction is all that the races hold of a ball; null without such a limit
+
+    @property
+    def whirls(self) -> bool:
+        """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
+        lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
+        return lasts or self.history.cause is Cause.LAND_FRICTION
+
+    @property
+    def force_exceeds_races(self) -> bool:
+        """Whether a pocket force is beyond that limit."""
+        return self.force_limit is not None and self.history.largest_contact_force > self.force_limit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RankingAnswer(OfCage):
+    """The ranking, and the cage of its reference candidate."""
+
+    ranking: Ranking  # the candidates in each environment
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensitivityAnswer(OfCage):
+    """The uncertain study, and the cage of its reference candidate.
+
+    `film_thickness` (None if the races are bare) and `race_friction` are those of the study.
+    """
+
+    uncertain: UncertainStudy  # verdicts over the uncertain inputs, and what decides them
+    film_thickness: Metre | None  # of the study; null if the races are bare
+    race_friction: Ratio  # of the study

@@ -1,0 +1,182 @@
+"""Sentences beside the verdicts: what decides them, and where the motion leaves the range of its model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
+from typing import NamedTuple
+
+from separatrix.cage.disturbance import with_kicks
+from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
+from separatrix.chain.pocket_friction import contact_radius, pocket_speed
+from separatrix.chain.solution import Solution
+from separatrix.ground.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
+from separatrix.study.study import BallBearing, BallModel, Guidance, Material, MotionModel, PocketShape, Study
+from separatrix.verdict.judgement import Judgement, KickCount, Verdict
+from separatrix.verdict.stability_curve import RestitutionThreshold
+from separatrix.verdict.which_ball import transmitted_force
+
+STRONG: Ratio = 1.0
+"""Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage.md)."""
+
+BEYOND_LAND: Ratio = 1.2
+"""Offset over the land clearance beyond which the land's spring is the question, not the cage."""
+
+
+YIELDS: Ratio = 1.6
+"""Largest pressure of a ball on a flat over the strength in simple compression, at which the flat begins to
+yield (Johnson, Contact Mechanics, 1985, section 6.1)."""
+
+
+class Moved(NamedTuple):
+    """Whose cage moved, the largest pocket force and offset in any run, and where the runs ended."""
+
+    name: str
+    largest_contact_force: Newton
+    largest_offset: Metre
+    by_kick: tuple[KickCount, ...] = ()
+
+
+def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
+    """Sentences on the rows of the bearing's own environment: pocket forces, and what happens on the land."""
+    if not rows:
+        return
+    most, limit = max(row.largest_contact_force for row in rows), transmitted_force(solution)
+    design = solution.design
+    if most > limit and design.ball is BallModel.DAMPER:
+        yield (
+            f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
+            f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
+            "the ball slides, and the linear race damping is outside its range. It then returns too much "
+            "speed to the cage: `--ball auto` gives the answer with the ball's inertia and traction."
+        )
+    if design.motion is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
+        yield from _tilts(solution)
+    yield from _beyond_strength(solution.study, rows)
+    gap = (design.land_clearance or math.inf) / 2.0 if design.guidance is not Guidance.BALL else math.inf
+    far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
+    if far:
+        worst = max(row.largest_offset for row in far)
+        names = "All" if len(far) == len(rows) > 1 else ", ".join(row.name for row in far)
+        yield (
+            f"{names}: the cage centre reaches {format_quantity(worst, 'm', 3)}, beyond the land at "
+            f"{format_quantity(gap, 'm', 3)} by more than {100 * (BEYOND_LAND - 1):.0f} %. The land's "
+            "stiffness decides such numbers, a real cage may break first: they are bounds."
+        )
+    kept = {row.name: text for row in rows if (text := _kept_by_land(row))}
+    if kept:
+        yield (
+            f"Friction on the land, {design.land_friction:g}, keeps the cage whirling in some runs: "
+            f"{'; '.join(kept.values())}. They count as settled, for friction in the pockets slows that "
+            "motion; a real cage can be thrown into it too. Measure the land's friction, or lower it."
+        )
+
+
+def _tilts(solution: Solution) -> Iterator[str]:
+    """A sentence where a cage with round pockets is kicked so hard that it tilts."""
+    speed = abs(solution.bearing.cage_speed) * solution.design.pocket_clearance / 2.0
+    at = pocket_speed(solution.bearing.cage_speed, solution.design.pocket_clearance)
+    kick = max(with_kicks(solution.study.stability, at).kicks)
+    if kick > STRONG * speed:
+        yield (
+            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, exceeds {speed:.3g} m/s, the "
+            "speed of a cage half a pocket clearance off the axis. So disturbed a cage tilts, and may "
+            "whirl in space at up to half less friction: `--motion space`."
+        )
+
+
+def pocket_pressure(bearing: BallBearing, wall: Material, force: Newton) -> Pascal:
+    """Largest pressure of a ball that is pressed on a flat pocket wall (Hertz); a bore shares it out [Pa]."""
+    K = hertz_coefficient(bearing.ball_diameter, bearing.ball_material, wall)
+    return 1.5 * force / (math.pi * contact_radius(force, K, bearing.ball_diameter) ** 2)
+
+
+def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
+    """A sentence on the pockets that yield, of candidates, or a cage beside them, whose strength is known."""
+    walls = {one.name: one.material for one in (study.ranking.candidates if study.ranking else ())}
+    own = study.cage.material if study.cage else None
+    weak = []
+    for row in rows:
+        wall, force = walls.get(row.name, own), row.largest_contact_force
+        if wall is None or wall.compressive_strength is None or force == 0.0:
+            continue
+        pressure, limit = pocket_pressure(study.bearing, wall, force), YIELDS * wall.compressive_strength
+        if pressure > limit:
+            both = (format_quantity(each, "Pa", 2) for each in (pressure, limit))
+            weak.append(f"{row.name} {' against '.join(both)}")
+    if weak:
+        yield (
+            f"The largest pocket force presses a ball into a flat pocket wall beyond {YIELDS:g} times its "
+            f"compressive strength, where it begins to yield: {', '.join(weak)}. The pocket dents and wears; "
+            "its elastic stiffness is outside its range."
+        )
+
+
+def _kept_by_land(row: Moved) -> str:
+    """In how many runs from which kick, for one candidate; empty if in none."""
+    counts = [count for count in row.by_kick if count.kept_by_land]
+    runs = (f"{count.kept_by_land} of {count.runs} from {count.kick:.3g} m/s" for count in counts)
+    return f"{row.name} {', '.join(runs)}" if counts else ""
+
+
+PAPER_STATEMENT = (
+    f"The paper (section 5): a restitution factor below {SOLID_LUBRICATION_LIMIT:g} "
+    "is too low to be reached using solid lubrication."
+)
+NOT_FINISHED = "interrupted before this was computed"
+
+
+def not_measured(environment: str) -> str:
+    """Return the reason of a missing measurement."""
+    return f"not measured in {environment}" if environment else "not measured in any environment"
+
+
+def not_finite(judgement: Judgement) -> str:
+    """Return the reason of a verdict that is not given, as a number of its evidence is not finite; or ""."""
+    values = ((f.name, getattr(judgement, f.name)) for f in fields(judgement))
+    bad = [
+        f"{name} is {value}"
+        for name, value in values
+        if isinstance(value, float) and not math.isfinite(value)
+    ]
+    if not bad:
+        return ""
+    return f"no verdict: {bad[0].replace('_', ' ')}. The inputs are far from those of a bearing"
+
+
+def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
+    """Return what decides a verdict in words; friction, threshold and margin are beside it as numbers."""
+    stable = judgement.verdict is Verdict.STABLE
+    always = "Stable at any" if stable else "Pocket friction starts no whirl at any"
+    ends = {0.0: "Stable at no restitution factor above 0.", 1.0: f"{always} restitution factor."}
+    other = disagreement(threshold.value, judgement.verdict)
+    return " ".join(part for part in (ends.get(threshold.value), judgement.reason, other) if part)
+
+
+def disagreement(threshold: Ratio, verdict: Verdict) -> str:
+    """Return how the paper's statement differs from the verdict; empty if it does not.
+
+    The paper rejects a material that needs a restitution factor below 0.6, whatever its film gives.
+    """
+    rejected = threshold < SOLID_LUBRICATION_LIMIT
+    if rejected and verdict is Verdict.STABLE:
+        return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be rejected."
+    if not rejected and verdict is Verdict.UNSTABLE:
+        return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be kept."
+    return ""
+
+
+class Pocket(NamedTuple):
+    """What the cages of candidates differ in besides friction; 0 without a land."""
+
+    mass: Kilogram
+    stiffness: NewtonPerMetre
+    clearance: Metre
+    land: Metre
+
+
+def pocket_of(solution: Solution) -> Pocket:
+    """Mass, stiffness and running clearances of the cage."""
+    design, land = solution.design, solution.design.land_clearance or 0.0
+    return Pocket(solution.inertia.mass, solution.ball_cage_stiffness, design.pocket_clearance, land)

@@ -1,0 +1,270 @@
+r"""What decides whether a bearing settles, which input to measure next, what the chain depends on.
+
+The runs of a case are described by a regression
+
+.. math:: \operatorname{logit} P(\text{settles}) = b_0 + \sum_i b_i z_i
+
+with the draws :math:`z_i` as standard normal numbers. The inputs are independent, so :math:`b_i^2` is what
+input i adds to the variance of the logit, beside the :math:`\pi^2/3` of a logistic variable that is the
+chance of the single run: its disturbance and the leads of its balls. The regression is tested on bearings
+that it was not fitted to.
+
+A measurement reduces the lack of knowledge of an input, a share of its variance: all of a thickness, but of
+the friction of a new cage only the error of its mean. Its result is not known beforehand, so P(settles) of
+each case is predicted by the regression for equally likely results.
+
+Restitution factor and race damping are smooth in the inputs: Sobol indices, with matrices A and B of n draws
+each, and A with column i of B (Saltelli et al. 2010, Computer Physics Communications 181, 259-270, table 2,
+rows b and f; the second is Jansen's, 1999):
+
+.. math:: S_i \approx \frac{\overline{f(B)\,(f(A_B^{(i)}) - f(A))}}{\operatorname{Var} f}, \qquad
+          T_i \approx \frac{\overline{(f(A) - f(A_B^{(i)}))^2}}{2 \operatorname{Var} f}
+
+The draws are independent scramblings of Sobol' points; what changes when one of them is left out is the
+scatter of an index.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from scipy.special import expit, ndtri, stdtrit, xlogy
+
+from separatrix.ground.units import Array, Ratio
+from separatrix.study.study import Friction, Study
+from separatrix.verdict.draws import Case, UncertainInput, sobol_points
+from separatrix.verdict.uncertain_records import Drivers, Share, TestGain
+
+PRIOR = 3.0  # standard deviation of the coefficients beforehand: a separation by one input alone stays finite
+FOLDS = 8  # parts of the bearings, each left out of one fit
+FEWEST = 30  # bearings of the rarer outcome below which the inputs are not compared
+LEAST_SKILL: Ratio = 0.02  # part of the deviance below which the inputs explain nothing that counts
+BINS = 5
+CHANCE = "chance of the single run"
+CHANCE_VARIANCE = math.pi**2 / 3.0
+
+
+def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> Drivers:
+    """Shares of the inputs in the variance of a case's logit, with calibration on bearings left out.
+
+    `names` are the inputs, `scores` their draws as standard normal numbers, shape (bearing, input); `settled`
+    is 1 where the bearing settles, shape (bearing,).
+    """
+    rare = int(min(settled.sum(), settled.size - settled.sum()))
+    if rare < FEWEST or not names:
+        none = np.zeros(0)
+        return Drivers(
+            name=case.candidate,
+            environment=case.environment,
+            shares=(),
+            reason=f"{rare} of {settled.size} bearings end otherwise: too few to compare",
+            predicted=none,
+            counted=none,
+            bearings=none,
+            skill=None,
+        )
+    unseen = _left_out(scores, settled)
+    skill = 1.0 - _deviance(unseen, settled) / _deviance(np.full(settled.size, settled.mean()), settled)
+    predicted, counted, bearings = _bins(unseen, settled)
+    shares = _shares(names, scores, settled) if skill >= LEAST_SKILL else ()
+    return Drivers(
+        name=case.candidate,
+        environment=case.environment,
+        shares=shares,
+        reason="" if shares else f"the inputs explain {max(0.0, 100.0 * skill):.1f} % of the deviance only",
+        predicted=predicted,
+        counted=counted,
+        bearings=bearings,
+        skill=float(skill),
+    )
+
+
+def fitted(scores: Array, settled: Array) -> Array:
+    """Coefficients of the regression, the constant first, shape (1 + input,): Newton's steps."""
+    design = np.column_stack((np.ones(len(scores)), scores))
+    penalty = np.full(design.shape[1], PRIOR**-2)
+    penalty[0] = 0.0
+    share = np.clip(settled.mean(), 0.5 / settled.size, 1.0 - 0.5 / settled.size)
+    b = np.zeros(design.shape[1])
+    b[0] = math.log(share / (1.0 - share))
+    for _ in range(MOST_STEPS):
+        p = expit(design @ b)
+        gradient = design.T @ (settled - p) - penalty * b
+        curvature = (design.T * (p * (1.0 - p))) @ design + np.diag(penalty)
+        step = np.linalg.solve(curvature, gradient)
+        b += step * min(1.0, LONGEST_STEP / max(np.abs(step).max(), 1e-300))
+        if np.abs(step).max() < 1e-10:
+            break
+    return b
+
+
+MOST_STEPS, LONGEST_STEP = 100, 2.0
+
+
+def _left_out(scores: Array, settled: Array) -> Array:
+    """Prediction for each bearing by a fit to the others, shape (bearing,)."""
+    fold = np.arange(settled.size) % FOLDS
+    found = np.empty(settled.size)
+    for k in range(FOLDS):
+        b = fitted(scores[fold != k], settled[fold != k])
+        found[fold == k] = expit(b[0] + scores[fold == k] @ b[1:])
+    return found
+
+
+def _deviance(predicted: Array, settled: Array) -> float:
+    return float(-2.0 * np.sum(xlogy(settled, predicted) + xlogy(1.0 - settled, 1.0 - predicted)))
+
+
+def _bins(predicted: Array, settled: Array) -> tuple[Array, Array, Array]:
+    """Mean prediction, counted share and number of bearings of each bin, as many bearings in each."""
+    parts = np.array_split(np.argsort(predicted, kind="stable"), BINS)
+    rows = [(predicted[one].mean(), settled[one].mean(), float(one.size)) for one in parts]
+    first, second, third = np.array(rows).T
+    return first, second, third
+
+
+def _shares(names: Sequence[str], scores: Array, settled: Array) -> tuple[Share, ...]:
+    """Share of each input, largest first, and of chance; intervals by the jackknife over the folds."""
+    fold = np.arange(settled.size) % FOLDS
+    whole = _parts(fitted(scores, settled))
+    others = np.array([_parts(fitted(scores[fold != k], settled[fold != k])) for k in range(FOLDS)])
+    scatter = np.sqrt((FOLDS - 1.0) / FOLDS * np.sum((others - others.mean(axis=0)) ** 2, axis=0))
+    half = float(stdtrit(FOLDS - 1, 0.975)) * scatter
+    rows = [
+        Share(name=name, share=float(x), share_low=max(0.0, float(x - h)), share_high=min(1.0, float(x + h)))
+        for name, x, h in zip((*names, CHANCE), whole, half, strict=True)
+    ]
+    return (*sorted(rows[:-1], key=lambda one: -one.share), rows[-1])
+
+
+def _parts(b: Array) -> Array:
+    """Shares of the inputs and of chance in the variance of the logit."""
+    parts = np.append(b[1:] ** 2, CHANCE_VARIANCE)
+    return np.asarray(parts / parts.sum())
+
+
+RESULTS = 64  # equally likely results of a measurement
+NODES = 17  # equally likely values of what a measurement leaves open
+SETTLED: Ratio = 0.95  # a case is settled where P(settles) is at least this, or at most one less it
+LEAST_CHANCE: Ratio = 0.01  # probability of settling a case below which the case is not listed
+LEAST_UNKNOWN: Ratio = 0.5
+"""Share of a stated friction's variance that tests could take away at least: as after one test."""
+
+
+def next_tests(
+    inputs: Sequence[UncertainInput], known: Mapping[str, Ratio], cases: Mapping[str, tuple[Array, Array]]
+) -> tuple[TestGain, ...]:
+    """What measuring each input would settle, the best first; those that would settle nothing are left out.
+
+    The inputs are in the order of the scores. `known` has the share of each friction's variance that tests
+    could take away, by its key; of other inputs it is all. `cases` have, by the words of an undecided case,
+    the coefficients of its regression, shape (1 + input,), and the scores of its bearings, shape (bearing,
+    input).
+    """
+    found = []
+    for i, one in enumerate(inputs):
+        chances = {
+            case: _chance(b, scores, i, known.get(one.key, 1.0)) for case, (b, scores) in cases.items()
+        }
+        likely = {case: chance for case, chance in chances.items() if chance >= LEAST_CHANCE}
+        if likely:
+            order = sorted(likely, key=lambda case: -likely[case])
+            found.append(
+                TestGain(
+                    name=one.key,
+                    settled=float(sum(chances.values())),
+                    cases=tuple(order),
+                    chances=tuple(likely[case] for case in order),
+                )
+            )
+    return tuple(sorted(found, key=lambda test: -test.settled))
+
+
+def _chance(b: Array, scores: Array, i: int, known: Ratio) -> Ratio:
+    """Probability that the result of measuring input i settles a case."""
+    if b[1 + i] == 0.0 or known <= 0.0:
+        return 0.0
+    rest = b[0] + scores @ b[1:] - scores[:, i] * b[1 + i]
+    results = ndtri((np.arange(RESULTS) + 0.5) / RESULTS) * np.sqrt(known)
+    left = ndtri((np.arange(NODES) + 0.5) / NODES) * np.sqrt(1.0 - known)
+    settles = np.array([expit(rest[:, None] + b[1 + i] * (y + left)).mean() for y in results])
+    return float(np.mean((settles >= SETTLED) | (settles <= 1.0 - SETTLED)))
+
+
+def reducible_shares(study: Study, inputs: Sequence[UncertainInput]) -> dict[str, Ratio]:
+    """For each friction, the share of its variance that more tests of the material could take away.
+
+    The friction of a new cage scatters as single tests do, and their mean has an error of its own:
+    that part is lack of knowledge, 1/(n + 1) after n tests, and so is what the scatter was widened by for
+    conditions that were not tested. Where the tests are unknown it is what lies beyond the default scatter
+    of single tests, and a half at least, as after one test.
+    """
+    places, ranking = {one.key: one for one in inputs}, study.ranking
+    if ranking is None:
+        return {}
+    return {
+        key: _reducible(friction, places[key], ranking.friction_scatter)
+        for one in ranking.candidates
+        for environment, friction in one.friction.items()
+        if friction is not None and (key := f"ranking.{one.name}.{environment}") in places
+    }
+
+
+def _reducible(friction: Friction, known: UncertainInput, scatter: Ratio) -> Ratio:
+    deviation, error = friction.standard_deviation, friction.standard_error
+    if known.source == "study" or deviation is None:
+        single = scatter * known.distribution.mean
+        return max(LEAST_UNKNOWN, 1.0 - (single / known.distribution.standard_deviation) ** 2)
+    if error is None:
+        return 1.0 / (friction.count + 1) if friction.count else 0.0
+    return (error**2 + friction.widening**2) / (error**2 + deviation**2)
+
+
+BLOCKS, EACH = 8, 32  # independent scramblings, and draws in each
+
+Model = Callable[[Array], Array]  # from points in the unit cube, (draw, input), to (draw, quantity)
+
+
+def sobol_shares(
+    model: Model, names: Sequence[str], *, seed: int
+) -> list[tuple[tuple[Share, ...], tuple[Share, ...]]]:
+    """First-order and total indices of each quantity of a model, by its inputs, largest total first."""
+    count = len(names)
+    points = np.concatenate([sobol_points(EACH, 2 * count, seed, block) for block in range(BLOCKS)])
+    a, b = points[:, :count], points[:, count:]
+    mixed = [np.where(np.arange(count) == i, b, a) for i in range(count)]
+    answers = np.array([model(rows) for rows in (a, b, *mixed)])  # shape (matrix, draw, quantity)
+    return [_indices(names, answers[:, :, q]) for q in range(answers.shape[2])]
+
+
+def _indices(names: Sequence[str], values: Array) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
+    """Indices of one quantity from its values, shape (matrix, draw)."""
+    block = np.arange(values.shape[1]) // EACH
+    whole = _estimates(values)
+    others = np.array([_estimates(values[:, block != k]) for k in range(BLOCKS)])
+    scatter = np.sqrt((BLOCKS - 1.0) / BLOCKS * np.sum((others - others.mean(axis=0)) ** 2, axis=0))
+    half = float(stdtrit(BLOCKS - 1, 0.975)) * scatter
+    order = np.argsort(-whole[1], kind="stable")
+
+    def shares(kind: int) -> tuple[Share, ...]:
+        values = [(names[i], float(np.clip(whole[kind, i], 0.0, 1.0)), float(half[kind, i])) for i in order]
+        return tuple(
+            Share(name=name, share=x, share_low=max(0.0, x - h), share_high=min(1.0, x + h))
+            for name, x, h in values
+        )
+
+    return shares(0), shares(1)
+
+
+def _estimates(values: Array) -> Array:
+    """First-order and total indices, shape (2, input); 0 where nothing varies."""
+    centred = values - values[:2].mean()
+    a, b, mixed = centred[0], centred[1], centred[2:]
+    variance = float(np.mean(centred[:2] ** 2))
+    if variance == 0.0:
+        return np.zeros((2, len(mixed)))
+    first = np.mean(b * (mixed - a), axis=1)
+    total = 0.5 * np.mean((mixed - a) ** 2, axis=1)
+    return np.array([first, total]) / variance

@@ -1,0 +1,285 @@
+"""Records of a ranking: mean frictions, rows, and ranks with ties."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, log, sqrt
+from typing import Annotated
+
+import numpy as np
+
+from separatrix.chain.pocket_friction import PocketConditions, standard_error
+from separatrix.ground.units import (
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    Newton,
+    NewtonPerMetre,
+    Ratio,
+    Rows,
+    Second,
+)
+from separatrix.study.study import BallModel, Friction, MotionModel
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.stability_curve import StabilityCurve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NotMeasured:
+    """A candidate without a measured friction in this environment."""
+
+    name: str  # of the candidate
+    reason: str  # which test is missing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredCandidate:
+    """A candidate with a friction, in one environment or over all of them."""
+
+    name: str  # of the candidate
+    friction: Ratio  # mean, as the cage sees it
+    friction_error: Ratio | None  # standard error of the mean
+    friction_deviation: Ratio | None
+    """Of a new sample about the mean, larger where extrapolated; null overall."""
+    probability_lowest_friction: Ratio | None = None
+    """That no other candidate's mean friction is lower; null without another."""
+    friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
+    extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
+    cage_mass: Kilogram  # of a shape that of its material
+    ball_cage_stiffness: NewtonPerMetre  # of its own pocket
+    pocket_clearance: Metre  # running, along the circumference
+    land_clearance: Metre | None  # running, diametral; null without a land
+    restitution_factor: Ratio  # of the chain with its pocket
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NotFinished(MeasuredCandidate):
+    """A candidate that has no rank, because of an interrupt or a number that is not finite."""
+
+    judgement: Judgement | None = None  # null if it has no verdict either
+    over_inputs: Judgement | None = None  # with uncertain inputs drawn; null without
+    reason: str  # what is missing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ranked(MeasuredCandidate):
+    """A candidate with its threshold and rank."""
+
+    restitution_threshold: Ratio  # largest restitution factor at which it is stable
+    restitution_threshold_low: Ratio  # lower end of its 95 % interval
+    restitution_threshold_high: Ratio  # upper end of its 95 % interval
+    margin: Ratio  # threshold less the restitution factor
+    rank: int = 0  # by margin; those within the scatter of the best one share its rank
+    within_reach: bool  # whether the threshold reaches what the paper grants solid lubrication
+    judgement: Judgement  # verdict and evidence at the central values of the study
+    over_inputs: Judgement | None = None
+    """Each run with its own bearing drawn from the uncertain inputs; null without them."""
+    reason: str  # a sentence with the numbers
+
+
+Row = Ranked | NotFinished | NotMeasured
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnCurve:
+    """Critical friction with a candidate's own pocket, at each of `Ranking.own_eta` [-].
+
+    0 where half the runs whirl without friction, the top of the searched frictions where none is enough.
+    """
+
+    name: str  # of the candidate
+    own_critical_friction: Annotated[tuple[Ratio, ...], ("own_eta",)]
+    """0: whirls without friction; the top of the search: none is enough."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RankedEnvironment:
+    """The candidates in one environment, best first; then those not finished, and those not measured."""
+
+    name: str  # medium and counterface
+    materials: Annotated[tuple[Row, ...], Rows("material", "material_", label="name")]
+    """A row for each candidate."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ranking:
+    """Answer of a ranking, with the chain and the stability curve of `candidate`.
+
+    That is the cage's material, or the first candidate where the study does not name it.
+    """
+
+    environment: str  # the bearing's own, of the headline
+    candidate: str  # whose pocket the chain and the curve are for
+    restitution_factor: Ratio
+    restitution_factor_free_spin: Ratio  # of the chain, the ball free to spin in the impact
+    ball_cage_stiffness: NewtonPerMetre  # of the pocket of `candidate`
+    pocket: PocketConditions  # sliding speed and pressure at which friction is taken
+    friction_scatter: Ratio  # assumed for an unrepeated test, as a share of the mean
+    solid_lubrication_limit: Ratio  # largest restitution factor with solid lubrication, by the paper
+    paper_statement: str  # what the paper grants solid lubrication, in words
+    environments: Annotated[tuple[RankedEnvironment, ...], Rows("environment", label="name")]
+    """The candidates in each."""
+    overall: Annotated[tuple[Row, ...], Rows("material", "overall_", label="name")]
+    """The candidates with their mean friction over the environments."""
+    stability: Annotated[StabilityCurve | None, Rows()]
+    """Critical friction against restitution factor; null if left out."""
+    own_eta: tuple[Ratio, ...] | None  # restitution factors of the own curves
+    own_curves: Annotated[tuple[OwnCurve, ...] | None, Rows("material", label="name")]
+    """A curve for each candidate; null where all have one stiffness."""
+    kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
+    runs: int  # from each kick
+    duration: Second  # of a run
+    ball_model: BallModel  # that the study asks for; a verdict states the one that decided
+    motion_model: MotionModel  # plane or space
+    capacity: Newton  # most that the races can transmit to the most loaded ball
+    notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each
+    complete: bool  # false if an interrupt left something out
+
+
+@dataclass(frozen=True, slots=True)
+class MeanFriction:
+    """Mean friction with its scatter, and what to report with it."""
+
+    mean: Ratio
+    error: Ratio | None = None  # standard error, with that of extrapolation; None if the scatter is unknown
+    deviation: Ratio | None = None  # standard deviation of a new sample
+    assumed: bool = False  # whether the scatter was not measured
+    extrapolation: tuple[str, ...] = ()
+
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """95 % interval of the mean; the mean twice if its scatter is not known."""
+        half = 1.96 * (self.error or 0.0)
+        return max(0.0, self.mean - half), self.mean + half
+
+
+def measured(friction: Friction) -> MeanFriction:
+    """Mean and standard error of one measurement, with the widening for what was not tested."""
+    error = standard_error(friction)
+    return MeanFriction(
+        friction.mean,
+        None if error is None else hypot(error, friction.widening),
+        friction.standard_deviation,
+        friction.assumed_scatter,
+        friction.extrapolation,
+    )
+
+
+def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
+    """Mean over the measured environments, each counting once; None if there is none."""
+    found = [measured(friction) for friction in frictions if friction is not None]
+    if not found:
+        return None
+    mean = sum(one.mean for one in found) / len(found)
+    errors = [one.error for one in found if one.error is not None]
+    return MeanFriction(
+        mean,
+        sqrt(sum(e * e for e in errors)) / len(found) if errors else None,
+        assumed=any(one.assumed for one in found),
+        extrapolation=tuple(dict.fromkeys(text for one in found for text in one.extrapolation)),
+    )
+
+
+TIED_FROM: Ratio = 0.05  # probability of being below the leader from which a candidate is tied with it
+_LEAST_ERROR = 1e-9
+NODES = 32  # of Gauss's rule, between two of the places where a factor falls: the error is rounding
+_REACH = 9.0
+_STEPS = (-_REACH, -3.0, 0.0, 3.0, _REACH)
+"""Where a factor begins to fall, falls, and has fallen, in its own standard deviations."""
+
+
+def lowest_among(known: Mapping[str, MeanFriction]) -> dict[str, Ratio]:
+    """Probability that each mean friction is the lowest of all; none of a single one, which is not compared.
+
+    Each is log-normal about its mean with its standard error, 0 where there is none.
+    """
+    if len(known) < 2:
+        return {}
+    logs, errors = zip(*map(_log, known.values()), strict=True)
+    return dict(zip(known, lowest_of(logs, errors), strict=True))
+
+
+def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio]:
+    r"""Probability that each of several independent normal numbers is the smallest.
+
+    :math:`P_i = \int \varphi(x) \prod_{j \ne i} \Phi((\mu_j - \mu_i - \sigma_i x) / \sigma_j) dx`, by
+    Gauss's rule between the places where a factor begins to fall, falls, and has fallen.
+    """
+    from scipy.special import ndtr
+
+    mu, sigma = np.array(means, dtype=float), np.array(deviations, dtype=float)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    found = []
+    for i in range(mu.size):
+        others, widths = np.delete(mu, i), np.delete(sigma, i)
+        edges = (others - mu[i] + np.outer(_STEPS, widths)) / sigma[i]
+        ends = np.unique(np.clip(np.append(edges.ravel(), [-_REACH, 0.0, _REACH]), -_REACH, _REACH))
+        half = 0.5 * np.diff(ends)[:, None]
+        x = ends[:-1, None] + half * (1.0 + nodes)
+        beyond = ndtr((others - mu[i] - sigma[i] * x[..., None]) / widths).prod(axis=-1)
+        share = float((half * weights * np.exp(-0.5 * x * x) * beyond).sum() / sqrt(2.0 * np.pi))
+        found.append(min(share, 1.0))  # rounding may leave 2e-15 more
+    return found
+
+
+def may_be_lower(one: MeanFriction, leader: MeanFriction) -> bool:
+    """Whether a mean friction lies below a leader's with a probability of `TIED_FROM` or more."""
+    from scipy.special import ndtr
+
+    (mean, error), (least, other) = _log(one), _log(leader)
+    return bool(ndtr((least - mean) / hypot(other, error)) >= TIED_FROM)
+
+
+def _log(friction: MeanFriction) -> tuple[float, float]:
+    """Logarithm of a mean, and its standard error; the least of either instead of 0."""
+    mean = max(friction.mean, 1e-300)
+    return log(mean), max((friction.error or 0.0) / mean, _LEAST_ERROR)
+
+
+Interval = tuple[Ratio, Ratio, Ratio]  # a margin with the low and the high end of its scatter
+
+
+def ranks(margins: Sequence[Interval], tied: Callable[[int, int], bool] | None = None) -> list[int]:
+    """Rank of each margin, the largest first.
+
+    The best one leads the first group. Those that do not differ from it beyond their scatter are tied with
+    it; the best of the others leads the next group, and so on. Tied ones share the lowest rank (1, 1, 3).
+    As only the leader is compared, a chain of small steps does not tie the first with the last. `tied`
+    compares a candidate with its leader; by default their intervals are compared.
+    """
+    alike = tied or (lambda i, leader: _meet(margins[i], margins[leader]))
+    order = sorted(range(len(margins)), key=lambda i: (-margins[i][0], -margins[i][2]))
+    found = [0] * len(margins)
+    leader, rank = None, 0
+    for place, i in enumerate(order, start=1):
+        if leader is None or not alike(i, leader):
+            leader, rank = i, place
+        found[i] = rank
+    return found
+
+
+def _meet(other: Interval, leader: Interval) -> bool:
+    """Whether the interval of the smaller margin reaches that of its leader."""
+    return other[2] >= leader[1]
+
+
+POCKET = ("cage_mass", "ball_cage_stiffness", "pocket_clearance", "land_clearance")  # alike on one curve
+
+
+def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:
+    """Whether a row and the leader of its group do not differ beyond their scatter.
+
+    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions decide;
+    with another pocket there are another curve and eta, and the intervals of the margins decide.
+    """
+    if row.margin == leader.margin:
+        return True
+    if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
+        return may_be_lower(known[row.name], known[leader.name])
+    return _meet(margin_interval(row), margin_interval(leader))
+
+
+def margin_interval(row: Ranked) -> Interval:
+    """Margin with the ends of its interval, those of the threshold less the restitution factor."""
+    eta = row.restitution_factor
+    return row.margin, row.restitution_threshold_low - eta, row.restitution_threshold_high - eta

@@ -1,0 +1,309 @@
+"""Whirling runs, counted, and the friction at which their share passes a target: a response curve.
+
+Near its target P is taken as logistic in the logarithm of friction. Place and slope are unknown; both are
+summed over on a grid, weighted with the probability of the counts. So the estimate has an interval from the
+first run on, and the next runs are counted where the target most likely is.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from math import inf
+
+import numpy as np
+
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import MovingCage
+from separatrix.cage.outcome import Cause, RunOutcome
+from separatrix.cage.rows import LANES
+from separatrix.chain.ball_traction import FreeBall, SlipField
+from separatrix.chain.impact_restitution import damping_for
+from separatrix.ground.errors import ValidityWarning
+from separatrix.ground.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
+from separatrix.study.study import StabilitySettings
+from separatrix.verdict.judgement import wilson_interval
+from separatrix.verdict.long_jobs import Runner
+
+UNRESOLVED = (
+    "Curve: {} of {} runs from {:g} m/s at friction {:.3g} are unresolved; they count as not whirling."
+)
+
+ALIKE: Ratio = 0.08
+"""Chance by which runs that all agree may hide a share at the target: 8 runs for one half (0.4 %), 24 for a
+tenth."""
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """Number of whirling runs among the runs made."""
+
+    whirling: int
+    runs: int
+
+    @property
+    def share(self) -> Ratio:
+        """Estimate of P(whirl)."""
+        return self.whirling / self.runs
+
+    def interval(self) -> tuple[Ratio, Ratio]:
+        """Wilson's 95 % interval of P(whirl)."""
+        return wilson_interval(self.whirling, self.runs)
+
+    def unanimous(self, target: Ratio) -> bool:
+        """Whether all runs agree, more than would do so by chance where P is at a target."""
+        agree = self.runs > 0 and self.whirling in (0, self.runs)
+        return agree and max(target, 1.0 - target) ** self.runs < ALIKE
+
+    def __add__(self, other: Count) -> Count:
+        return Count(self.whirling + other.whirling, self.runs + other.runs)
+
+
+def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> MovingCage:
+    """Return the same cage with the race damping of this restitution factor, and this pocket friction."""
+    changed = with_damping(cage, race_damping_at(cage, restitution_factor))
+    return replace(changed, ball_cage_friction=friction)
+
+
+def with_damping(cage: MovingCage, damping: NewtonSecondPerMetre) -> MovingCage:
+    """Return the same cage with another race damping [N s/m].
+
+    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at an
+    infinite damping the races grip them.
+    """
+    if damping == inf:
+        return replace(cage, race_damping=inf, traction=None, free_ball=None)
+    ratio = damping / cage.race_damping
+    law, ball = cage.traction, cage.free_ball
+    return replace(
+        cage,
+        race_damping=damping,
+        traction=law and law.stiffened(ratio),
+        free_ball=ball and _stiffened(ball, ratio),
+    )
+
+
+def _stiffened(ball: FreeBall, ratio: Ratio) -> FreeBall:
+    """Return a free ball whose races reach the same tractions at slips this many times smaller."""
+
+    def race(one: SlipField) -> SlipField:
+        slips = ("slip", "pivoting", "heathcote", "elastic_slip")
+        return replace(one, **{name: getattr(one, name) / ratio for name in slips})
+
+    rate = ball.fastest_rate * ratio
+    return replace(ball, inner=race(ball.inner), outer=race(ball.outer), fastest_rate=rate)
+
+
+def race_damping_at(cage: MovingCage, restitution_factor: Ratio) -> NewtonSecondPerMetre:
+    """C_mu of a nominal restitution factor; infinite for 1: the races grip the balls."""
+    if restitution_factor >= 1.0:
+        return inf
+    return damping_for(restitution_factor, cage.ball_cage_stiffness, cage.mass)
+
+
+class GrowthCounter:
+    """Counts whirling runs at points (eta, f, kick).
+
+    Run number r begins alike at every point, whatever eta, f and kick are (common random numbers).
+    """
+
+    def __init__(self, cage: MovingCage, settings: StabilitySettings, runner: Runner | None = None) -> None:
+        self.cage, self.settings, self.runner = cage, settings_for(settings, cage), runner or Runner()
+
+    def cage_at(self, restitution_factor: Ratio | None, friction: Ratio) -> MovingCage:
+        """Return the cage with this pocket friction, and the race damping of an eta, or its own for None."""
+        if restitution_factor is None:
+            return replace(self.cage, ball_cage_friction=friction)
+        return cage_at(self.cage, restitution_factor, friction)
+
+    def count(
+        self,
+        restitution_factor: Ratio | None,
+        friction: Ratio,
+        kick: MetrePerSecond,
+        *,
+        first_run: int,
+        runs: int,
+    ) -> Count:
+        """Count the runs, from `first_run` on, that whirl or bring a ball to the edge of its wall."""
+        cage = self.cage_at(restitution_factor, friction)
+        found = self.runner.ensemble(cage, self.settings, kicks=(kick,), runs=runs, first_run=first_run)
+        left = found.cause == Cause.LEFT_POCKET
+        unresolved = (found.outcome == RunOutcome.UNRESOLVED) & ~left
+        open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
+        if open_ends:  # a motion that still falls does not whirl
+            note = UNRESOLVED.format(open_ends, runs, kick, friction)
+            warnings.warn(note, ValidityWarning, stacklevel=2)
+        return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs)
+
+
+SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
+_STEPS_A_DECADE = 24  # neighbours differ by 10 %, well inside the band
+LADDER: tuple[Ratio, ...] = (
+    0.0,
+    *(SEARCHED_FRICTION * 10 ** (-i / _STEPS_A_DECADE) for i in range(2 * _STEPS_A_DECADE + 12, -1, -1)),
+)
+"""Frictions at which runs are counted."""
+
+LAST = len(LADDER) - 1
+STEP = math.log(10.0) / _STEPS_A_DECADE
+BATCH = LANES  # runs counted at a time, as many as go side by side; or a twelfth of all if that is more
+TURNS = 40
+"""Counts for one crossing at most, where a dozen do: a centre may move away from what was counted before."""
+
+NEAR = 4.0  # steps of the ladder on either side in which P is taken as logistic: a factor of 1.5
+SLOPES: Array = np.geomspace(3.0, 100.0, 13)
+"""Slopes of logit P in ln f that are thought possible, equally likely each; measured ones lie between."""
+
+PLACES: Array = np.linspace(-1.3 * NEAR, 1.3 * NEAR, 81) * STEP
+EITHER_SIDE = (0.1, 0.9)
+ENDS_95 = (0.025, 0.975)
+Look = Callable[[Ratio, int, int], Count]
+"""Whirling runs at a friction: number of the first run, and how many."""
+
+
+class Side(Enum):
+    """Why there is no crossing: P is above the target everywhere, or below it."""
+
+    ABOVE = "above"
+    BELOW = "below"
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """Friction at which P rises through its target, with the 95 % interval that the counts leave."""
+
+    value: Ratio
+    low: Ratio
+    high: Ratio
+
+
+def ends_of(found: Crossing | Side | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, None, None]:
+    """Value and interval of a crossing; None where there is none."""
+    return (found.value, found.low, found.high) if isinstance(found, Crossing) else (None, None, None)
+
+
+class Response:
+    """Counts on the ladder for one restitution factor and kick; no run is counted twice.
+
+    `look` counts runs; `runs` of the settings limit those at an end of the ladder.
+    """
+
+    def __init__(self, look: Look, runs: int) -> None:
+        self.counts: dict[int, Count] = {}
+        self._look, self._runs, self._next = look, runs, 0
+
+    def add(self, cell: int, runs: int) -> Count:
+        """Count more runs at a place of the ladder."""
+        found = self._look(LADDER[cell], self._next, runs)
+        self._next += runs
+        self.counts[cell] = self.counts.get(cell, Count(0, 0)) + found
+        return self.counts[cell]
+
+    def first(self, cell: int) -> Count:
+        """Return the count at a place, after a first look."""
+        return self.counts.get(cell) or self.add(cell, min(BATCH, self._runs))
+
+    def reaches(self, cell: int, target: Ratio) -> bool:
+        """True if P reaches the target at an end of the ladder; a first look that agrees is enough."""
+        count = self.first(cell)
+        while 0 < count.whirling < count.runs < self._runs:
+            low, high = count.interval()
+            if not low <= target <= high:
+                break
+            count = self.add(cell, min(count.runs, self._runs - count.runs))
+        return count.share >= target
+
+    def crossing(self, target: Ratio, runs: int, guess: Ratio) -> Crossing | Side:
+        """Friction at which P passes the target, or the side on which P lies all along.
+
+        Both ends of the ladder are counted first, since P need not rise. Where P wavers through the target
+        more than once, one of the crossings is found. `runs` are spent near it. `guess`, a friction near it,
+        changes the time, and the result only within its interval.
+        """
+        if self.reaches(0, target):
+            return Side.ABOVE
+        if not self.reaches(LAST, target):
+            return Side.BELOW
+        low, high = self._bracket(target, cell_of(guess))
+        if low == 0:
+            return Crossing(0.5 * LADDER[1], 0.0, LADDER[1])
+        return self._refined(target, runs, 0.5 * (math.log(LADDER[low]) + math.log(LADDER[high])))
+
+    def _bracket(self, target: Ratio, start: int) -> tuple[int, int]:
+        """Places not far apart, P below the target at the first and not at the second."""
+        low = high = start
+        step = 2
+        if self.first(start).share >= target:
+            while low > 0 and self.first(low).share >= target:
+                low, high, step = max(0, low - step), low, 2 * step
+        else:
+            while high < LAST and self.first(high).share < target:
+                low, high, step = high, min(LAST, high + step), 2 * step
+        while high - low > (NEAR if low > 0 else 1):  # what is farther off does not show the middle
+            middle = (low + high) // 2
+            low, high = (low, middle) if self.first(middle).share >= target else (middle, high)
+        return low, high
+
+    def _refined(self, target: Ratio, runs: int, centre: float) -> Crossing:
+        """Count where the target may lie, in turn on either side of it, until the runs are spent."""
+        for turn in range(TURNS):
+            near = self._near(centre)
+            place = centre + PLACES
+            weight = posterior(near, place, target)
+            centre = quantile(place, weight, 0.5)
+            jump = self._jump(centre, target)
+            if jump is not None:
+                return jump
+            if sum(count.runs for count in self._near(centre).values()) >= runs:
+                break
+            wanted = math.exp(quantile(place, weight, EITHER_SIDE[turn % 2]))
+            self.add(cell_of(wanted), max(min(BATCH, runs), runs // 12))
+        low, high = (math.exp(quantile(place, weight, q)) for q in ENDS_95)
+        return Crossing(math.exp(centre), low, min(high, SEARCHED_FRICTION))
+
+    def _near(self, centre: float) -> dict[float, Count]:
+        """Counts around a logarithm of friction."""
+        return {
+            math.log(LADDER[cell]): count
+            for cell, count in sorted(self.counts.items())
+            if cell > 0 and abs(math.log(LADDER[cell]) - centre) <= (NEAR + 0.01) * STEP
+        }
+
+    def _jump(self, centre: float, target: Ratio) -> Crossing | None:
+        """Return the whole cell if P jumps inside it from none to all."""
+        high = next((i for i in range(1, LAST) if math.log(LADDER[i]) > centre), LAST)
+        below, above = (self.counts.get(i, Count(0, 0)) for i in (high - 1, high))
+        agree = below.unanimous(target) and above.unanimous(target)
+        if high == 1 or not agree or below.share >= above.share:
+            return None
+        low, top = LADDER[high - 1], LADDER[high]
+        return Crossing(math.sqrt(low * top), low, top)
+
+
+def cell_of(friction: Ratio) -> int:
+    """Place of the ladder nearest to a friction, neither its first nor its last."""
+    steps = round(math.log(max(friction, LADDER[1]) / SEARCHED_FRICTION) / STEP)
+    return min(max(LAST + steps, 1), LAST - 1)
+
+
+def posterior(counts: Mapping[float, Count], place: Array, target: Ratio) -> Array:
+    """Probability that P passes the target at each place, from counts against ln f; shape (place,) [-]."""
+    if not counts:
+        return np.full(place.size, 1.0 / place.size)
+    x = np.array(list(counts))
+    whirling = np.array([count.whirling for count in counts.values()], dtype=np.float64)
+    runs = np.array([count.runs for count in counts.values()], dtype=np.float64)
+    logit = math.log(target / (1.0 - target)) + SLOPES[:, None] * (x - place[:, None])[:, None, :]
+    likelihood = whirling * logit - runs * np.logaddexp(0.0, logit)
+    total = likelihood.sum(axis=-1)
+    weight = np.exp(total - total.max()).sum(axis=-1)
+    return np.asarray(weight / weight.sum())
+
+
+def quantile(place: Array, weight: Array, share: Ratio) -> float:
+    """Place below which a share of the weight lies."""
+    return float(np.interp(share, np.cumsum(weight) - 0.5 * weight, place))

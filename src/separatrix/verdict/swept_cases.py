@@ -1,0 +1,339 @@
+"""Many cases of a study, each with other values: the chain and, if asked, margin and verdict."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import partial
+
+from separatrix.cage.closed_forms import linear_whirl_frequency
+from separatrix.cage.moving_cage import moving_cage
+from separatrix.chain.solution import Solution, solve
+from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.units import (
+    Hertz,
+    Metre,
+    Newton,
+    NewtonPerMetre,
+    NewtonSecondPerMetre,
+    Pascal,
+    PerSecond,
+    Radian,
+    RadianPerSecond,
+    Ratio,
+)
+from separatrix.study.candidates import require_friction
+from separatrix.study.study import Operation, Study
+from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.map_records import KICK, RESTITUTION, Parameter, parameters, varied
+from separatrix.verdict.parameter_axes import MOST_CASES, TIME_SHARE, Case
+from separatrix.verdict.reasons import CageMotion
+from separatrix.verdict.stability_curve import own_threshold
+from separatrix.verdict.which_ball import judge_solution
+
+ROUNDING = 1e-9  # share of their value by which cases that are alike may differ
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorstCase:
+    """The case nearest to instability, or farthest beyond it."""
+
+    case: int  # its number
+    quantity: str
+    """Which decides: margin (lowest), probability_stable (lowest) or restitution_factor (highest)."""
+    value: Ratio  # of that quantity
+    compared: int  # cases that have it; the others were refused
+    alike: int  # cases that are as bad, this one included
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Duty:
+    """Shares of the time of a duty cycle [-]; None where the quantity was not computed."""
+
+    below_margin: Ratio | None  # with a margin below zero
+    stable: Ratio | None  # with this verdict
+    unstable: Ratio | None  # with this verdict
+    undecided: Ratio | None  # with this verdict
+    refused: Ratio  # without the number that decides
+
+
+def orders(operation: Operation, ball_count: int, cage_speed: RadianPerSecond) -> dict[str, Hertz]:
+    """Return the frequencies of shaft and cage, and of balls that pass a place of a ring.
+
+    The shaft is the ring that turns faster; the cage turns with the ball set.
+    """
+    speeds = operation.inner_speed, operation.outer_speed, cage_speed
+    inner, outer, cage = (speed / (2.0 * math.pi) for speed in speeds)
+    return {
+        "shaft_frequency": max(abs(inner), abs(outer)),
+        "cage_frequency": abs(cage),
+        "outer_pass_frequency": ball_count * abs(cage - outer),
+        "inner_pass_frequency": ball_count * abs(inner - cage),
+    }
+
+
+def time_shares(cases: Sequence[Mapping[str, float]]) -> list[Ratio]:
+    """Share of each case in the time of all, none where no case has one; `InputError` if they have no sum."""
+    if TIME_SHARE not in cases[0]:
+        return []
+    given = [case[TIME_SHARE] for case in cases]
+    for place, one in enumerate(given):
+        if not 0.0 <= one < math.inf:
+            raise InputError(f"Case {place}, {TIME_SHARE}", "must be a finite share or time >= 0", f"{one:g}")
+    total = math.fsum(given)
+    if not 0.0 < total < math.inf:
+        raise InputError(TIME_SHARE, "must be above 0 in some case", f"a sum of {total:g}")
+    return [one / total for one in given]
+
+
+def worst_case(cases: Iterable[SweptCase]) -> WorstCase | None:
+    """Return the worst case, the first of those that are alike; None where no case has an answer."""
+    known = list(cases)
+    for quantity, sign in (("margin", 1.0), ("probability_stable", 1.0), ("restitution_factor", -1.0)):
+        found = [(sign * value, one.case) for one in known if (value := getattr(one, quantity)) is not None]
+        if found:
+            value, case = min(found)
+            alike = sum(math.isclose(one, value, rel_tol=ROUNDING) for one, _ in found)
+            counts = {"compared": len(found), "alike": alike}
+            return WorstCase(case=case, quantity=quantity, value=sign * value, **counts)
+    return None
+
+
+def duty(cases: Iterable[SweptCase]) -> Duty | None:
+    """Return the time spent below a margin of zero and in each verdict; None without shares of time."""
+    known = [(one, one.time_share) for one in cases if one.time_share is not None]
+    if not known:
+        return None
+    has_margins = any(one.margin is not None for one, _ in known)
+    has_verdicts = any(one.verdict is not None for one, _ in known)
+    decides = "margin" if has_margins else "verdict" if has_verdicts else "restitution_factor"
+
+    def in_verdict(name: str) -> Ratio | None:
+        return math.fsum(share for one, share in known if one.verdict == name) if has_verdicts else None
+
+    below = math.fsum(share for one, share in known if one.margin is not None and one.margin < 0.0)
+    return Duty(
+        below_margin=below if has_margins else None,
+        stable=in_verdict("STABLE"),
+        unstable=in_verdict("UNSTABLE"),
+        undecided=in_verdict("UNDECIDED"),
+        refused=math.fsum(share for one, share in known if getattr(one, decides) is None),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SweptCase:
+    """What the chain gives for a case; None from where it was refused, with the reason.
+
+    Loads, contacts and slopes are those of the most loaded ball, clearances those of the running cage.
+    Threshold and margin, and the verdict with its evidence (`Judgement`), are None unless requested.
+    Frequencies are those that a sensor on the housing would see (`orders`).
+    """
+
+    case: int  # number of the case, from 0
+    values: tuple[float, ...]  # of the parameters, in their order
+    cage_speed: RadianPerSecond | None = None  # of the ball set about the bearing axis
+    load_inner: Newton | None = None
+    load_outer: Newton | None = None
+    contact_angle_inner: Radian | None = None
+    contact_angle_outer: Radian | None = None
+    max_pressure_inner: Pascal | None = None  # Hertz, inner race
+    max_pressure_outer: Pascal | None = None  # Hertz, outer race
+    spin_roll_ratio_inner: Ratio | None = None
+    spin_roll_ratio_outer: Ratio | None = None
+    slope_inner: Ratio | None = None  # alpha of the inner race
+    slope_outer: Ratio | None = None  # alpha of the outer race
+    ball_cage_stiffness: NewtonPerMetre | None = None
+    race_damping: NewtonSecondPerMetre | None = None
+    damping_ratio: Ratio | None = None
+    restitution_factor: Ratio | None = None
+    ball_cage_friction: Ratio | None = None
+    pocket_clearance: Metre | None = None  # running, along the circumference, stop to stop
+    land_clearance: Metre | None = None  # running, diametral; null without a land
+    shaft_frequency: Hertz | None = None
+    cage_frequency: Hertz | None = None
+    outer_pass_frequency: Hertz | None = None
+    inner_pass_frequency: Hertz | None = None
+    linear_whirl_frequency: Hertz | None = None
+    orbit_frequency: Hertz | None = None
+    restitution_threshold: Ratio | None = None
+    restitution_threshold_low: Ratio | None = None
+    restitution_threshold_high: Ratio | None = None
+    margin: Ratio | None = None
+    verdict: str | None = None  # STABLE, UNSTABLE or UNDECIDED
+    probability_stable: Ratio | None = None  # from the worst kick
+    probability_low: Ratio | None = None
+    probability_high: Ratio | None = None
+    cage_motion: str | None = None  # what the cage does at the end
+    largest_offset: Metre | None = None
+    drift_rate: PerSecond | None = None
+    largest_contact_force: Newton | None = None
+    largest_land_force: Newton | None = None
+    runs: int | None = None  # of the verdict
+    time_share: Ratio | None = None  # of a duty cycle; null without one
+    reason: str = ""  # why the case was refused; empty if it was not
+
+
+# what a case takes from its judgement as it is
+EVIDENCE = {f.name for f in fields(SweptCase)} & {f.name for f in fields(Judgement)}
+EVIDENCE -= {"verdict", "cage_motion"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sweep:
+    """Cases in their order, and the parameters that they vary; an interrupt leaves some out."""
+
+    parameters: tuple[Parameter, ...]  # the varied inputs
+    cases: tuple[SweptCase, ...]  # a row for each
+    verdicts: bool  # whether verdicts were computed
+    margins: bool  # whether thresholds and margins were computed
+    worst: WorstCase | None  # least margin, P(stable), or largest eta; null without an answer
+    duty: Duty | None  # time in each verdict; null without shares of time
+    complete: bool  # false if an interrupt left cases out
+
+
+def sweep(
+    study: Study,
+    cases: Sequence[Case],
+    *,
+    verdicts: bool = False,
+    margins: bool = False,
+    runner: Runner | None = None,
+) -> Sweep:
+    """Run the chain for each case of a study; on request its threshold and the whole ensemble, too.
+
+    Each case has values by the names of a study file, in SI units, and perhaps a ``"time_share"`` (shares,
+    hours: any unit, for they are divided by their sum); every case has the same names. The numbers do not
+    depend on the runner.
+
+    Raises
+    ------
+    InputError
+        No cases or too many, a name that a sweep cannot vary, cases that differ in their names, or shares
+        of time below zero.
+    Interrupted
+        With the cases that were finished, if any was.
+    """
+    names, shares = _names(cases), time_shares(cases)
+    known = parameters()
+    runner = runner or Runner()
+
+    def run(place: int) -> SweptCase:
+        values = {name: cases[place][name] for name in names}
+        found = SweptCase(
+            case=place, values=tuple(values.values()), time_share=shares[place] if shares else None
+        )
+        return _swept(study, found, values, runner, verdicts=verdicts, margins=margins)
+
+    def table(found: Mapping[int, SweptCase]) -> Sweep:
+        done = tuple(found[place] for place in sorted(found))
+        return Sweep(
+            parameters=tuple(known[name] for name in names),
+            cases=done,
+            verdicts=verdicts,
+            margins=margins,
+            worst=worst_case(done),
+            duty=duty(done),
+            complete=len(found) == len(cases),
+        )
+
+    with warnings.catch_warnings():  # thousands of cases would repeat the same
+        warnings.simplefilter("ignore", ValidityWarning)
+        return runner.work_out(run, range(len(cases)), into=table)
+
+
+def _names(cases: Sequence[Case]) -> list[str]:
+    if not 1 <= len(cases) <= MOST_CASES:
+        raise InputError("A sweep", f"must have between 1 and {MOST_CASES} cases", got=str(len(cases)))
+    all_names = list(cases[0])
+    names = [name for name in all_names if name != TIME_SHARE]
+    known = parameters()
+    for name in names:
+        if name not in known or name in (RESTITUTION, KICK):
+            raise InputError(name, "is not a numeric input that a sweep can vary")
+    for place, case in enumerate(cases):
+        if list(case) != all_names:
+            raise InputError(f"Case {place}", f"must give {', '.join(all_names)}", got=", ".join(case))
+    return names
+
+
+def _swept(
+    study: Study, found: SweptCase, case: Case, runner: Runner, *, verdicts: bool, margins: bool
+) -> SweptCase:
+    """One case, as far as the chain goes."""
+    try:
+        asked = varied(study, case)
+        solution = solve(asked)
+        bearing = solution.bearing
+        inner, outer = bearing.inner, bearing.outer
+        turning = orders(asked.operation, asked.bearing.ball_count, bearing.cage_speed)
+        found = replace(
+            found,
+            cage_speed=bearing.cage_speed,
+            load_inner=inner.load,
+            load_outer=outer.load,
+            contact_angle_inner=inner.contact_angle,
+            contact_angle_outer=outer.contact_angle,
+            max_pressure_inner=inner.ellipse.max_pressure,
+            max_pressure_outer=outer.ellipse.max_pressure,
+            spin_roll_ratio_inner=inner.spin_roll_ratio,
+            spin_roll_ratio_outer=outer.spin_roll_ratio,
+            shaft_frequency=turning["shaft_frequency"],
+            cage_frequency=turning["cage_frequency"],
+            outer_pass_frequency=turning["outer_pass_frequency"],
+            inner_pass_frequency=turning["inner_pass_frequency"],
+        )
+        slopes = solution.slopes
+        found = replace(found, slope_inner=slopes.inner.slope, slope_outer=slopes.outer.slope)
+        if study.cage is None:
+            return found
+        eta, design = solution.restitution, solution.design
+        found = replace(
+            found,
+            ball_cage_stiffness=eta.ball_cage_stiffness,
+            race_damping=eta.race_damping,
+            damping_ratio=eta.damping_ratio,
+            restitution_factor=eta.restitution_factor,
+            pocket_clearance=design.pocket_clearance,
+            land_clearance=design.land_clearance,
+            linear_whirl_frequency=linear_whirl_frequency(moving_cage(solution, 0.0)),
+            ball_cage_friction=None if solution.friction is None else solution.friction.mean,
+        )
+        if margins or verdicts:
+            require_friction(asked)
+        if margins:
+            found = _with_margin(found, solution, runner)
+        return _with_verdict(found, solution, runner) if verdicts else found
+    except SeparatrixError as error:
+        return replace(found, reason=str(error))
+
+
+def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
+    """The case with the threshold at the pocket's friction, and the distance to it."""
+    friction, eta = found.ball_cage_friction or 0.0, solution.restitution.restitution_factor
+    threshold = own_threshold(moving_cage(solution, 0.0), solution.study.stability, friction, runner)
+    return replace(
+        found,
+        restitution_threshold=threshold.value,
+        restitution_threshold_low=threshold.low,
+        restitution_threshold_high=threshold.high,
+        margin=threshold.value - eta,
+    )
+
+
+def _with_verdict(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
+    """The case with the verdict of its whole ensemble; an orbit where most runs whirl."""
+    run = partial(runner.whole_ensemble, settings=solution.study.stability)
+    judged = judge_solution(solution, found.ball_cage_friction or 0.0, run)
+    if judged.cage_motion is CageMotion.WHIRLING and judged.whirl_ratio is not None:
+        orbit = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
+        found = replace(found, orbit_frequency=orbit)
+    return replace(
+        found,
+        verdict=judged.verdict.name,
+        cage_motion=None if judged.cage_motion is None else judged.cage_motion.value,
+        **{name: getattr(judged, name) for name in EVIDENCE},
+    )
