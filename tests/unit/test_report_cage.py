@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.present.text.cage import clearance_fact
+from separatrix.told.cage import clearance_fact
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
 

@@ -7,7 +7,7 @@ import pytest
 
 import separatrix
 from separatrix.ground.errors import ValidityWarning
-from separatrix.present.text.sentences import verdict_sentences
+from separatrix.told.sentences import verdict_sentences
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.record import Facts, Kept, Paragraph, Table
 from separatrix.reporting.stages import bearing_and_cage

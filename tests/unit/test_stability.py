@@ -10,7 +10,7 @@ import pytest
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import ValidityWarning
-from separatrix.present.text.stability import curve
+from separatrix.told.stability import curve
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import long_jobs as runner

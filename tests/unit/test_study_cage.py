@@ -7,7 +7,7 @@ import pytest
 from commands import refusal_line, written
 
 from separatrix.ground.errors import ValidityWarning
-from separatrix.present.text.answer import clearances, shown
+from separatrix.told.answer import clearances, shown
 from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved

@@ -15,7 +15,7 @@ from commands import refused
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.impact_restitution import damping_for
 from separatrix.front import main
-from separatrix.present.text.answer import in_words
+from separatrix.told.answer import in_words
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
 from separatrix.verbs import simulate

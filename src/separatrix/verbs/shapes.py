@@ -20,8 +20,8 @@ from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, node_of, plain, units_of
 from separatrix.ground.plain_data import shape as shape
 from separatrix.ground.units import Rows, Watt
-from separatrix.present.text.sentences import pocket_force
-from separatrix.present.text.tables import quantity
+from separatrix.told.sentences import pocket_force
+from separatrix.told.tables import quantity
 from separatrix.verbs.answer_records import (
     CheckAnswer,
     MapAnswer,
