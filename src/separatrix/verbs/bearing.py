@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from separatrix.chain.contacts import BearingState
-from separatrix.chain.solution import solve
-from separatrix.ground.plain_data import Part
+from separatrix.ground.document import Part
 from separatrix.present.blocks import (
     Equation,
     Heading,
@@ -19,14 +17,20 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import Figure, Label, Panel, Trace
-from separatrix.study.study import Study
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import RACES, clearance_blocks, contact_blocks
 from separatrix.verbs.parts.telling import axis, cell, column, fact, told
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.chain.contacts import BearingState
+    from separatrix.study.study import Study
 
 
-def compute(study: Study) -> BearingState:
+def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
     """Ball equilibrium and the contacts of the most loaded ball."""
+    from separatrix.chain.solution import solve
+
     solution = solve(study)
     return replace(solution.bearing, clearances=solution.clearances)
 
@@ -134,3 +138,8 @@ def _around(answer: Part, name: str, title: str) -> Panel:
     )
     x = axis("azimuth", "rad", azimuth)
     return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
+
+
+VERB = Verb(
+    name="bearing", help="Ball loads, contact angles, speeds and contacts.", compute=compute, page=page
+)

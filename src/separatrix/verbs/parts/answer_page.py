@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 
-from separatrix.ground.plain_data import Part
+from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
 from separatrix.present.blocks import Block, Heading, Level, Note, Page, Table, facts, text_column
-from separatrix.study.sources import inputs_of
 
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
@@ -51,6 +51,8 @@ def at_their_means(names: Sequence[str]) -> str:
 
 def sources(answer: Part) -> list[Block]:
     """Return inputs, materials and frictions with where each is from, and how to compute the answer again."""
+    from separatrix.study.sources import inputs_of
+
     study, level = answer.values["study"], Level.REPORT | Level.SHEET
     known = answer.values.get("provenance") or {}
     entries = tuple(inputs_of(study))
@@ -96,7 +98,7 @@ def _value(value: Any, unit: str) -> str:
 def _materials(study: Json, level: Level) -> list[Block]:
     rows = tuple(dict.fromkeys(_properties(study)))
     heads = ("material", "property", "value", "confidence", "source")
-    columns = tuple(text_column(head, lambda row, at=at: row[at]) for at, head in enumerate(heads))
+    columns = tuple(text_column(head, itemgetter(at)) for at, head in enumerate(heads))
     return [Table("materials", columns, rows, "Materials, at the temperature of the study.", level)]
 
 

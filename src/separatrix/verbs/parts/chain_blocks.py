@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from separatrix.ground.plain_data import Part
+from separatrix.ground.document import Part
 from separatrix.present.blocks import Block, Equation, Heading, Level, Picture, facts
-from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Panel, Trace, Words
+from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
 from separatrix.verbs.parts.answer_page import figure_heading
 from separatrix.verbs.parts.telling import axis, by_race, said
 
@@ -42,7 +40,11 @@ def contact_blocks(answer: Part, at: Part) -> list[Block]:
 
 def contacts_figure(answer: Part, at: Part) -> Figure:
     """Return the contacts of the most loaded ball: ellipses to scale, pressure, creep across the groove."""
-    plan, pressure, creep = [], [], []
+    import numpy as np
+
+    plan: list[Mark] = []
+    pressure: list[Mark] = []
+    creep: list[Mark] = []
     wide = 1.12 * max(at.inner.semi_major, at.outer.semi_major)
     across = axis("groove_place", "m", [wide], low=-wide, high=wide)
     for (race, colour, _, line), side in zip(RACES, (1, -1), strict=True):
@@ -94,8 +96,8 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
         ("Running land clearance", "land_at_rest", "land"),
     ):
         if rest in found and runs in found:
-            text = f"{{{runs}}} at {{temperature}} and a cage speed of {{cage_speed}}, {{{rest}}} at 293 K at rest"
-            rows.append((words, said(found, text)))
+            text = f"{{{runs}}} at {{temperature}} and a cage speed of {{cage_speed}}, "
+            rows.append((words, said(found, f"{text}{{{rest}}} at 293 K at rest")))
     strains = (("cage", "cage_strain"), ("balls", "ball_strain"), ("rings", "ring_strain"))
     known = [said(found, f"{part} {{{key}}}") for part, key in strains if key in found]
     grown = [said(found, "cage {hoop_strain} at its pitch radius")]

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from separatrix.ground.plain_data import Part
+from separatrix.ground.document import Part
 from separatrix.ground.quantity import Estimate, Number, Quantity, alone, scale
 from separatrix.present.blocks import Cell, Column, Level, Table, text_column
 from separatrix.present.figure import Axis, Trace
