@@ -53,4 +53,15 @@ QUANTITIES: dict[str, Quantity] = {
     "hoop_strain": Q(label="strain of the cage by rotation", unit="%"),
     "cage_land_growth": Q(label="growth of the cage's land"),
     "ring_land_growth": Q(label="growth of the ring's land"),
+    # Traction, restitution, mobility.
+    #
+    # Stability curves, maps and sweeps.
+    #
+    # Runs of the cage.
+    #
+    # Rankings and their verdicts.
+    #
+    # Uncertain studies.
+    #
+    # Logs, materials and comparisons.
 }
