@@ -29,12 +29,13 @@ TONES = ("STABLE", "UNSTABLE", "UNDECIDED")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A value with what describes it; `mark` follows its text and is no part of the number."""
+    """A value with what describes it; `before` and `mark` stand around its text, no part of the number."""
 
     value: Number | str | bool
     quantity: Quantity | None = None
     unit: str = "-"
     mark: str = ""
+    before: str = ""
 
     @property
     def is_number(self) -> bool:
@@ -46,7 +47,7 @@ class Cell:
         """As it stands alone."""
         if self.quantity is None or isinstance(self.value, str):
             return f"{ABSENT if self.value is None else self.value}{self.mark}"
-        return alone(self.value, self.quantity, self.unit) + self.mark
+        return self.before + alone(self.value, self.quantity, self.unit) + self.mark
 
     @property
     def scale(self) -> tuple[float, str]:
@@ -129,7 +130,7 @@ def _shown(column: Column, cells: Sequence[Cell]) -> ShownColumn:
         found, unit, size = in_column(values, first.quantity or Quantity(label=""), first.unit)
         scales = [(size, unit)] * len(cells)
         for place, text in zip(numbers, found, strict=True):
-            texts[place] = text + cells[place].mark
+            texts[place] = cells[place].before + text + cells[place].mark
     return ShownColumn(column.head, unit, tuple(texts), tuple(cells), tuple(scales), column.is_text)
 
 
@@ -179,16 +180,17 @@ Block = Heading | Facts | Table | Picture | View | Note | Equation
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """An answer: its title, what it was computed for, and its blocks."""
+    """An answer: its title, what it was computed for, its blocks, and its inputs and their sources."""
 
     title: str
     subtitle: str
     blocks: tuple[Block, ...]
+    appendix: tuple[Block, ...] = ()
 
     def at(self, level: Level) -> Page:
         """Return the page with the blocks of a level, without headings that nothing follows."""
         kept: list[Block] = []
-        for one in reversed(self.blocks):
+        for one in reversed((*self.blocks, *self.appendix)):
             if not one.level & level or (isinstance(one, Table) and not one.rows):
                 continue
             if isinstance(one, Facts) and not one.pairs:
@@ -198,7 +200,7 @@ class Page:
             if isinstance(one, Heading) and is_bare:
                 continue
             kept.append(one)
-        return replace(self, blocks=tuple(reversed(kept)))
+        return replace(self, blocks=tuple(reversed(kept)), appendix=())
 
     @property
     def lead(self) -> tuple[str, ...]:
@@ -208,6 +210,20 @@ class Page:
 
 def _depth(one: Block) -> int:
     return one.depth if isinstance(one, Heading) else 0
+
+
+def joined(title: str, subtitle: str, parts: Sequence[tuple[str, Page]]) -> Page:
+    """Return pages as sections of one, each under its title; notes that several have stand once."""
+    blocks: list[Block] = []
+    for name, page in parts:
+        blocks.append(Heading(name))
+        for one in page.blocks:
+            if isinstance(one, Heading):
+                blocks.append(replace(one, depth=3))
+            elif not (isinstance(one, Note) and one.kind == "caveat" and one in blocks):
+                blocks.append(one)
+    appendix = dict.fromkeys(one.appendix for _, one in parts)
+    return Page(title, subtitle, tuple(blocks), next(iter(appendix), ()))
 
 
 def facts(*pairs: tuple[str, Cell | str | None], level: Level = Level.ALWAYS) -> Facts:
