@@ -12,4 +12,5 @@ from separatrix.study.study import Study
 def compute(study: Study) -> BearingState:
     """Ball equilibrium and the contacts of the most loaded ball."""
     solution = solve(study)
-    return replace(solution.bearing, clearances=solution.clearances)
+    found, clearances = solution.bearing, solution.clearances
+    return replace(found, clearances=clearances, notes=solution.notes)
