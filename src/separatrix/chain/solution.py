@@ -101,6 +101,7 @@ class Solution:
         """
         asked = self.study
         require_rolling(asked)
+        _ = self.bearing  # its notes
         return race_traction(
             asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction
         )
@@ -110,6 +111,7 @@ class Solution:
         """Slopes of both traction curves at free rolling; refused as `traction` is."""
         asked = self.study
         require_rolling(asked)
+        _ = self.bearing  # its notes
         return race_slopes(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @property
@@ -198,6 +200,7 @@ class Solution:
         """How the races let the most loaded ball be pushed along its orbit; refused as `traction` is."""
         asked = self.study
         require_rolling(asked)
+        _ = self.bearing  # its notes
         return mobility(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @cached_property
