@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from separatrix.chain.contacts import BearingState
-from separatrix.ground.errors import ValidityWarning, grouped, noted_warnings
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.reading import read_study, require
 from separatrix.study.study import Study
@@ -49,13 +47,12 @@ Asked = Study | str | Path
 class Answer(Generic[Record]):
     """What a verb answers to a study; the names of its record are its own, too.
 
-    `record` was computed for `study`; `notes` are about where a model leaves its range.
+    `record` was computed for `study`.
     """
 
     verb: str
     record: Record
     study: Study
-    notes: tuple[str, ...]
     question: Mapping[str, object] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Any:
@@ -68,17 +65,24 @@ class Answer(Generic[Record]):
         """Verb and study; `summary` has the answer."""
         return f"<{self.verb} of {self.study.name}: summary(), to_dataframe(), to_xarray(), plot()>"
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where a model leaves its range, and what of the study has no effect, a sentence each."""
+        from separatrix.verbs.answer_files import notes_of
+
+        return notes_of(self.record, self.study)
+
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
         from separatrix.verbs.answer_files import document
 
-        return document(self.verb, self.record, self.study, list(self.notes), self.question)
+        return document(self.verb, self.record, self.study, self.question)
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
         from separatrix.told.answer import in_words
 
-        return in_words(self.verb, self.record, self.study, list(self.notes), full=full)
+        return in_words(self.verb, self.record, self.study, self.notes, full=full)
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
@@ -100,18 +104,13 @@ class Answer(Generic[Record]):
 
 
 def _answer(verb: str, study: Asked, question: Mapping[str, object] | None = None, **how: Any) -> Answer[Any]:
-    """Answer of a verb with its notes, which are warnings for the caller, too; `how` is as for `computed`."""
-    with noted_warnings() as notes:
-        asked = study if isinstance(study, Study) else read_study(study)
-        require(asked, verb, *verb_named(verb).needs)
-        found = computed(verb_named(verb), asked, question or {}, **how)
-    answer = Answer(
-        verb=verb, record=found.record, study=asked, notes=tuple(grouped(notes)), question=found.question
-    )
+    """Answer of a verb; `how` is as for `computed`."""
+    asked = study if isinstance(study, Study) else read_study(study)
+    require(asked, verb, *verb_named(verb).needs)
+    found = computed(verb_named(verb), asked, question or {}, **how)
+    answer = Answer(verb=verb, record=found.record, study=asked, question=found.question)
     if not found.is_complete:
         raise Interrupted(answer)
-    for note in answer.notes:
-        warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from separatrix.ground.errors import harmless, json_text
+from separatrix.ground.errors import grouped, harmless, json_text
 from separatrix.ground.files import staged
-from separatrix.ground.plain_data import Group, plain, shape, units_of
+from separatrix.ground.plain_data import NOTES, Group, plain, shape, units_of
 from separatrix.told.answer import in_words
 
 if TYPE_CHECKING:
@@ -26,22 +26,20 @@ def document(
     verb: str,
     answer: object,
     asked: Study,
-    notes: Sequence[str],
     question: Mapping[str, object] | None = None,
 ) -> Document:
     """Return an answer as plain data: SI units, no NaN, None where something is absent.
 
-    The resolved inputs of the study go into it with their sources; the notes and those of the answer are its
+    The resolved inputs of the study go into it with their sources; the notes of study and answer are its
     warnings.
     """
     from separatrix import __version__
     from separatrix.study.sources import provenance_of, resolved
-    from separatrix.verbs.shapes import all_notes
 
     left_out: list[str] = []
     node = Group(shape(answer))
     body = plain(node, verb, left_out)
-    warnings = all_notes(answer, notes)
+    warnings = [*notes_of(answer, asked)]
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
         warnings.append(
@@ -60,6 +58,12 @@ def document(
         "warnings": warnings,
         "provenance": plain(provenance_of(asked, verb, question or {}), "provenance"),
     }
+
+
+def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
+    """Return what the reading of a study and its answer note; of those alike but for numbers the first."""
+    own: tuple[str, ...] = getattr(answer, NOTES, ())
+    return tuple(grouped([*asked.notes, *own]))
 
 
 WITHOUT_DATA = ("check",)

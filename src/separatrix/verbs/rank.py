@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
+    from separatrix.verdict.ranking_records import Ranking
 
 BRIEF, FULL, REPORT, LONG = Level.BRIEF, Level.FULL, Level.REPORT, Level.LONG
 SHORT = (
@@ -87,16 +88,28 @@ VERDICT_AT, RIGHT = 1.05, 1.24
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
     """Verdict, margin, rank and reason of each candidate material."""
     from separatrix.verbs.answer_records import RankingAnswer
-    from separatrix.verbs.parts.cage_of_study import reference, warn_if_overdamped
+    from separatrix.verbs.parts.cage_of_study import overdamped_notes, reference
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.ranking import rank
 
     solution, cage = reference(study)
-    warn_if_overdamped(solution.restitution)
-    return made_into(
-        lambda found: RankingAnswer(solution=solution, cage=cage, ranking=found),
-        lambda: rank(study, runner=runner),
-    )
+    notes = (*solution.notes, *cage.notes, *overdamped_notes(solution.restitution))
+
+    def made(found: Ranking) -> RankingAnswer:
+        every = (*notes, *free_balls_decided(found), *found.notes)
+        return RankingAnswer(solution=solution, cage=cage, ranking=found, notes=every)
+
+    return made_into(made, lambda: rank(study, runner=runner))
+
+
+def free_balls_decided(found: Ranking) -> list[str]:
+    """Return for which candidates free balls decided in the bearing's own environment; empty if for none."""
+    rows = next(one.materials for one in found.environments if one.name == found.environment)
+    judged = ((row.name, getattr(row, "judgement", None)) for row in rows)
+    free = [name for name, one in judged if one is not None and one.ball == "free" and one.ball_reason]
+    if not free:
+        return []
+    return [f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."]
 
 
 def page(answer: Part) -> Page:
@@ -167,7 +180,7 @@ def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:
     speeds = " ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in kicks)
     caption = (
         f"stable runs: that settle, or roll in their pockets, from each initial disturbance, {speeds}; the "
-        "worst one decides. Offset and forces: largest of any run; > what the races hold: there a force has no "
+        "worst one decides. Offset and forces: largest of any run; > what the races hold: there none has a "
         "meaning."
     )
     columns = (

@@ -6,16 +6,19 @@ from separatrix.chain.solution import solve
 from separatrix.study.study import Study
 from separatrix.verbs import answer_records as answers
 from separatrix.verbs.parts.cage_of_study import (
-    warn_if_overdamped,
+    overdamped_notes,
 )
 
 
 def compute(study: Study) -> answers.RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     solution = solve(study)
-    warn_if_overdamped(solution.restitution)
-    _ = solution.clearances  # refused, and warned of
+    overdamped = overdamped_notes(solution.restitution)
+    _ = solution.clearances  # refused, and noted
     thickness = study.film.thickness or 0.0
     return answers.RestitutionAnswer(
-        solution=solution, film_thickness=thickness, lubrication=solution.lubrication
+        solution=solution,
+        film_thickness=thickness,
+        lubrication=solution.lubrication,
+        notes=(*solution.notes, *overdamped),
     )
