@@ -54,6 +54,19 @@ QUANTITIES: dict[str, Quantity] = {
     "cage_land_growth": Q(label="growth of the cage's land"),
     "ring_land_growth": Q(label="growth of the ring's land"),
     # Traction, restitution, mobility.
+    "slope": Q(label="slope of the traction curve", symbol="alpha", digits=4),
+    "slope_error": Q(label="error of the slope", digits=2),
+    "ball_cage_stiffness": Q(label="stiffness of ball and pocket", symbol="k_BC", digits=4),
+    "cage_mass": Q(label="cage mass", symbol="M_C", digits=4),
+    "inner_damping": Q(label="damping of the inner race", digits=4),
+    "outer_damping": Q(label="damping of the outer race", digits=4),
+    "race_damping": Q(label="race damping", symbol="C_mu", digits=4),
+    "race_damping_free_spin": Q(label="race damping if the ball may spin", digits=4),
+    "damping_ratio": Q(label="damping ratio", symbol="zeta", form=".3f"),
+    "damping_ratio_free_spin": Q(label="damping ratio if the ball may spin", form=".3f"),
+    "restitution_factor": Q(label="restitution factor", symbol="eta", form=".3f"),
+    "restitution_factor_free_spin": Q(label="restitution factor if the ball may spin", form=".3f"),
+    "restitution_factor_hertz": Q(label="restitution factor of a Hertzian pocket", form=".3f"),
     #
     # Stability curves, maps and sweeps.
     #

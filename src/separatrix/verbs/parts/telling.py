@@ -43,6 +43,13 @@ def cell(part: Part | None, name: str, mark: str = "") -> Cell:
     return Cell(value, quantity(name), part.unit(name), mark if value is not None else "")
 
 
+def named(name: str) -> str:
+    """Return the label of a quantity with its symbol, as a line begins with it."""
+    known = quantity(name)
+    label = known.label[:1].upper() + known.label[1:]
+    return f"{label} ${known.symbol}$" if known.symbol else label
+
+
 def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
     """Return label and value of a quantity."""
     label = label or quantity(name).label
