@@ -70,6 +70,27 @@ QUANTITIES: dict[str, Quantity] = {
     #
     # Stability curves, maps and sweeps.
     #
+    "restitution_factor": Q(label="restitution factor", symbol="eta", form=".3f"),
+    "restitution_factor_free_spin": Q(label="restitution factor of a ball that may spin", form=".3f"),
+    "ball_cage_friction": Q(label="ball/cage friction", symbol="f_BC", head="pocket friction"),
+    "critical_friction": Q(label="critical friction", ends=("scatter_low", "scatter_high")),
+    "critical_friction_low": Q(
+        label="lower end of the band", head="band low", ends=("low_scatter_low", "low_scatter_high")
+    ),
+    "critical_friction_high": Q(
+        label="upper end of the band", head="band high", ends=("high_scatter_low", "high_scatter_high")
+    ),
+    "kicks": Q(label="initial disturbances", unit="m/s", form=".3g"),
+    "middle_kick": Q(label="reference disturbance", unit="m/s", form=".3g"),
+    "searched_friction": Q(label="highest friction that was searched"),
+    "kick_low": Q(label="friction at which few runs whirl", head="few whirl at"),
+    "kick_critical_friction": Q(label="friction at which half of the runs whirl", head="half whirl at"),
+    "kick_high": Q(label="friction at which most runs whirl", head="most whirl at"),
+    "band_few": Q(label="share of runs that whirl at the lower end of the band", unit="%"),
+    "band_most": Q(label="share of runs that whirl at the upper end of the band", unit="%"),
+    "runs": Q(label="runs", digits=7),
+    "duration": Q(label="length of a run"),
+    "drift_rate_law": Q(label="drift rate by the linear law"),
     # Runs of the cage.
     #
     # Rankings and their verdicts.
