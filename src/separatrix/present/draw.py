@@ -18,7 +18,7 @@ from matplotlib.transforms import Bbox, offset_copy
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
-from separatrix.present.blocks import spans
+from separatrix.present.blocks import Page, Picture, spans
 from separatrix.present.figure import (
     GREY,
     Across,
@@ -92,6 +92,14 @@ def save(spec: Figure, *paths: Path) -> Drawing:
         for path in paths:
             figure.savefig(path, metadata=NOTHING[path.suffix])
         return _svg(figure, spec)
+
+
+def plot(page: Page, name: str | None = None) -> Canvas:
+    """Return the first picture of a page, or the one of this name."""
+    for one in page.blocks:
+        if isinstance(one, Picture) and name in (None, one.name):
+            return drawn(one.figure())
+    raise InputError(page.title, f"has no picture {name or 'of this answer'}")
 
 
 class Drawing(NamedTuple):

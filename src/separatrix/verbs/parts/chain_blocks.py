@@ -17,7 +17,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import figure_heading
+from separatrix.verbs.parts.answer_page import entry_words, figure_heading
 from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
 RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
@@ -174,3 +174,38 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
             level=level,
         ),
     ]
+
+
+def basis_facts(answer: Part) -> list[tuple[str, str]]:
+    """Return what an answer on a cage rests on: bearing, operation, film, and the numbers of the chain."""
+    chain = answer.chain
+
+    def stated(section: str, key: str) -> str:
+        return entry_words((answer.values["study"].get(section) or {}).get(key) or {})
+
+    def both(name: str) -> str:
+        return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
+
+    balls = f"{stated('bearing', 'ball_count')} balls of {stated('bearing', 'ball_diameter')}"
+    point = figure_heading(answer)[1:]
+    summed = "{restitution_factor} with race dampings summed (Eq. 18)"
+    hertz = f"{summed}; {{restitution_factor_free_spin}} if the ball may spin"
+    found = [
+        ("Bearing", f"{balls}, pitch diameter {stated('bearing', 'pitch_diameter')}"),
+        ("Operation", "; ".join(point)),
+        ("Contact angles", both("contact_angle")),
+        ("Loads of the ball", both("load")),
+        ("Traction slopes", both("slope")),
+        ("Race damping $C_mu$", told(chain, "race_damping")),
+        (
+            "Restitution factor $eta$",
+            said(chain, f"{hertz}; {{restitution_factor_hertz}} with a Hertzian pocket"),
+        ),
+        ("Ball/cage stiffness", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+    ]
+    found += clearance_facts(chain.clearances) if "clearances" in chain else []
+    if "orbital_share" in chain:  # of a bearing whose balls do not run alike
+        words = "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+        words += "{orbital_share} of the variance of their speed"
+        found.append(("Free balls lead and lag", said(chain, words)))
+    return found

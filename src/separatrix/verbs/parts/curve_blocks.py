@@ -10,7 +10,6 @@ from separatrix.ground.document import Part
 from separatrix.ground.quantity import alone, middle
 from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Note, Table
 from separatrix.present.figure import (
-    BLACK,
     BLUE,
     GREY,
     SKY,
@@ -21,7 +20,7 @@ from separatrix.present.figure import (
     Panel,
     Trace,
 )
-from separatrix.verbs.parts.telling import axis, cell, column, estimate, quantity, said, told
+from separatrix.verbs.parts.telling import axis, column, estimate, quantity, said, told
 
 HIGHEST = 0.5
 """Friction at the top of a picture without any curve: above it no cage material is of interest."""

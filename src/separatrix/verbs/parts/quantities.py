@@ -70,8 +70,6 @@ QUANTITIES: dict[str, Quantity] = {
     #
     # Stability curves, maps and sweeps.
     #
-    "restitution_factor": Q(label="restitution factor", symbol="eta", form=".3f"),
-    "restitution_factor_free_spin": Q(label="restitution factor of a ball that may spin", form=".3f"),
     "ball_cage_friction": Q(label="ball/cage friction", symbol="f_BC", head="pocket friction"),
     "critical_friction": Q(label="critical friction", ends=("scatter_low", "scatter_high")),
     "critical_friction_low": Q(
@@ -114,14 +112,12 @@ QUANTITIES: dict[str, Quantity] = {
         ends=("uncertain_probability_low", "uncertain_probability_high"),
     ),
     "probability_lowest_friction": Q(label="probability of the lowest mean friction", form=".2f"),
-    "restitution_factor": Q(label="restitution factor", head="bearing's eta", symbol="eta", form=".2f"),
     "solid_lubrication_limit": Q(label="the paper's limit of solid lubrication"),
     "friction_scatter": Q(label="assumed scatter of friction", unit="%"),
     "friction_error": Q(label="standard error of the mean friction", digits=2),
     "friction_deviation": Q(label="standard deviation of friction", digits=2),
     "kick": Q(label="initial disturbance"),
     "worst_kick": Q(label="worst initial disturbance"),
-    "duration": Q(label="length of a run"),
     "longest_run": Q(label="longest run"),
     "largest_offset": Q(label="largest offset of the cage centre", head="largest offset"),
     "mean_offset": Q(label="mean offset of the cage centre", head="mean offset", meaning="median at the end"),
@@ -134,7 +130,6 @@ QUANTITIES: dict[str, Quantity] = {
         meaning="speed at which the lean of the cage's axis goes round over that of the ball set",
     ),
     "drift_rate": Q(label="drift rate", head="drift", digits=2),
-    "drift_rate_law": Q(label="drift rate by the linear law", digits=3),
     "growth_rate": Q(
         label="growth rate", meaning="of the amplitude, mean over all runs from the worst disturbance"
     ),
@@ -160,7 +155,6 @@ QUANTITIES: dict[str, Quantity] = {
     "pocket_impact_share": Q(label="share of the impacts at pockets", unit="%", digits=2),
     "land_impact_share": Q(label="share of the land in all impacts", unit="%", digits=2),
     "energy_imbalance": Q(label="energy imbalance", digits=2),
-    "cage_mass": Q(label="mass of the cage"),
     "pocket_clearance": Q(label="pocket clearance as it runs", digits=4),
     "land_clearance": Q(label="land clearance as it runs", digits=4),
     "slip_speed": Q(label="sliding speed of ball on pocket"),
