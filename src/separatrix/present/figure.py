@@ -22,7 +22,7 @@ Numbers = Sequence[float | None]
 class Axis:
     """An axis: its label with symbol and unit, the size of that unit, its ends [SI].
 
-    `names` are those of the places 0, 1, ...; `most_ticks`, for numbers of many digits, are those drawn at most.
+    `names` are those of the places 0, 1, ...; `most_ticks` is a bound for numbers of many digits.
     """
 
     label: str
