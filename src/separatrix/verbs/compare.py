@@ -290,7 +290,7 @@ def _side(which: str) -> Callable[[_Shown], Cell]:
     return cell
 
 
-def _decided(brief: bool) -> tuple[Column, ...]:
+def _decided(*, is_brief: bool = False) -> Columns:
     return (
         text_column("where", lambda one: one.place if is_brief else one.row.place),
         text_column("what", lambda one: _words(one.row.name)),
@@ -299,7 +299,7 @@ def _decided(brief: bool) -> tuple[Column, ...]:
     )
 
 
-def _changes(brief: bool) -> tuple[Column, ...]:
+def _changes(*, is_brief: bool = False) -> Columns:
     def change(one: _Shown) -> Cell:
         ends = (None, None) if is_brief else (one.row.change_low, one.row.change_high)
         return _told(one.row, one.row.change, *ends)
