@@ -203,7 +203,12 @@ class _Shown:
     @property
     def is_main(self) -> bool:
         """Whether a reader decides by it."""
-        return self.row.name in MAIN and not self.row.place.startswith("chain")
+        return self.row.name in MAIN and self.of_runs
+
+    @property
+    def of_runs(self) -> bool:
+        """Whether it is not one of the chain's results, which other verbs have too."""
+        return not self.row.place.startswith("chain")
 
 
 def _alike(rows: Sequence[_Shown]) -> list[_Shown]:
@@ -257,7 +262,7 @@ def _long(title: tuple[str, str], whole: Columns, brief: Columns, rows: Sequence
     short = [one for one in rows if isinstance(one, _Shown) and one.is_short]
     if short:
         own = f" in {short[0].own}" if short[0].own else ""
-        short = [one for one in short if one.is_main] or short
+        short = [one for one in short if one.is_main] or [one for one in short if one.of_runs] or short
     shown = tuple((short or rows)[:ON_A_SCREEN])
     more = f"{len(rows) - len(shown)} more differ: `--full`." if len(rows) > len(shown) else ""
     yield Heading(f"{title[0]}{own}{title[1]}", Level.BRIEF)

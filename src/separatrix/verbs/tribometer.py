@@ -72,6 +72,8 @@ ALONG = ("run_in_end", "steady_end", "along", "span_along", "lag", "correlation_
 RATES = ("drift_rate", "drift_error", "stick_slip_frequency")
 """Quantities whose unit is that of the abscissa of their test, and one over it."""
 
+EXPONENT, DRIFT = Quantity(label="exponent", form=".3f"), Quantity(label="drift")
+
 MINUTES = (3600.0 * 3, 60.0 * 3)
 """Times from which a test is told in hours, and in minutes [s]."""
 
@@ -290,12 +292,17 @@ def _numbers(tests: Sequence[Part]) -> Iterator[Block]:
     )
     caption = "scatter: standard deviation of the means of whole cycles, of rows where no cycle is known."
     yield Table("numbers", first, tuple(tests), caption, Level.LONG)
-    rates = [column(name) for name in ("drift_rate", "drift_error", "stick_slip_amplitude")]
+    rates = [_drift("drift", "drift_rate"), _drift("standard error", "drift_error")]
+    rates.append(column("stick_slip_amplitude"))
     caption = "Drift, and the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."
     second = (test, *rates, column("stick_slip_frequency"))
     for unit, rows in grouped((RATE_UNITS[one.run_in_axis], one) for one in tests).items():
         per = caption if unit != "-" else f"{caption} Rates are per cycle."
         yield Table(f"rates {unit}".replace("/", " per "), second, tuple(rows), per, Level.LONG)
+
+
+def _drift(head: str, name: str) -> Column:
+    return Column(head, lambda test: Cell(test.get(name), DRIFT, test.unit(name)))
 
 
 def _fits(answer: Part) -> Iterator[Block]:
@@ -333,7 +340,7 @@ def _slopes(fit: Part) -> Iterator[str]:
     words = {"slip_speed": "slip speed", "pressure": "pressure", "pressure_velocity": "pV"}
     for name in fit.slopes.values:
         slope, limits = fit.slopes.get(name), fit.tested.get(name)
-        power = alone(Estimate(slope.value, slope.low, slope.high), quantity("slope"), "-")
+        power = alone(Estimate(slope.value, slope.low, slope.high), EXPONENT, "-")
         span = ""
         if limits and name in ("slip_speed", "pressure"):
             low, high = (alone(one, quantity(name), fit.tested.unit(name)) for one in limits)
