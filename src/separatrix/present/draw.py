@@ -259,6 +259,8 @@ def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
     if one.names:
         getattr(axes, f"set_{way}ticks")(range(len(one.names)), [_literal(name) for name in one.names])
         axes.tick_params(axis=way, length=0)
+    if one.most_ticks:
+        axes.locator_params(axis=way, nbins=one.most_ticks)
     if not one.has_ticks:
         getattr(axes, f"set_{way}ticks")([])
 

@@ -22,7 +22,7 @@ Numbers = Sequence[float | None]
 class Axis:
     """An axis: its label with symbol and unit, the size of that unit, its ends [SI].
 
-    `names` are those of the places 0, 1, ...
+    `names` are those of the places 0, 1, ...; `most_ticks` is a bound for numbers of many digits.
     """
 
     label: str
@@ -32,6 +32,7 @@ class Axis:
     is_log: bool = False
     names: tuple[str, ...] = ()
     has_ticks: bool = True
+    most_ticks: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -164,4 +164,25 @@ QUANTITIES: dict[str, Quantity] = {
     # Uncertain studies.
     #
     # Logs, materials and comparisons.
+    "friction": Q(label="friction", digits=4),
+    "standard_error": Q(label="standard error", digits=2),
+    "standard_deviation": Q(label="scatter", digits=2),
+    "degrees_of_freedom": Q(label="degrees of freedom", form=".0f"),
+    "effective_count": Q(label="independent values"),
+    "steady_rows": Q(label="rows of the steady part", form=".0f"),
+    "rows": Q(label="rows", form=".0f"),
+    "cycles": Q(label="whole cycles", form=".0f"),
+    "slip_speed": Q(label="slip speed", digits=4),
+    "normal_force": Q(label="normal force", digits=4),
+    "cycle_time": Q(label="time of a cycle", digits=4),
+    "wear_depth": Q(label="wear depth"),
+    "run_in_end": Q(label="end of running-in", head="running-in ends", digits=4),
+    "steady_end": Q(label="end of the steady part", head="steady until", digits=4),
+    "stick_slip_amplitude": Q(label="strongest oscillation, peak to peak", head="oscillation", digits=2),
+    "stick_slip_frequency": Q(label="its frequency", head="at"),
+    "correlation": Q(label="autocorrelation"),
+    "row_share": Q(label="share of the rows", unit="%"),
+    "between_samples": Q(label="scatter between samples", unit="%", digits=2),
+    "between_tests": Q(label="scatter between tests of one sample", unit="%", digits=2),
+    "default_scatter": Q(label="assumed scatter", unit="%"),
 }
