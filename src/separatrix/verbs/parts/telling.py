@@ -22,8 +22,13 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told."""
-    return QUANTITIES[name]
+    """Return how a quantity of this name is told; a key of a study, as ``film.thickness``, by its words."""
+    section, dot, key = name.rpartition(".")
+    if not dot:
+        return QUANTITIES[name]
+    words, section = key.replace("_", " "), section.replace("_", " ").replace(".", " ")
+    is_known = section in ("", "operation") or section in words or key == "race_friction"
+    return Quantity(label=words if is_known else f"{section} {words}", head=words)
 
 
 def estimate(part: Part, name: str) -> Number:
