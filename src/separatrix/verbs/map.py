@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
@@ -118,6 +119,9 @@ def counted(answer: Part) -> str:
     """Return of how many points the cage is stable, unstable, and what became of the others."""
     counts = answer.counts
     each = [f"{counts.get(one)} {one.replace('_', ' ')}" for one in KINDS if counts.get(one)]
+    near = Counter(one.get("inferred_decision") for one in answer.points if "inferred_decision" in one)
+    if near:
+        each.append(f"those inferred as {', '.join(f'{count} {word}' for word, count in near.items())}")
     return f"Of {len(answer.points)} points {', '.join(each)}."
 
 
@@ -138,20 +142,21 @@ def nearest_words(answer: Part) -> str:
     if "here" not in x or not values[0] <= x.here <= values[-1]:
         return ""
     at = min(values, key=lambda value: abs(value - x.here))
-    first = f"Next to the study, at a {quantity(x.parameter).label} of {_value(x, at)}, the cage"
-    own = f" The study itself has {_value(x, x.here)}"
-    own += f" and a {quantity(y.parameter).label} of {_value(y, y.here)}." if "here" in y else "."
+    across, up = (quantity(one.parameter).label for one in (x, y))
+    first = f"Next to the study, at {across} {_value(x, at)}, the cage"
+    own = f" The study itself has {across} {_value(x, x.here)}"
+    own += f" and {up} {_value(y, y.here)}." if "here" in y else "."
     changes = [row.change for row in rows(answer, [at]) if row.change is not None]
     if not changes:
         kind = rows(answer, [at])[0].kind
-        words = {EVERYWHERE: "whirls everywhere", NOWHERE: "whirls nowhere"}
+        words = {EVERYWHERE: "whirls everywhere", NOWHERE: "whirls nowhere", OPEN: "was not finished"}
         return f"{first} {words.get(kind, 'has no boundary that was found')}.{own}"
     each = (
-        f"{'above' if one.whirls_above else 'below'} a {quantity(y.parameter).label} between "
-        f"{_value(y, one.y_low)} and {_value(y, one.y_high)}"
+        f"{'begins' if one.whirls_above else 'ceases'} to whirl between {up} {_value(y, one.y_low)} and "
+        f"{_value(y, one.y_high)}"
         for one in changes
     )
-    return f"{first} whirls {', and '.join(each)}.{own}"
+    return f"{first} {', and '.join(each)}.{own}"
 
 
 def runs_words(answer: Part) -> str:
@@ -183,7 +188,7 @@ def _inference(answer: Part) -> list[tuple[str, str]]:
 
 # Where the answer changes.
 
-EVERYWHERE, NOWHERE = "everywhere", "nowhere"
+EVERYWHERE, NOWHERE, OPEN = "everywhere", "nowhere", "not finished"
 
 
 class Row(NamedTuple):
@@ -201,10 +206,18 @@ def rows(answer: Part, columns: Sequence[float]) -> list[Row]:
         changes = [one for one in answer.get("changes") or () if one.x == x]
         found += [Row(x, one, "above" if one.whirls_above else "below") for one in changes]
         if not changes:
-            sides = {_side(one) for one in answer.points if one.x == x and one.runs}
-            kind = "no boundary found" if 0 in sides else EVERYWHERE if sides == {1} else NOWHERE
-            found.append(Row(x, None, kind if sides else "not run"))
+            found.append(Row(x, None, _kind([one for one in answer.points if one.x == x])))
     return found
+
+
+def _kind(column: Sequence[Part]) -> str:
+    """Return what a column without a change is."""
+    sides = {_side(one) for one in column if one.runs}
+    if any(_state(one) == "NOT_RUN" for one in column):
+        return OPEN
+    if not sides:
+        return "refused"
+    return "no boundary found" if 0 in sides else EVERYWHERE if sides == {1} else NOWHERE
 
 
 def _side(point: Part) -> int:
@@ -212,9 +225,13 @@ def _side(point: Part) -> int:
     return 1 if point.probability_low > 0.5 else -1 if point.probability_high < 0.5 else 0
 
 
-def bands(answer: Part) -> Iterator[Table]:
+def bands(answer: Part) -> Iterator[Table | Note]:
     """Yield the bands of the columns, so many as a screen and a report have room for; a workbook has all."""
     every = answer.x.get("values")
+    if not answer.get("changes"):
+        kinds = ", ".join(dict.fromkeys(row.kind for row in rows(answer, every)))
+        yield Note(f"No column of the map has a boundary: {kinds}.")
+        return
     if len(every) <= SOME_COLUMNS:
         yield _bands(answer, every, Level.ALWAYS)
         return

@@ -16,8 +16,9 @@ SPACE = 1.5
 
 def parameter_axis(name: str, unit: str, values: Sequence[float]) -> Axis:
     """Return the axis of a parameter that ends at its first and last value."""
-    ends = {"low": min(values), "high": max(values)} if min(values) < max(values) else {}
-    return axis(name, unit, values, is_log=is_proportional(values), **ends)
+    low, high = min(values), max(values)
+    ends = (low, high) if low < high else (None, None)
+    return axis(name, unit, values, is_log=is_proportional(values), low=ends[0], high=ends[1])
 
 
 def is_proportional(values: Sequence[float]) -> bool:
