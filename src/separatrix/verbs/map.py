@@ -12,8 +12,8 @@ from separatrix.ground.document import Part
 from separatrix.present.blocks import Column, Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.basis_blocks import basis, pocket_friction
-from separatrix.verbs.parts.curve_blocks import linear_law
+from separatrix.verbs.parts.chain_blocks import basis_facts
+from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.telling import column, quantity, said, told
 from separatrix.verbs.parts.varied import parameter_axis, value_of
 from separatrix.verbs.verb import Option, Verb
@@ -55,9 +55,9 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     from separatrix.chain.solution import solve
     from separatrix.ground.errors import InputError
     from separatrix.verbs.answer_records import MapAnswer
-    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, kick_speed, warn_of_extrapolation
+    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.long_jobs import made_into
-    from separatrix.verdict.map_records import MapQuestion
+    from separatrix.verdict.map_records import MapQuestion, StabilityMap
     from separatrix.verdict.parameter_axes import checked_points, read_axis
     from separatrix.verdict.stability_map import stability_map, value_here
 
@@ -79,9 +79,14 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
         speed = kick_speed(options.kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs, adaptive=options.adaptive)
-    warn_of_extrapolation(solution)
+    notes = (*solution.notes, *cage.notes, *extrapolation_notes(solution))
+
+    def made(found: StabilityMap) -> MapAnswer:
+        every = (*notes, *(note for point in found.points for note in point.notes))
+        return MapAnswer(solution=solution, cage=cage, map=found, notes=every)
+
     return made_into(
-        lambda found: MapAnswer(solution=solution, cage=cage, map=found),
+        made,
         lambda: stability_map(asked, runner=runner),
     )
 
@@ -106,7 +111,8 @@ def page(answer: Part) -> Page:
         map_picture(answer),
         Heading("Where the cage begins to whirl"),
         *bands(answer),
-        *basis(answer, *friction, scatter),
+        Heading("Basis of this answer", Level.LONG),
+        facts(*basis_facts(answer), *friction, scatter, level=Level.LONG),
         points_table(answer),
     )
 
@@ -306,9 +312,9 @@ def map_figure(answer: Part) -> Figure:
     """Return the share of the runs that whirl, where it changes, and what has no verdict."""
     x, y = answer.x, answer.y
     axes = [parameter_axis(one.parameter, one.get("unit") or "-", one.get("values")) for one in (x, y)]
-    kick = "each with its own" if KICK in _names(answer) else told(answer, "kick")
+    kick = "" if KICK in _names(answer) else said(answer, ", initial disturbance {kick}")
     panel = Panel(
-        title=f"Share of the runs that whirl, initial disturbance {kick}",
+        title=f"Share of the runs that whirl{kick}",
         x=axes[0],
         y=axes[1],
         marks=(*_cells(answer), *_limit(answer), *_changes(answer), *_study(answer)),
@@ -349,7 +355,7 @@ def _cells(answer: Part) -> Iterator[Mark]:
         was_run = [one for one in answer.points if one.runs]
         name = "was run; elsewhere the points around agree"
         at: dict[str, Any] = {"x": [one.x for one in was_run], "y": [one.y for one in was_run]}
-        yield Trace(**at, name=name, line="", marker="o", size=1.6)
+        yield Trace(**at, name=name, line="", marker="o", size=2.2, is_open=True, width=0.5)
 
 
 def _state(point: Part) -> str:

@@ -5,11 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Heading, Note, Page, Picture
+from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.basis_blocks import basis, pocket_friction
-from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel, drift_words, own_lead, own_point
+from separatrix.verbs.parts.chain_blocks import basis_facts
+from separatrix.verbs.parts.curve_blocks import (
+    curve_blocks,
+    curve_panel,
+    drift_words,
+    own_lead,
+    own_point,
+    pocket_friction,
+)
 from separatrix.verbs.parts.telling import said
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -23,15 +30,17 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     from separatrix.chain.solution import solve
     from separatrix.verbs.answer_records import StabilityAnswer
-    from separatrix.verbs.parts.cage_of_study import cage_of, warn_of_extrapolation
+    from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.stability_curve import stability_curve
 
     solution = solve(study)
-    warn_of_extrapolation(solution)
     cage, settings = cage_of(solution), study.stability
+    notes = (*solution.notes, *extrapolation_notes(solution), *cage.notes)
     return made_into(
-        lambda curve: StabilityAnswer(solution=solution, cage=cage, curve=curve),
+        lambda curve: StabilityAnswer(
+            solution=solution, cage=cage, curve=curve, notes=(*notes, *curve.notes)
+        ),
         lambda: stability_curve(cage, settings, runner=runner),
     )
 
@@ -47,7 +56,12 @@ def page(answer: Part) -> Page:
         *own_point(answer),
         Heading("Stability curve"),
         *curve_blocks(answer),
-        *basis(answer, ("Pocket friction", pocket_friction(answer) or "not stated")),
+        Heading("Basis of this answer", Level.LONG),
+        facts(
+            *basis_facts(answer),
+            ("Pocket friction", pocket_friction(answer) or "not stated"),
+            level=Level.LONG,
+        ),
     )
 
 

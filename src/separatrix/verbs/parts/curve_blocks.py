@@ -358,3 +358,23 @@ def _sheets(curve: Part) -> list[Block]:
         Table("band of the curve", tuple(columns), tuple(points), own, Level.SHEET),
         Table("curve by disturbance", each, rows, own, Level.SHEET),
     ]
+
+
+# The friction of the cage itself.
+
+
+def pocket_friction(answer: Part) -> str:
+    """Return the pocket friction of a cage, and whose it is if not its own; empty if none is known."""
+    stated = (answer.values["study"]["cage"].get("ball_cage_friction") or {}).get("value") is not None
+    if not stated and not answer.cage.ball_cage_friction:
+        return ""
+    return told(answer.cage, "ball_cage_friction") + ("" if stated else f", {_material(answer)}")
+
+
+def _material(answer: Part) -> str:
+    """Return the candidate that the cage has, and its environment."""
+    study = answer.values["study"]
+    ranking = study["ranking"]
+    name = (study["cage"].get("material") or {}).get("name") or ranking["candidates"][0]["name"]
+    place = (ranking.get("environment") or {}).get("value") or ranking["environments"][0]
+    return f"that of {name} in {place}"

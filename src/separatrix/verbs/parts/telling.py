@@ -22,13 +22,15 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told; a key of a study, as ``film.thickness``, by its words."""
-    section, dot, key = name.rpartition(".")
-    if not dot:
+    """Return how a quantity of this name is told; one that only full tables have, by its name.
+
+    A key of a study, as ``film.thickness``, is told by its words, with its section where these need it.
+    """
+    if name in QUANTITIES:
         return QUANTITIES[name]
-    words, section = key.replace("_", " "), section.replace("_", " ").replace(".", " ")
-    is_known = section in ("", "operation") or section in words or key == "race_friction"
-    return Quantity(label=words if is_known else f"{section} {words}", head=words)
+    section, _, key = name.replace("_", " ").rpartition(".")
+    is_known = section in ("", "operation") or section in key or key == "race friction"
+    return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
 
 
 def estimate(part: Part, name: str) -> Number:
@@ -46,6 +48,13 @@ def cell(part: Part | None, name: str, mark: str = "") -> Cell:
         return Cell(None, quantity(name))
     value = estimate(part, name)
     return Cell(value, quantity(name), part.unit(name), mark if value is not None else "")
+
+
+def named(name: str) -> str:
+    """Return the label of a quantity with its symbol, as a line begins with it."""
+    known = quantity(name)
+    label = known.label[:1].upper() + known.label[1:]
+    return f"{label} ${known.symbol}$" if known.symbol else label
 
 
 def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
