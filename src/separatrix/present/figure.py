@@ -39,7 +39,8 @@ class Axis:
 class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
-    `fill` is the opacity inside a closed line. A trace without points stands only in the legend.
+    `fill` is the opacity inside a closed line, `has_halo` a white edge above colours. A trace without points
+    stands only in the legend.
     """
 
     x: Numbers
@@ -55,6 +56,7 @@ class Trace:
     high: Numbers = ()
     ends_along: str = "y"
     fill: float = 0.0
+    has_halo: bool = False
     hover: tuple[str, ...] = ()
 
 
@@ -97,6 +99,19 @@ class Cells:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Hatched:
+    """Strokes over some of the cells of these places, above a `fill` if it is stated."""
+
+    x: Numbers
+    y: Numbers
+    where: Sequence[Sequence[bool]]
+    name: str
+    colour: str = "#ffffff"
+    strokes: str = "////"
+    fill: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Words:
     """A text at a place of a panel, in data; `side` is where it stands beside the place."""
 
@@ -117,7 +132,7 @@ class Label:
     marker: str = ""
 
 
-Mark = Trace | Band | Across | Cells | Words
+Mark = Trace | Band | Across | Cells | Hatched | Words
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

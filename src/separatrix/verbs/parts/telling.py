@@ -22,8 +22,15 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told; one that only full tables have, by its name."""
-    return QUANTITIES.get(name) or Quantity(label=name.replace("_", " "))
+    """Return how a quantity of this name is told; one that only full tables have, by its name.
+
+    A key of a study, as ``film.thickness``, is told by its words, with its section where these need it.
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    section, _, key = name.replace("_", " ").rpartition(".")
+    is_known = section in ("", "operation") or section in key or key == "race friction"
+    return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
 
 
 def estimate(part: Part, name: str) -> Number:
