@@ -81,11 +81,11 @@ def page(answer: Part) -> Page:
         Heading("Push along the orbit"),
         Equation(
             r"F(u) = \dfrac{C\,u}{\left(1 + (u/v)^4\right)^{1/4}}",
-            "Law of traction of a ball pushed at the speed $u$ beyond its free orbit: slope $C$, knee $v$. The "
-            "motion of the cage takes it.",
+            "Law of traction of a ball that is pushed at a speed $u$ beyond its free orbit: slope $C$, "
+            "knee $v$. The motion of the cage takes it.",
         ),
         facts(
-            ("Capacity $f_BT (N_I + N_E)$", cell(answer, "capacity")),
+            ("Capacity $f_BT$ ($N_I$ + $N_E$)", cell(answer, "capacity")),
             ("Law of traction: slope $C$ and knee $v$", f"{told(law, 'slope')}, {told(law, 'speed')}"),
             ("Largest error of the law", said(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", said(answer, "up to {asymmetry} of the capacity")),
@@ -146,7 +146,7 @@ def push_figure(answer: Part) -> Figure:
     linear = Trace(
         x=[0.0, 1.15 * capacity / damping],
         y=[0.0, 1.15 * capacity],
-        name=said(answer, "$C_f u$, damping {damping}"),
+        name=said(answer, "$C_f$ $u$, damping {damping}"),
         colour=BLACK,
         line=":",
         width=1.0,

@@ -7,6 +7,7 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import (
     Block,
+    Cell,
     Column,
     Equation,
     Heading,
@@ -178,7 +179,7 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
 
 
 def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
-    """Return what the verdict on a cage stands on: bearing, operation, film, and the numbers of the chain."""
+    """Return the basis of a verdict: bearing, operation, film, and the numbers of the chain."""
     chain = answer.chain
 
     def both(name: str) -> str:
