@@ -51,7 +51,9 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
     from separatrix.verbs.answer_records import MobilityAnswer
 
     records = (study.bearing, study.operation, study.kinematics.model, study.film, study.traction)
-    return MobilityAnswer(mobility=solve(study).mobility, rigid=linear_mobility(*records, SlipLaw.RIGID))
+    solution = solve(study)
+    found, rigid = solution.mobility, linear_mobility(*records, SlipLaw.RIGID)
+    return MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)
 
 
 def refusals(study: Study) -> Iterator[str]:

@@ -26,13 +26,18 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     from separatrix.chain.solution import solve
     from separatrix.verbs.answer_records import RestitutionAnswer
-    from separatrix.verbs.parts.cage_of_study import warn_if_overdamped
+    from separatrix.verbs.parts.cage_of_study import overdamped_notes
 
     solution = solve(study)
-    warn_if_overdamped(solution.restitution)
-    _ = solution.clearances  # refused, and warned of
+    overdamped = overdamped_notes(solution.restitution)
+    _ = solution.clearances  # refused, and noted
     thickness = study.film.thickness or 0.0
-    return RestitutionAnswer(solution=solution, film_thickness=thickness, lubrication=solution.lubrication)
+    return RestitutionAnswer(
+        solution=solution,
+        film_thickness=thickness,
+        lubrication=solution.lubrication,
+        notes=(*solution.notes, *overdamped),
+    )
 
 
 def refusals(study: Study) -> Iterator[str]:

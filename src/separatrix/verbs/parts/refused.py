@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
@@ -22,13 +21,12 @@ def refused(study: Study, *steps: Step) -> Iterator[str]:
     A link solved with strips takes milliseconds; of the exact contact only what refuses it is computed.
     """
     from separatrix.chain.solution import solve
-    from separatrix.ground.errors import SeparatrixError, ValidityWarning
+    from separatrix.ground.errors import SeparatrixError
 
     solution = solve(study)
     try:
-        with warnings.catch_warnings(action="ignore", category=ValidityWarning):  # the verb warns itself
-            for step in steps:
-                step(solution)
+        for step in steps:
+            step(solution)
     except SeparatrixError as error:
         yield str(error)
 

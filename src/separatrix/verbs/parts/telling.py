@@ -22,8 +22,8 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told."""
-    return QUANTITIES[name]
+    """Return how a quantity of this name is told; one that only full tables have, by its name."""
+    return QUANTITIES.get(name) or Quantity(label=name.replace("_", " "))
 
 
 def estimate(part: Part, name: str) -> Number:
