@@ -242,7 +242,7 @@ def _panel(axes: Axes, panel: Panel) -> None:
         axes.spines[:].set_visible(False)
         axes.xaxis.label.set(fontsize=6.5, x=0.0, ha="left")
     if panel.is_to_scale:
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal", adjustable="datalim" if panel.has_frame else "box", anchor="N")
     if panel.labels:
         _labels(axes, panel)
 

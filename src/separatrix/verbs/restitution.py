@@ -9,7 +9,7 @@ from separatrix.ground.document import Part
 from separatrix.ground.units import format_number
 from separatrix.present.blocks import Block, Cell, Column, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLACK, SEQUENCE, Figure, Mark, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import entry_words, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
 from separatrix.verbs.parts.refused import impact, refused, rolling
 from separatrix.verbs.parts.telling import axis, number_of, place_column, quantity, said, told
@@ -97,6 +97,13 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     )
 
 
+def this_bearing(answer: Part) -> str:
+    """Return the name of the star, with the race friction, which may be between the curves."""
+    return (
+        f"this bearing, race friction $f_BT$ = {entry_words(answer.values['study']['film']['race_friction'])}"
+    )
+
+
 def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:
     """Return a curve for each race friction; bare races are apart from the films, at the left."""
     thickness: Sequence[float] = curve.film_thickness
@@ -121,7 +128,11 @@ def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:
     star: dict[str, Any] = {"marker": "*", "line": "", "size": 9.0, "colour": BLACK}
     marks.append(
         Trace(
-            x=[here], y=[own], name="this bearing", hover=(f"this bearing: eta {told(answer, name)}",), **star
+            x=[here],
+            y=[own],
+            name=this_bearing(answer),
+            hover=(f"this bearing: eta {told(answer, name)}",),
+            **star,
         )
     )
     x = axis("film_thickness", curve.unit("film_thickness"), [1e-6], is_log=True)

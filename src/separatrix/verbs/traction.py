@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
+from separatrix.ground.units import format_number
 from separatrix.present.blocks import (
     Cell,
     Column,
@@ -35,7 +37,7 @@ from separatrix.verbs.parts.telling import axis, by_race, cell, number_of, place
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import TractionAnswer
@@ -110,9 +112,12 @@ def page(answer: Part) -> Page:
 
 CURVES = (
     "Traction coefficient against creep increment for both races (the paper's Fig. 7): this bearing with its "
-    "slope at the origin, and by strips at other pivoting to rolling ratios."
+    "slope at the origin, and by strips at other pivoting to rolling ratios of the same sign."
 )
-SLOPES = "Slope of the traction curve at the origin against the pivoting to rolling ratio."
+SLOPES = (
+    "Slope of the traction curve at the origin against the size of the pivoting to rolling ratio: by strips, "
+    "and of this bearing by the model of the study."
+)
 SHEAR = (
     "Shear along rolling in three strips of each contact in free rolling (the paper's Fig. 6). Surfaces "
     "enter at the right; the grey area is what friction bears."
@@ -201,23 +206,24 @@ def curves_panel(part: Part, title: str, y: Axis) -> Panel:
 def slopes_figure(answer: Part) -> Figure:
     """Return slopes against the size of the ratio, by strips, and those of this bearing."""
     marks: list[Mark] = []
-    for race, colour, marker, line in RACES:
+    for race, colour, marker, _ in RACES:
         part = getattr(answer, race)
         others = part.by_spin_roll_ratio
         look: dict[str, Any] = {"colour": colour, "marker": marker}
         hover = tuple(said(one, f"{race} race, ratio {{spin_roll_ratio}}: slope {{slope}}") for one in others)
         x, y = [abs(one.spin_roll_ratio) for one in others], [one.slope for one in others]
-        marks.append(Trace(x=x, y=y, line=line, name=f"{race} race, by strips", hover=hover, **look))
+        marks.append(Trace(x=x, y=y, line="", name=f"{race} race, by strips", hover=hover, **look))
         said_own = said(part, f"{race} race of this bearing, ratio {{spin_roll_ratio}}: slope {{slope}}")
         own = {"x": [abs(part.spin_roll_ratio)], "y": [part.slope], "hover": (said_own,)}
         marks.append(
             Trace(**own, line="", size=7.0, is_open=True, name=f"{race} race of this bearing", **look)
         )
-    slopes = [one.slope for race in ("inner", "outer") for one in getattr(answer, race).by_spin_roll_ratio]
+    races = (answer.inner, answer.outer)
+    slopes = [one.slope for part in races for one in (part, *part.by_spin_roll_ratio)]
     panel = Panel(
         title="Slope of the traction curve at the origin",
-        x=axis("ratio", "-", [], low=0.0),
-        y=axis("slope", answer.inner.unit("slope"), slopes, is_log=True),
+        x=axis("ratio", "-", [], low=-0.02),
+        y=slope_axis(answer, slopes),
         marks=tuple(marks),
     )
     return Figure(
@@ -226,6 +232,15 @@ def slopes_figure(answer: Part) -> Figure:
         height=2.8,
         alt="Slope against the pivoting to rolling ratio: it falls with the ratio for both races.",
     )
+
+
+def slope_axis(answer: Part, slopes: Sequence[float]) -> Axis:
+    """Return the axis of the slopes, which differ by powers of ten, with ticks at 1, 2 and 5."""
+    low, high = 0.8 * min(slopes), 1.25 * max(slopes)
+    places = [step * 10.0**power for power in range(-3, 5) for step in (1.0, 2.0, 5.0)]
+    ticks = tuple((one, format_number(one)) for one in places if low <= one <= high)
+    found = axis("slope", answer.inner.unit("slope"), slopes, low=low, high=high, is_log=True)
+    return replace(found, ticks=ticks)
 
 
 def shear_figure(answer: Part) -> Figure:
@@ -260,7 +275,7 @@ def shear_figure(answer: Part) -> Figure:
 
 def bare_axis(one: Axis) -> Axis:
     """Return an axis without its label, beside one that has it."""
-    return Axis(label="", size=one.size, low=one.low, high=one.high)
+    return replace(one, label="")
 
 
 def strip_panel(field: Part, strip: int, letter: str, y: Axis) -> Panel:
