@@ -103,7 +103,7 @@ class Answer(Generic[Record]):
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
-        from separatrix.present.dataset_arrays import dataset
+        from separatrix.present.dataset import dataset
 
         return dataset(self.document())
 

@@ -109,11 +109,11 @@ def save_answer(
         if not verb.writes_data or found.get("complete") is False:
             return
         # what follows takes seconds to load
-        from separatrix.present.dataset_arrays import dataset, save
-        from separatrix.present.workbook import workbook
+        from separatrix.present.dataset import dataset, save
+        from separatrix.present.spreadsheet import spreadsheet
 
         save(dataset(found), stage / f"{verb.name}.nc")
-        (stage / f"{verb.name}.xlsx").write_bytes(workbook(page))
+        (stage / f"{verb.name}.xlsx").write_bytes(spreadsheet(page))
         if pictures:
             _draw(page, stage, verb.name)
         if verb.files is not None:

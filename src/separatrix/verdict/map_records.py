@@ -184,7 +184,7 @@ class StabilityMap:
 
     x: MapAxis  # horizontal axis
     y: MapAxis  # vertical axis
-    points: tuple[MapPoint, ...]  # column after column of x
+    points: Annotated[tuple[MapPoint, ...], Rows("point", "point_")]  # column after column of x
     changes: Annotated[tuple[MapChange, ...], Rows("change", "change_")]
     """Bands between motion that settles and a whirl."""
     counts: Annotated[Mapping[str, int], Rows(prefix="points_")]
