@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as plain_json
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +13,7 @@ import typer
 
 from separatrix.comparing.records import Agreement
 from separatrix.comparing.saved import Document, Saved, read_answers
-from separatrix.front.console import answer, answer_json, interruptible, progress_bar
+from separatrix.front.console import answer, answer_json, breakable, interruptible, progress_bar
 from separatrix.front.verb_commands import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
 from separatrix.ground.errors import InputError, grouped, noted_warnings
 from separatrix.ground.files import staged, writable_folder
@@ -117,7 +118,7 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
         study, question = study_again(kept["study"]), _question(verb, kept["command"].get("question"))
         require(study, verb.name, *verb.needs)
         with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
-            found = computed(verb, study, question, jobs=jobs, progress=progress)
+            found = breakable(partial(computed, verb, study, question, jobs=jobs, progress=progress))
         if not found.is_complete:
             raise Interrupted
         made = document(verb.name, found.record, found.study, grouped(notes), found.question)

@@ -5,12 +5,21 @@ from __future__ import annotations
 import contextlib
 import inspect
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
+from separatrix.front.console import (
+    answer,
+    answer_json,
+    breakable,
+    complain,
+    interrupted,
+    interruptible,
+    progress_bar,
+)
 from separatrix.ground.errors import InputError, grouped, noted_warnings
 from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
@@ -190,7 +199,8 @@ def computed_with_progress(
 ) -> Computed:
     """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
     with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
-        found = computed(verb, study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        how = partial(computed, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        found = breakable(partial(how, verb, study, question))
     if found.runs_taken and not quiet:
         kept = f"{folder}/{LEDGER}"
         complain(f"{found.runs_taken} runs were taken from {kept}, where an earlier call had kept them.")

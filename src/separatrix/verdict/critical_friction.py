@@ -14,6 +14,7 @@ from separatrix.chain.impact_restitution import restitution_factor as nominal
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.response import (
+    BATCH,
     SEARCHED_FRICTION,
     Count,
     Crossing,
@@ -118,6 +119,15 @@ def critical_friction(
     lows = _first_settled(responses, BAND_FEW, more, {kick: three[0] for kick, three in each.items()}, 1)
     highs = _first_settled(responses, BAND_MOST, more, {kick: three[2] for kick, three in each.items()}, -1)
     return _point(eta, settings, found, lows, middles, highs)
+
+
+def expected_runs(settings: StabilitySettings, *, band: bool) -> float:
+    """Runs that one critical friction takes, about; the first counts find where it is."""
+    first = min(BATCH, settings.runs)
+    if not band:
+        return 4.0 * first + END_RUNS * settings.runs
+    each = 5.0 * first + END_RUNS * settings.runs
+    return 4.0 * first + MIDDLE_RUNS * settings.runs + len(settings.kicks) * each
 
 
 def own_restitution_factor(cage: MovingCage) -> Ratio:

@@ -27,7 +27,7 @@ from separatrix.ground.units import (
 from separatrix.study.candidates import require_friction
 from separatrix.study.study import Operation, Study
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import Runner, scattered
 from separatrix.verdict.map_records import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.verdict.parameter_axes import MOST_CASES, TIME_SHARE, Case
 from separatrix.verdict.reasons import CageMotion
@@ -242,7 +242,7 @@ def sweep(
 
     with warnings.catch_warnings():  # thousands of cases would repeat the same
         warnings.simplefilter("ignore", ValidityWarning)
-        return runner.work_out(run, range(len(cases)), into=table)
+        return runner.work_out(run, scattered(range(len(cases))), into=table)
 
 
 def _names(cases: Sequence[Case]) -> list[str]:
