@@ -90,6 +90,13 @@ class Options:
     verdicts: Annotated[bool, Option("Run the ensemble of every case, too.")] = False
     margins: Annotated[bool, Option("Compute threshold and margin of every case, too.")] = False
 
+    def __post_init__(self) -> None:
+        """Read a table of cases: an answer has the cases themselves."""
+        if isinstance(self.cases, Path):
+            from separatrix.verdict.parameter_axes import asked_cases
+
+            object.__setattr__(self, "cases", tuple(asked_cases(self.vary, self.cases)))
+
 
 def compute(study: Study, options: Options, runner: Runner) -> Sweep:
     """Chain and, if asked, verdict of many cases of a study."""
@@ -433,8 +440,8 @@ def _margin(cases: Sequence[Part], way: Way, hover: Sequence[str]) -> Made:
     threshold = "restitution_threshold"
     both = [(one.get(ETA), one.get(threshold)) for one in cases]
     ends = {f"{end}": _numbers(cases, f"{threshold}_{end}") for end in ("low", "high")}
-    name = "threshold, with its 95 % interval"
-    look: dict[str, Any] = {"colour": BLUE, "marker": "s", "size": 3.0, "name": name}
+    look: dict[str, Any] = {"colour": BLUE, "marker": "s", "size": 3.0}
+    look["name"] = "threshold, with its 95 % interval"
     marks: list[Mark] = []
     if way.is_line:
         known = [None if None in pair else pair for pair in both]
@@ -442,12 +449,8 @@ def _margin(cases: Sequence[Part], way: Way, hover: Sequence[str]) -> Made:
         eta = [pair and pair[0] for pair in known]
         marks.append(Band(x=x, low=eta, high=[p and max(p) for p in known], name="margin", colour=SKY))
         if any(pair and pair[0] > pair[1] for pair in known):
-            beyond = {
-                "low": [p and min(p) for p in known],
-                "name": "beyond the threshold",
-                "colour": VERMILION,
-            }
-            marks.append(Band(x=x, high=eta, **beyond))
+            low, name = [p and min(p) for p in known], "beyond the threshold"
+            marks.append(Band(x=x, low=low, high=eta, name=name, colour=VERMILION))
     marks += [_trace(cases, threshold, way, hover, **look, **ends), _eta(cases, way, hover)]
     return "Margin: threshold less restitution factor", axis(ETA, "-", [], low=-0.03, high=1.05), marks
 
