@@ -254,8 +254,11 @@ def _panel(axes: Axes, panel: Panel) -> None:
                 axes.annotate(symbols(mark.text), place, color=mark.colour, **look, **SIDES[mark.side])
     _axis(axes, "x", panel.x)
     _axis(axes, "y", panel.y)
+    if not panel.has_frame:
+        axes.spines[:].set_visible(False)
+        axes.xaxis.label.set(fontsize=6.5, x=0.0, ha="left")
     if panel.is_to_scale:
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal", adjustable="datalim" if panel.has_frame else "box", anchor="N")
     if panel.labels:
         _labels(axes, panel)
 
@@ -277,6 +280,12 @@ def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
     if one.names:
         getattr(axes, f"set_{way}ticks")(range(len(one.names)), [_literal(name) for name in one.names])
         axes.tick_params(axis=way, length=0)
+    if one.most_ticks:
+        axes.locator_params(axis=way, nbins=one.most_ticks)
+    if one.ticks:
+        places, names = zip(*one.ticks, strict=True)
+        getattr(axes, f"set_{way}ticks")([at / one.size for at in places], [_literal(name) for name in names])
+        getattr(axes, f"set_{way}ticks")([], minor=True)
     if not one.has_ticks:
         getattr(axes, f"set_{way}ticks")([])
 
@@ -298,6 +307,8 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     x, y = _scaled(one.x, panel.x), _scaled(one.y, panel.y)
     if one.fill:
         axes.fill(x, y, color=one.colour, alpha=one.fill, lw=0)
+    if one.face:
+        axes.fill(x, y, facecolor=one.face, lw=0, zorder=2)
     if one.low:
         low, high = (
             _scaled(end, panel.x if one.ends_along == "x" else panel.y) for end in (one.low, one.high)

@@ -78,6 +78,16 @@ def column(
     )
 
 
+def place_column(part: Part, name: str, *, head: str = "") -> Column:
+    """Return the column of a list of a part, for rows that are places in it."""
+    known, unit = quantity(name), part.unit(name)
+    return Column(
+        head or known.head or known.label,
+        lambda place: Cell(getattr(part, name)[place], known, unit),
+        meaning=known.meaning,
+    )
+
+
 def by_race(
     name: str, inner: Part, outer: Part, *names: str, level: Level = Level.ALWAYS, caption: str = ""
 ) -> Table:
@@ -94,6 +104,11 @@ def by_race(
 def told(part: Part, name: str) -> str:
     """Return a number of a part as it stands in a sentence."""
     return alone(estimate(part, name), quantity(name), part.unit(name))
+
+
+def number_of(part: Part, name: str, value: float | None) -> str:
+    """Return one number of a list of a part, as it stands in a sentence."""
+    return alone(value, quantity(name), part.unit(name))
 
 
 def said(part: Part, template: str) -> str:
