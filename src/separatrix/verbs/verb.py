@@ -7,7 +7,7 @@ from dataclasses import MISSING, dataclass, fields
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from separatrix.ground.document import Document, Part
     from separatrix.present.blocks import Page
@@ -45,7 +45,8 @@ class Verb:
     study, the options and, of a verb that keeps runs, a `Runner`, and returns its record; `page` makes the
     page of its document. `needs` are sections of a study that may be left out but not here. `keeps_runs` is
     for an answer whose finished runs are kept in its folder, and that may be made on a cluster.
-    `moves_a_cage` is for one whose models of motion and ball may be chosen. `refusals` yields, in a second,
+    `files` yields name and content of what it writes besides, of its answer, options and who is told of
+    progress. `moves_a_cage` is for one whose models of motion and ball may be chosen. `refusals` yields, in a second,
     what the verb would refuse of a study or take long for, a sentence each.
     """
 
@@ -60,6 +61,7 @@ class Verb:
     has_full: bool = False
     writes_data: bool = True
     keeps_runs: bool = False
+    files: Callable[..., Iterable[tuple[str, bytes]]] | None = None
     refusals: Callable[[Study], Iterator[str]] = no_refusals
 
     def shown_options(self) -> Mapping[str, tuple[Any, Option, Any]]:

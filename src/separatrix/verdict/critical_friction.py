@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from separatrix.cage.closed_forms import linear_critical_friction
@@ -14,6 +14,7 @@ from separatrix.chain.impact_restitution import restitution_factor as nominal
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.response import (
+    BATCH,
     SEARCHED_FRICTION,
     Count,
     Crossing,
@@ -73,6 +74,7 @@ class CriticalFriction:
     kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which nine tenths do
     side: Side | None = None  # of one half on which P(whirl) lies throughout, if `critical_friction` is None
     reason: str | None = None  # why one of the first three frictions is None
+    notes: tuple[str, ...] = ()  # on runs that do not show where their motion ends, a sentence each
 
 
 def critical_friction(
@@ -110,14 +112,27 @@ def critical_friction(
     most = max(1, round((MIDDLE_RUNS if band else END_RUNS) * settings.runs))
     found = responses[reference].crossing(0.5, most, start)
     if not band:
-        return _point(eta, settings, found, {}, {}, {})
+        return replace(_point(eta, settings, found, {}, {}, {}), notes=_notes(responses))
     start = found.value if isinstance(found, Crossing) else start
     few, more = (max(1, round(part * settings.runs)) for part in (FIRST_RUNS, END_RUNS))
     each = {kick: _crossings(responses[kick], few, start) for kick in kicks}
     middles = {kick: three[1] for kick, three in each.items()} | {reference: found}
     lows = _first_settled(responses, BAND_FEW, more, {kick: three[0] for kick, three in each.items()}, 1)
     highs = _first_settled(responses, BAND_MOST, more, {kick: three[2] for kick, three in each.items()}, -1)
-    return _point(eta, settings, found, lows, middles, highs)
+    return replace(_point(eta, settings, found, lows, middles, highs), notes=_notes(responses))
+
+
+def _notes(responses: Mapping[MetrePerSecond, Response]) -> tuple[str, ...]:
+    return tuple(note for _, response in sorted(responses.items()) for note in response.notes)
+
+
+def expected_runs(settings: StabilitySettings, *, band: bool) -> float:
+    """Runs that one critical friction takes, about; the first counts find where it is."""
+    first = min(BATCH, settings.runs)
+    if not band:
+        return 4.0 * first + END_RUNS * settings.runs
+    each = 5.0 * first + END_RUNS * settings.runs
+    return 4.0 * first + MIDDLE_RUNS * settings.runs + len(settings.kicks) * each
 
 
 def own_restitution_factor(cage: MovingCage) -> Ratio:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -35,7 +36,7 @@ from separatrix.verdict.critical_friction import CriticalFriction
 from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
 from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
@@ -77,6 +78,7 @@ class _Question:
     """Solutions by pocket, and what is to be computed with them."""
 
     settings: StabilitySettings
+    solved: Sequence[Solution]  # of each candidate
     cages: Mapping[Pocket, Solution]
     tracers: Mapping[Pocket, Tracer]
     pockets: Mapping[str, Pocket]
@@ -150,16 +152,22 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             ball_model=reference.design.ball,
             motion_model=reference.design.motion,
             capacity=transmitted_force(reference),
-            notes=_notes(study, asked, question, ranked[environment]),
+            notes=_notes(study, asked, question, found, ranked[environment]),
             complete=found.complete,
         )
 
     return _compute(question, ranking)
 
 
-def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
-    """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
-    notes = [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
+def _notes(
+    study: Study, asked: RankingQuestion, question: _Question, found: _Findings, rows: Sequence[Row]
+) -> tuple[str, ...]:
+    """Sentences for under the table: whose curve it is, and where chain and motion leave their models."""
+    points = [*chain.from_iterable(found.points.values()), *([found.here] if found.here else [])]
+    notes = [note for one in question.solved for note in one.notes]
+    notes += [note for tracer in question.tracers.values() for note in tracer.counter.cage.notes]
+    notes += [note for point in points for note in point.notes]
+    notes += [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
     if question.drawn and (failures := question.drawn.failures):
         share = f"{len(failures)} of {study.stability.runs}"
         notes.append(f"{share} draws of the uncertain inputs make no bearing: {failures[0]}")
@@ -197,6 +205,7 @@ def _question(
     }
     return _Question(
         settings=settings_for(study.stability, empty[reference]),
+        solved=[*solved.values()],
         cages=cages,
         tracers=tracers,
         pockets=pockets,
@@ -233,11 +242,19 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
 
     return question.runner.work_out(
         lambda piece: _computed(question, piece),
-        # verdicts come first, so that an interrupt leaves some
-        [*keys, *cases, (question.reference, (OWN_DAMPING, None)), *nodes],
+        # the longest first, as its runs wait for each other; then verdicts, so that an interrupt leaves some
+        [(question.reference, (OWN_DAMPING, None)), *scattered(keys), *scattered(cases), *nodes],
         into=ranked,
         more=lambda piece, results: _more(question, piece, results),
+        load=lambda piece: _load(question, piece),
     )
+
+
+def _load(question: _Question, piece: Piece) -> Load:
+    """Work of a piece: runs of a verdict, or those of a node."""
+    if not isinstance(piece, Case) and isinstance(piece[1], tuple):
+        return question.tracers[piece[0]].load(piece[1])
+    return Load(len(question.settings.kicks) * question.settings.runs)
 
 
 def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement:

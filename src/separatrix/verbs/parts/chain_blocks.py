@@ -5,10 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Block, Equation, Heading, Level, Picture, facts
+from separatrix.present.blocks import (
+    Block,
+    Cell,
+    Column,
+    Equation,
+    Heading,
+    Level,
+    Picture,
+    Table,
+    facts,
+    text_column,
+)
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
 from separatrix.verbs.parts.answer_page import figure_heading
-from separatrix.verbs.parts.telling import axis, by_race, said
+from separatrix.verbs.parts.study_facts import bearing_facts
+from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
 RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
 ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
@@ -104,3 +116,94 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
     lands = (("its land", "cage_land_growth"), ("the ring's land", "ring_land_growth"))
     grown += [said(found, f"{part} {{{key}}} in radius") for part, key in lands if found.get(key)]
     return [*rows, ("Thermal strain", ", ".join(known)), ("Growth by rotation", ", ".join(grown))]
+
+
+FACTORS = ("race_damping", "damping_ratio", "restitution_factor")
+DAMPING = ("load", "slope", "rolling_speed")
+OVERDAMPED = " (overdamped)"
+
+
+def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
+    """Return both restitution factors, and what they are made of, with the equations."""
+
+    def factor(end: str) -> Column:
+        head = "if the ball may spin" if end else "dampings summed (Eq. 18)"
+        is_over = chain.get(f"restitution_factor{end}") == 0.0
+        return Column(
+            head,
+            lambda name: cell(
+                chain, name + end, OVERDAMPED if is_over and name == "restitution_factor" else ""
+            ),
+        )
+
+    hertz = "{restitution_factor_hertz} in an impact at the impact speed, less in a harder one"
+    return [
+        Heading("Restitution", level),
+        Equation(
+            r"C_\mu = \dfrac{\alpha_i\,Q_i}{V_i} + \dfrac{\alpha_o\,Q_o}{V_o}",
+            "Race damping $C_mu$ [18]: slopes $alpha$, loads $Q$ and rolling speeds $V$ of both contacts.",
+            level & Level.REPORT,
+        ),
+        Equation(
+            r"\zeta = \dfrac{\sqrt{k_{BC}\,M_C}}{2\,C_\mu}, \qquad "
+            r"\eta = \exp\left(-\dfrac{\pi\,\zeta}{\sqrt{1-\zeta^2}}\right)",
+            "Restitution factor $eta$ of an impact [17, derived anew]: pocket stiffness $k_BC$, cage mass "
+            "$M_C$.",
+            level & Level.REPORT,
+        ),
+        Table(
+            "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
+        ),
+        by_race(
+            "dampings",
+            chain.inner,
+            chain.outer,
+            *DAMPING,
+            level=level,
+            caption=said(
+                chain,
+                "Contacts of the most loaded ball. The damping of its inner race is {inner_damping}, that of "
+                "its outer race {outer_damping}.",
+            ),
+        ),
+        facts(
+            (
+                named("ball_cage_stiffness"),
+                f"{told(chain, 'ball_cage_stiffness')} ({chain.stiffness_source})",
+            ),
+            fact(chain, "cage_mass", named("cage_mass")),
+            ("$eta$ of a Hertzian pocket", said(chain, hertz)),
+            level=level,
+        ),
+    ]
+
+
+def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
+    """Return the basis of a verdict: bearing, operation, film, and the numbers of the chain."""
+    chain = answer.chain
+
+    def both(name: str) -> str:
+        return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
+
+    over = OVERDAMPED if chain.restitution_factor_free_spin == 0.0 else ""
+    eta = (
+        "{restitution_factor} with race dampings summed (Eq. 18); {restitution_factor_free_spin}"
+        f"{over} if the ball may spin; {{restitution_factor_hertz}} with a Hertzian pocket"
+    )
+    rows: list[tuple[str, str | Cell]] = [
+        *bearing_facts(answer),
+        ("Contact angles under load", both("contact_angle")),
+        ("Loads of the ball", both("load")),
+        ("Traction slopes", both("slope")),
+        fact(chain, "race_damping", named("race_damping")),
+        (named("restitution_factor"), said(chain, eta)),
+        ("Stiffness of ball and pocket", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+    ]
+    rows += [] if chain.clearances is None else clearance_facts(chain.clearances)
+    if "orbital_share" in chain:  # of a bearing whose balls do not run alike
+        lead = (
+            "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+            "{orbital_share} of the speed variance"
+        )
+        rows.append(("Free balls lead and lag", said(chain, lead)))
+    return rows
