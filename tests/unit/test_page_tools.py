@@ -11,15 +11,14 @@ from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Band, Trace
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
-from separatrix.verbs import bearing, compare, materials, reproduce, tribometer
+from separatrix.verbs import bearing, compare, computed, materials, reproduce, tribometer
 from separatrix.verbs.answer_files import document
 from separatrix.verbs.parts.comparison import difference_interval, differing, results
 from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
-from separatrix.verbs.verb import NoOptions
 from separatrix.verdict.judgement import wilson_interval
 
 STUDY = read_study("cryogenic-turbopump")
-ANSWER = json.loads(json.dumps(document("bearing", bearing.compute(STUDY, NoOptions()), STUDY, [])))
+ANSWER = json.loads(json.dumps(document(bearing.VERB, computed(bearing.VERB, STUDY))))
 
 
 def saved(folder, name="bearing", **changes):
