@@ -119,7 +119,8 @@ def verdict(answer: Part) -> str:
     absent = [f"[{name}]" for name in SECTIONS if not study.get(name)]
     words = "The study is valid." + (f" It has no {' and no '.join(absent)}." if absent else "")
     verbs = dict.fromkeys(f"`{one.verb}`" for one in answer.refusals)
-    return words + (f" It is refused by {', '.join(verbs)}." if verbs else "")
+    refuse = "refuses" if len(verbs) == 1 else "refuse"
+    return words + (f" {', '.join(verbs)} {refuse} it." if verbs else "")
 
 
 SECTIONS = ("cage", "ranking")
