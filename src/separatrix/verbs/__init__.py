@@ -60,7 +60,12 @@ def tool_named(name: str) -> Tool:
 def refusals(study: Study) -> Iterator[tuple[str, str]]:
     """Yield what each verb would refuse of a study, or take long for, with the verb."""
     for name in VERBS:
-        for sentence in verb_named(name).refusals(study):
+        verb = verb_named(name)
+        missing = [f"[{section}]" for section in verb.needs if getattr(study, section) is None]
+        if missing:
+            yield name, f"The study has no {' and no '.join(missing)}."
+            continue
+        for sentence in verb.refusals(study):
             yield name, sentence
 
 

@@ -86,7 +86,12 @@ def _contacts(found: BearingState) -> Group:
 @shape.register
 def _(found: CheckAnswer) -> Node:
     at_rest = Leaf(None) if found.static is None else _contacts(found.static)
-    node: Node = {"static": at_rest, "static_reason": Leaf(found.static_reason)}
+    node: Node = {
+        "refusals": Table([fields_of(one) for one in found.refusals], Rows()),
+        **fields_of(found, "speed_parameter", "cage"),
+        "static": at_rest,
+        "static_reason": Leaf(found.static_reason),
+    }
     return node | _clearances(found.clearances) | {"clearances_reason": Leaf(found.clearances_reason)}
 
 

@@ -32,7 +32,7 @@ from separatrix.present.figure import (
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import RACES
-from separatrix.verbs.parts.refused import refused, rolling
+from separatrix.verbs.parts.refused import compared, refused, rolling
 from separatrix.verbs.parts.telling import axis, by_race, cell, number_of, place_column, quantity, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -81,7 +81,7 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
 
 def refusals(study: Study) -> Iterator[str]:
     """Yield why there are no traction curves."""
-    yield from refused(study, rolling)
+    yield from refused(study, rolling, compared)
 
 
 def page(answer: Part) -> Page:
