@@ -90,6 +90,14 @@ def save(spec: Figure, path: Path) -> None:
         drawn(spec).savefig(path, metadata=NOTHING[path.suffix])
 
 
+def png(spec: Figure) -> bytes:
+    """Return a figure as PNG."""
+    buffer = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        _drawn(spec).savefig(buffer, format="png", metadata=NOTHING[".png"])
+    return buffer.getvalue()
+
+
 class Drawing(NamedTuple):
     """A figure as SVG with its size [points], and the places that a reader can point at: x, y, and a text."""
 

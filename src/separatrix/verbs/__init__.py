@@ -195,11 +195,17 @@ def computed(
     from separatrix.verdict.long_jobs import Interrupted, Runner
     from separatrix.verdict.parameter_axes import asked_cases
 
-    function, threads, is_complete = (
-        importlib.import_module(f"separatrix.verbs.{verb.name}").compute,
+    module, threads, is_complete = (
+        importlib.import_module(f"separatrix.verbs.{verb.name}"),
         jobs or processors(),
         True,
     )
+    function = module.compute
+    if hasattr(module, "VERB"):  # its options are a record
+
+        def function(study: Study, *runner: Runner, **options: Any) -> Any:
+            return module.compute(study, module.VERB.options(**options), *runner)
+
     if isinstance(table := question.get("cases"), Path):
         question = {
             **question,

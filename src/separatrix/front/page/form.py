@@ -9,31 +9,22 @@ from dataclasses import dataclass
 import tomlkit
 
 from separatrix.front.page.drafts import Checked
-from separatrix.ground.toml import folded
-from separatrix.ground.units import UNITS
 from separatrix.study.study import ORDER
-from separatrix.study.template import StudyKey, quantity_of, remark_of, study_keys
-
-TESTED = ("ranking", "materials")
-"""The key whose names are those of the tests that the study names."""
+from separatrix.study.template import StudyKey, remark_of, study_keys
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Field:
-    """A value as text and unit, what it may be, its meaning, and what is wrong with it.
+    """A value as it is typed, what it may be, its meaning, and what is wrong with it.
 
-    `units` are the spellings that its unit may have; `choices` what it must be one of (`is_open` lets it be
-    another name). `unit` is that of the value, or of the example where it has none. `inherited` is the value
-    of the file that the study extends. `boxes` are the names that a list may have, ticked where it has them.
-    `sent` is what the page sends with the value, `id` is that of its element.
+    `choices` are what it must be one of (`is_open` lets it be another name); `inherited` is the value of the
+    file that the study extends.
     """
 
     id: str
+    name: str
     label: str
-    sent: dict[str, str]
     value: str
-    unit: str
-    units: tuple[str, ...]
     example: str
     inherited: str
     choices: tuple[str, ...]
@@ -41,7 +32,6 @@ class Field:
     is_required: bool
     meaning: str
     faults: tuple[str, ...]
-    boxes: tuple[tuple[str, bool], ...]
 
 
 def as_typed(value: object) -> str:
@@ -96,37 +86,16 @@ def _section(name: str, data: Mapping[str, object], checked: Checked) -> FormSec
 
 def _field(key: StudyKey, value: object, inherited: object, checked: Checked) -> Field:
     """Return the field of a key with a value of a study; None is a value that is not given."""
-    kind, name = key.one.unit, key.name
-    number, unit = quantity_of(value, kind)
-    usual = quantity_of(inherited, kind)[1] or quantity_of(key.example, kind)[1]
-    units = tuple(UNITS[kind]) if usual else ()
-    text = "" if value is None else as_typed(value) if number is None else number
     return Field(
-        id=f"f-{key.section}-{name}",
-        label=name.replace("_", " "),
-        sent={"field": f"{key.section}.{name}"},
-        value=text,
-        unit=usual if not text else unit if number is not None else "",
-        units=units,
+        id=f"f-{key.section}-{key.name}",
+        name=f"{key.section}.{key.name}",
+        label=key.name.replace("_", " "),
+        value="" if value is None else as_typed(value),
         example=as_typed(key.example),
         inherited="" if inherited is None else as_typed(inherited),
         choices=key.choices,
         is_open=not key.is_word,
         is_required=key.is_required and inherited is None,
         meaning=key.meaning,
-        faults=tuple(checked.faults_of(key.section, name)),
-        boxes=_boxes(value, checked.tested) if (key.section, name) == TESTED else (),
-    )
-
-
-def _boxes(value: object, names: tuple[str, ...]) -> tuple[tuple[str, bool], ...]:
-    """Return names with whether a list has them, as it spells them; none for what is not a list of names."""
-    given = [] if value is None else value
-    if not names or not isinstance(given, list) or not all(isinstance(one, str) for one in given):
-        return ()
-    spelled = {folded(one): one for one in given}
-    others = [one for one in given if folded(one) not in map(folded, names)]
-    return (
-        *((spelled.get(folded(one), one), folded(one) in spelled) for one in names),
-        *((one, True) for one in others),
+        faults=tuple(checked.faults_of(key.section, key.name)),
     )

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 REPORT = "report"
 """In the place of a verb: the report of a study."""
 
+LOG = "tribometer"
+"""The verb whose question is to a log, not to a study."""
+
 END = "end"
 """What the page sends when it is closed."""
 
@@ -44,7 +47,7 @@ Send = Callable[..., None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """A question: verb, study file, folder of the answer, options of the verb with the models of motion."""
+    """A question: verb, study or log, folder of the answer, options of the verb with the models of motion."""
 
     number: int
     verb: str
@@ -173,6 +176,8 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
 
+    if task.verb == LOG:
+        return _reduced(task, send)
     question = dict(task.question)
     models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
     with noted_warnings() as notes, reading_only_in(task.root):
@@ -227,4 +232,26 @@ def _reported(
         return INTERRUPTED
     send(message="Writing the report.")
     write(report_of(found, missing), task.folder, with_pdf=find_spec("typst") is not None)
+    return "finished", ""
+
+
+def _reduced(task: Task, send: Send) -> tuple[str, str]:
+    """Reduce a log and write its answer; one that leaves questions open gets a draft of its column map."""
+    from separatrix import tribometer
+    from separatrix.friction.logs import UnmappedError
+    from separatrix.ground.errors import json_text, noted_warnings
+    from separatrix.ground.files import reading_only_in, staged
+
+    _refuse_links_out(task)
+    with noted_warnings(), reading_only_in(task.root):
+        try:
+            found = tribometer(task.study, progress=Reporter(send), **task.question)
+        except UnmappedError as error:
+            if not error.place.exists():
+                error.place.write_text(error.draft, encoding="utf-8", newline="\n")
+            cure = "Answer the questions in the draft of the column map, on the page of this log."
+            raise error.at(error.path, cure=cure) from None
+    task.folder.mkdir(exist_ok=True)
+    with staged(task.folder) as stage:
+        (stage / f"{LOG}.json").write_text(json_text(found.document()) + "\n", encoding="utf-8")
     return "finished", ""
