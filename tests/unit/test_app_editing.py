@@ -8,7 +8,6 @@ from fastapi.testclient import TestClient
 from test_cli_answers import SMALL
 
 from separatrix.front.page import drafts as draft
-from separatrix.front.page.editing import edited_by
 from separatrix.front.page.form import form
 from separatrix.front.page.server import application
 from separatrix.ground.errors import InputError
@@ -79,21 +78,21 @@ def test_text_that_is_not_toml_is_mended_as_text():
 
 @pytest.mark.parametrize("study", ["template", *shipped_studies()])
 def test_a_form_sent_back_unchanged_changes_no_value(study):
-    """Number and unit of every field make the same study again."""
+    """The text of every field makes the same study again."""
     text = template() if study == "template" else shipped_studies()[study].read_text()
     checked = draft.Checked(text=text, study=None, faults=())
     again = text
     for section in form(checked):
         for field in section.fields:
             if field.value:
-                again = edited_by(again, {**field.sent, "value": field.value, "unit": field.unit})
+                again = draft.edited(again, field.key.section, field.key.name, field.value)
     assert tomllib.loads(again) == tomllib.loads(text)
 
 
 def test_the_form_has_every_key_of_the_records():
     """What a study file may hold can be typed in; candidates of the user's own are written in the text."""
     drawn = form(draft.Checked(text="", study=None, faults=()))
-    shown = {field.sent["field"] for section in drawn for field in section.fields}
+    shown = {f"{one.key.section}.{one.key.name}" for section in drawn for one in section.fields}
     forms = {name: one.key.form or one.hint for name, one in keys_of(Study).items()}
     known = {f"{name}.{key}" for name, form in forms.items() if is_record(form) for key in keys_of(form)}
     assert shown == (known | {".title", ".extends", ".library"}) - {"ranking.candidates"}
@@ -101,13 +100,13 @@ def test_the_form_has_every_key_of_the_records():
 
 def test_a_wrong_unit_is_refused_beside_its_field(page):
     """The message is in the field's own form; the study file itself is not touched."""
-    found = edit(page, field="cage.mass", value="25 mm", unit="g")
+    found = edit(page, field="cage.mass", value="25 mm")
     field = re.search(r'<form class="field wrong".*?</form>', found.text, re.DOTALL)[0]
     assert 'value="cage.mass"' in field
     assert "needs a unit of mass" in field
     assert "1 value is refused" in found.text
     assert read_study(_folder(page) / "small.toml")
-    mended = edit(page, field="cage.mass", value="26", unit="g").text
+    mended = edit(page, field="cage.mass", value="26 g").text
     assert "Every value is accepted" in mended
     assert "mass = &#34;26 g&#34;" in mended  # the text beside it follows
 
@@ -120,13 +119,13 @@ def test_the_form_follows_the_text(page):
     """The other way round."""
     text = SMALL.replace("[cage]", '[cage]\nmass = "31 g"')
     found = edit(page, text=text).text
-    assert re.search(r'id="f-cage-mass" name="value" value="31"', found)
+    assert re.search(r'id="f-cage-mass" name="value" value="31 g"', found)
 
 
 def test_an_older_tab_changes_nothing(page):
     """What another tab saved meanwhile is shown instead."""
     old = version(page.get("/study/small.toml").text)
-    edit(page, field="cage.mass", value="26", unit="g")
+    edit(page, field="cage.mass", value="26 g")
     found = page.post("/edit/small.toml", data={"version": old, "field": "cage.mass", "value": "99 g"}).text
     assert "Another tab changed this study" in found
     assert "99 g" not in draft.current_text(_folder(page) / "small.toml")
@@ -134,13 +133,13 @@ def test_an_older_tab_changes_nothing(page):
 
 def test_a_draft_outlives_the_server_and_is_saved_or_discarded(page):
     """It is a hidden file beside the study."""
-    edit(page, field="cage.mass", value="26", unit="g")
+    edit(page, field="cage.mass", value="26 g")
     with TestClient(application(_folder(page))) as other:
         assert "mass = &#34;26 g&#34;" in other.get("/study/small.toml").text
         assert "unsaved edits" in other.get("/").text
         other.post("/discard/small.toml")
     assert (_folder(page) / "small.toml").read_text() == SMALL
-    edit(page, field="cage.mass", value="27", unit="g")
+    edit(page, field="cage.mass", value="27 g")
     page.post("/save/small.toml")
     assert 'mass = "27 g"' in (_folder(page) / "small.toml").read_text()
     assert not draft.draft_path(_folder(page) / "small.toml").exists()
@@ -148,7 +147,7 @@ def test_a_draft_outlives_the_server_and_is_saved_or_discarded(page):
 
 def test_a_study_with_a_fault_is_not_run(page):
     """Nor is its fault written into the file."""
-    edit(page, field="cage.mass", value="25 mm", unit="")
+    edit(page, field="cage.mass", value="25 mm")
     found = page.post("/run/small.toml", data={"verb": "rank"}, headers={"HX-Request": "true"})
     assert (found.status_code, "is not run" in found.text) == (422, True)
     assert (_folder(page) / "small.toml").read_text() == SMALL

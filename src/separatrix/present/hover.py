@@ -40,7 +40,7 @@ SIDES: dict[str, Json] = {
 INCH, HEAD, FOOT, KEY = 100, 26, 56, 21
 """Pixels of an inch of the spec, above a panel, below it, and of a line of the legend."""
 
-LETTER, BAR, ASIDE = 0.0078, 0.09, 0.1
+LETTER, BAR, ASIDE = 0.0078, 0.09, 0.13
 """Shares of the width: a letter beside a panel, a bar of colours, before a panel that has a neighbour."""
 
 

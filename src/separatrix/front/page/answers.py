@@ -36,7 +36,7 @@ Named = TypeVar("Named", blocks.Picture, blocks.View)
 SHOWN_INLINE = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".txt": "text/plain"}
 """Files that the browser shows; all others it keeps."""
 
-SAVED = {"cache-control": "no-cache"}
+FRESH = {"cache-control": "no-cache"}
 DAMAGED = (InputError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError)
 """What a page may meet in a document that is damaged or of another version."""
 
@@ -82,16 +82,13 @@ def routes(page: Page) -> APIRouter:
             **body_of(page, file, verb, name),
         )
 
-    @router.get("/figure/{verb}/{of}.json/{name:path}")
-    def figure(verb: str, of: str, name: str) -> Response:
-        spec = guarded(lambda: plotly(block(verb, name, of, blocks.Picture).figure()), name)
-        return JSONResponse(spec, headers=SAVED)
-
-    @router.get("/figure/{verb}/{of}.png/{name:path}")
-    def picture(verb: str, of: str, name: str) -> Response:
-        with ONE_AT_A_TIME:
-            image = guarded(lambda: draw.png(block(verb, name, of, blocks.Picture).figure()), name)
-        return Response(image, media_type="image/png", headers=SAVED)
+    @router.get("/figure/{verb}/{of}.{kind}/{name:path}")
+    def figure(verb: str, of: str, kind: str, name: str) -> Response:
+        with ONE_AT_A_TIME:  # matplotlib's
+            spec = guarded(lambda: block(verb, name, of, blocks.Picture).figure(), name)
+            if kind == "png":
+                return Response(draw.png(spec), media_type="image/png", headers=FRESH)
+            return JSONResponse(plotly(spec), headers=FRESH)
 
     @router.get("/view/{verb}/{of}/{name:path}", response_class=HTMLResponse)
     def view(verb: str, of: str, name: str, script: int | None = None) -> Response:

@@ -68,9 +68,9 @@ class Checked:
         """Which text it is: a tab that has another one edits an older state."""
         return version_of(self.text)
 
-    def faults_of(self, section: str, key: str) -> list[str]:
+    def faults_of(self, section: str, key: str) -> tuple[str, ...]:
         """Return the messages about one key."""
-        return [one.message for one in self.faults if (one.section, one.key) == (section, key)]
+        return tuple(one.message for one in self.faults if (one.section, one.key) == (section, key))
 
 
 def version_of(text: str) -> str:
@@ -153,6 +153,7 @@ def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
         at, line = _KEY.search(one.path), _LINE.search(one.path)
         section, key = (at["section"], at["key"] or "") if at else ("", "")
         message, short = str(one).replace(label, name), str(one.at("")).strip()
+        message = message.removeprefix(f"{name}, line {line[1]}: ") if line else message
         faults.append(Fault(int(line[1]) if line else 0, section, key, message, short))
     return tuple(faults)
 

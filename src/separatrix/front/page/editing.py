@@ -13,7 +13,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from separatrix.front.page import drafts as draft
 from separatrix.front.page.folder import Form, Page, verb_of
-from separatrix.front.page.form import form
+from separatrix.front.page.form import as_typed, form
 from separatrix.front.page.worker import REPORT
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
@@ -142,6 +142,7 @@ def _editor(page: Page, name: str, path: Path, problem: str = "") -> dict[str, A
         "name": name,
         "checked": checked,
         "sections": form(checked) if checked else (),
+        "as_typed": as_typed,
         "problem": problem if checked else "",
         "has_draft": checked is not None and draft.has_draft(path),
     }
