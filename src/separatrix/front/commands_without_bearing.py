@@ -126,7 +126,7 @@ def _draw_pages(found: ReducedLogs, pages: Path, *, quiet: bool) -> None:
     """Write a page of plots for each test, and the data that it is drawn from."""
     from separatrix import figures
     from separatrix.figures.tribometer import page
-    from separatrix.present.dataset_arrays import save
+    from separatrix.present.dataset import save
     from separatrix.present.tribometer import page_data
 
     names: dict[str, int] = {}

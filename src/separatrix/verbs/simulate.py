@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import warnings
 from math import isfinite, nan
 
 from separatrix.cage import analyse, settings_for
 from separatrix.cage import simulate as follow
 from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.ground.units import NUMBER, MetrePerSecond, Ratio, printable
 from separatrix.study.candidates import (
     cage_candidate,
@@ -20,8 +19,8 @@ from separatrix.verbs import answer_records as answers
 from separatrix.verbs.parts.cage_of_study import (
     MOST_RUNS,
     cage_of,
+    extrapolation_notes,
     kick_speed,
-    warn_of_extrapolation,
 )
 from separatrix.verdict.beyond_models import Moved, beyond_motion
 from separatrix.verdict.reasons import force_limit
@@ -64,7 +63,6 @@ def compute(
             rule = "must be a number from 0 to 1"
             raise InputError("--restitution-factor", rule, printable(str(restitution_factor)))
         cage = cage_at(cage, eta, cage.ball_cage_friction)
-    warn_of_extrapolation(solution)
     speed = settings.middle_kick if given is None else given
     history = follow(
         cage,
@@ -78,8 +76,6 @@ def compute(
     made_of = cage_candidate(study)
     name = made_of.name if made_of else "The cage"
     moved = [Moved(name, history.largest_contact_force, history.largest_offset)]
-    for note in beyond_motion(solution, moved):
-        warnings.warn(note, ValidityWarning, stacklevel=2)
     limit = force_limit(cage, transmitted_force(solution))
     return answers.SimulationAnswer(
         solution=solution,
@@ -89,4 +85,10 @@ def compute(
         kick=speed,
         run=run,
         force_limit=limit if isfinite(limit) else None,
+        notes=(
+            *solution.notes,
+            *cage.notes,
+            *extrapolation_notes(solution),
+            *beyond_motion(solution, moved),
+        ),
     )

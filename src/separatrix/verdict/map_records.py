@@ -125,6 +125,7 @@ class MapPoint:
     it whirls, 0 in the band; null in a column that does not change."""
     inferred_decision: Verdict | None = None  # of the points around it, which an adaptive map did not run
     reason: str = NOT_RUN  # of the decision, or why there is none
+    notes: tuple[str, ...] = ()  # where its chain leaves the range of a model, a sentence each
 
     @property
     def side(self) -> int:
@@ -183,7 +184,7 @@ class StabilityMap:
 
     x: MapAxis  # horizontal axis
     y: MapAxis  # vertical axis
-    points: tuple[MapPoint, ...]  # column after column of x
+    points: Annotated[tuple[MapPoint, ...], Rows("point", "point_")]  # column after column of x
     changes: Annotated[tuple[MapChange, ...], Rows("change", "change_")]
     """Bands between motion that settles and a whirl."""
     counts: Annotated[Mapping[str, int], Rows(prefix="points_")]

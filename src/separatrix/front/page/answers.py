@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import json
 import re
+import threading
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import quote
@@ -17,19 +18,19 @@ from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from markupsafe import Markup, escape
 
 from separatrix import __version__
-from separatrix.front.page.drafts import ONE_AT_A_TIME
 from separatrix.front.page.folder import ANSWER_SUFFIXES, OF_LOG, Form, Page, verb_of
 from separatrix.front.page.worker import LOG
 from separatrix.ground.document import part_of
-from separatrix.ground.errors import InputError, noted_warnings
+from separatrix.ground.errors import InputError
 from separatrix.ground.files import is_inside, reading_only_in
 from separatrix.ground.plain_data import plain
 from separatrix.ground.units import UNITS, format_number, printable, shown
 from separatrix.present import blocks, draw, html
 from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
-from separatrix.verbs import verb_named
+from separatrix.study.sources import inputs_of, resolved
+from separatrix.verbs import tool_named, verb_named
+from separatrix.verbs.saved_answers import AGAIN, refusing_damage
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
 
@@ -37,8 +38,8 @@ SHOWN_INLINE = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif
 """Files that the browser shows; all others it keeps."""
 
 FRESH = {"cache-control": "no-cache"}
-DAMAGED = (InputError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError)
-"""What a page may meet in a document that is damaged or of another version."""
+ONE_AT_A_TIME = threading.Lock()
+"""Drawings: matplotlib's style is one for all threads."""
 
 MOST_NAMED = 4
 """Inputs that a sentence names."""
@@ -84,15 +85,16 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/figure/{verb}/{of}.{kind}/{name:path}")
     def figure(verb: str, of: str, kind: str, name: str) -> Response:
-        with ONE_AT_A_TIME:  # matplotlib's
-            spec = guarded(lambda: block(verb, name, of, blocks.Picture).figure(), name)
+        with ONE_AT_A_TIME, refusing_damage(name):
+            spec = block(verb, name, of, blocks.Picture).figure()
             if kind == "png":
                 return Response(draw.png(spec), media_type="image/png", headers=FRESH)
             return JSONResponse(plotly(spec), headers=FRESH)
 
     @router.get("/view/{verb}/{of}/{name:path}", response_class=HTMLResponse)
     def view(verb: str, of: str, name: str, script: int | None = None) -> Response:
-        text = guarded(lambda: block(verb, name, of, blocks.View).html(), name)
+        with refusing_damage(name):
+            text = block(verb, name, of, blocks.View).html()
         if script is not None:  # a script in the page itself would not run
             found = _SCRIPT.findall(text)[script : script + 1]
             return Response(found[0][1] if found else "", media_type="text/javascript")
@@ -142,27 +144,13 @@ def _files(page: Page, name: str) -> list[Path]:
     return [path for path in found if path.suffix in ANSWER_SUFFIXES and page.folder.has(path)]
 
 
-def guarded(make: Callable[[], Any], what: str) -> Any:
-    """Return what is made of a document; one that is damaged or of another version is refused in a line."""
-    try:
-        return make()
-    except DAMAGED as error:
-        words = printable(
-            str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}", 300
-        )
-        cure = "Compute this answer again."
-        raise InputError(what, f"cannot be shown: {words.rstrip('.')}", cure=cure) from None
-
-
 def page_of(page: Page, file: Path, verb: str) -> blocks.Page:
     """Return the page of a saved answer, interrupted or not."""
-    name, found, known = page.folder.name(file), page.loaded(file), verb_of(verb)
+    name, found = page.folder.name(file), page.loaded(file)
     if not found:
-        raise InputError(name, "is not a document of an answer", cure="Compute this answer again.")
-    if known is None:
-        raise InputError(f"{name}: {verb}", "has no page in this version")
-    made: blocks.Page = guarded(lambda: known.page(part_of(found, name)), name)
-    return made
+        raise InputError(name, "is not a document of an answer", cure=AGAIN)
+    with refusing_damage(name):
+        return (tool_named(verb) if verb == LOG else verb_named(verb)).page(part_of(found, name))
 
 
 def body_of(page: Page, file: Path, verb: str, name: str) -> dict[str, Any]:
@@ -183,9 +171,8 @@ def body_of(page: Page, file: Path, verb: str, name: str) -> dict[str, Any]:
     try:
         with ONE_AT_A_TIME:
             found = page_of(page, file, verb)
-            body = guarded(
-                lambda: html.body(found, blocks.Level.REPORT, picture, view), page.folder.name(file)
-            )
+            with refusing_damage(page.folder.name(file)):
+                body = html.body(found, blocks.Level.REPORT, picture, view)
     except InputError as error:
         return {"title": "", "subtitle": "", "body": "", "refused": str(error)}
     return {"title": found.title, "subtitle": found.subtitle, "body": Markup(body), "refused": ""}
@@ -195,13 +182,13 @@ def changed(page: Page, name: str, document: Mapping[str, Any]) -> str:
     """Return in a sentence how the study differs from that of an answer; empty if it does not."""
     models = ((document.get("provenance") or {}).get("command") or {}).get("models") or {}
     try:
-        with ONE_AT_A_TIME, reading_only_in(page.folder.root), noted_warnings():
-            study = read_study(page.folder.study(name), models)
+        with reading_only_in(page.folder.root):
+            study = plain(resolved(read_study(page.folder.study(name), models)), "study")
+        with refusing_damage(name):
+            then, now = (inputs(one) for one in (document["study"], json.loads(json.dumps(study))))
     except InputError as error:
-        first = error.problems[0] if error.problems else error
-        return f"The study has changed after this answer and cannot be read: {first}"
-    now = json.loads(json.dumps(plain(resolved(study), "study")))
-    names = list(differing(document.get("study") or {}, now))
+        return f"The study has changed after this answer, and cannot be compared: {(error.problems or (error,))[0]}"
+    names = [key for key in {**then, **now} if then.get(key) != now.get(key)]
     if names:
         more = f" and {len(names) - MOST_NAMED} more" if names[MOST_NAMED:] else ""
         return (
@@ -211,25 +198,14 @@ def changed(page: Page, name: str, document: Mapping[str, Any]) -> str:
     return "" if version == __version__ else f"This answer is of separatrix {version}, not {__version__}."
 
 
-def differing(then: Any, now: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the inputs that are not what they were, by section and key."""
-    for section, inputs in now.items():
-        before = then.get(section) if isinstance(then, dict) else None
-        if section in ("name", "title") or _bare(inputs) == _bare(before):
-            continue
-        if not isinstance(inputs, dict) or not isinstance(before, dict):
-            yield f"[{section}]"
-            continue
-        for key in {**before, **inputs}:
-            if _bare(inputs.get(key)) != _bare(before.get(key)):
-                yield f"[{section}] {key}"
-
-
-def _bare(node: Any) -> Any:
-    """Return a part of a study without the places where it is written."""
-    if isinstance(node, dict):
-        return {key: _bare(one) for key, one in node.items() if key != "origin"}
-    return [_bare(one) for one in node] if isinstance(node, list) else node
+def inputs(study: Any) -> dict[str, object]:
+    """Return what a resolved study states, by section and key, without the lines where it stands."""
+    known: dict[str, object] = {
+        f"[{section}] {key}": {part: one for part, one in entry.items() if part != "origin"}
+        for section, key, entry in inputs_of(study)
+    }
+    ranking = study["ranking"] or {"candidates": ()}
+    return known | {f"[ranking] {one['name']}": one for one in ranking["candidates"]}
 
 
 def at_point(

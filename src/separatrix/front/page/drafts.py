@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-import threading
 import tomllib
 from collections.abc import Mapping, MutableMapping
 from dataclasses import dataclass, field
@@ -16,7 +15,7 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import InlineTable, Item, Table
 
-from separatrix.ground.errors import InputError, grouped, noted_warnings
+from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
 from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
@@ -27,9 +26,6 @@ from separatrix.study.template import study_keys
 
 DRAFT = ".{}.draft"
 """Name of the draft of a study, beside it: a server that is killed loses no edit."""
-
-ONE_AT_A_TIME = threading.Lock()
-"""What studies note on the way is collected by one thread."""
 
 MEND = "Mend it in the text first."
 
@@ -126,18 +122,18 @@ def check(study: Path, root: Path) -> Checked:
     try:
         text = read_text(path)
         inherited = _inherited(path, root)
-        with ONE_AT_A_TIME, reading_only_in(root), noted_warnings() as notes:
+        with reading_only_in(root):
             found = read_study(path)
     except InputError as error:
         faults = faults_in(error, study.name, path.name)
         return Checked(text=text, study=None, faults=faults, inherited=inherited)
-    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(notes)), inherited=inherited)
+    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(found.notes)), inherited=inherited)
 
 
 def _inherited(path: Path, root: Path) -> dict[str, dict[str, object]]:
     """Return what a study that extends another has, by section and key; nothing of another study."""
     try:
-        with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
+        with reading_only_in(root):
             data = document_of(Study, path).data
     except InputError:  # shown among the faults
         return {}

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args, get_origin
+from typing import Any, get_args, get_origin
 
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from tomlkit.exceptions import TOMLKitError
 
 from separatrix.front.page import drafts as draft
-from separatrix.front.page.folder import Form, Page, verb_of
+from separatrix.front.page.folder import Form, Page
 from separatrix.front.page.form import as_typed, form
 from separatrix.front.page.worker import REPORT
 from separatrix.ground.errors import InputError
@@ -20,9 +20,6 @@ from separatrix.ground.units import printable
 from separatrix.study.study import BallModel, MotionModel, Study, shipped_studies
 from separatrix.study.template import template
 from separatrix.verbs import VERBS, verb_named
-
-if TYPE_CHECKING:
-    from separatrix.verbs.verb import Option
 
 MODELS = {"motion": [one.value for one in MotionModel], "ball": [one.value for one in BallModel]}
 """Of a cage that moves: what may be chosen beside the study."""
@@ -152,22 +149,16 @@ def _cards(study: Study | None) -> list[dict[str, Any]]:
     """Return each verb with its options, and the sections that it needs and the study lacks."""
     return [
         {
-            "name": verb.name,
-            "help": verb.help,
-            "note": verb.epilog or "",
+            "verb": verb,
             "lacks": [one for one in verb.needs if study and getattr(study, one) is None],
-            "options": [
-                (name, _kind(hint), note, default) for name, (hint, note, default) in _options(verb.name)
-            ],
+            "options": {
+                name: (_kind(hint), about, default)
+                for name, (hint, about, default) in verb.shown_options().items()
+            },
             "models": MODELS if verb.moves_a_cage else {},
         }
-        for verb in VERBS
+        for verb in map(verb_named, VERBS)
     ]
-
-
-def _options(verb: str) -> Iterable[tuple[str, tuple[Any, Option, Any]]]:
-    found = verb_of(verb)
-    return found.shown_options().items() if found else ()
 
 
 def _kind(hint: Any) -> str:
@@ -179,8 +170,9 @@ def _kind(hint: Any) -> str:
 
 def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[str, object]:
     """Return the options of a verb, and models, as a form gives them; empty ones have their defaults."""
-    kinds = {name: _kind(hint) for name, (hint, *_) in _options(verb_named(verb).name)}
-    kinds |= dict.fromkeys(MODELS, "text") if verb_named(verb).moves_a_cage else {}
+    known = verb_named(verb)
+    kinds = {name: _kind(hint) for name, (hint, *_) in known.shown_options().items()}
+    kinds |= dict.fromkeys(MODELS, "text") if known.moves_a_cage else {}
     question: dict[str, object] = {}
     for name, kind in kinds.items():
         text = sent.get(name, "").strip()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import re
 import tomllib
@@ -27,7 +26,6 @@ from separatrix.ground.files import is_inside
 from separatrix.ground.toml import read_text
 from separatrix.ground.units import printable, shown
 from separatrix.verbs import VERBS
-from separatrix.verbs.verb import Verb
 
 STUDY_SUFFIXES = (".toml", ".xlsx", ".xlsm", ".ods")
 ANSWER_SUFFIXES = (
@@ -210,7 +208,7 @@ class Page:
     def answered(self, study: str) -> list[str]:
         """Return the verbs that a study has saved answers of, in the order of the chain."""
         place = self.folder.answers(study)
-        return [verb.name for verb in VERBS if self.folder.has(place / f"{verb.name}.json")]
+        return [verb for verb in VERBS if self.folder.has(place / f"{verb}.json")]
 
     def address(self, job: Job) -> str:
         """Return where the answer of a job is shown."""
@@ -221,12 +219,6 @@ class Page:
             if job.task.verb == LOG
             else f"/answer/{job.task.verb}/{quote(job.study)}"
         )
-
-
-def verb_of(name: str) -> Verb | None:
-    """Return the record of a verb from its module; None where it has none."""
-    found: Verb | None = getattr(importlib.import_module(f"separatrix.verbs.{name}"), "VERB", None)
-    return found
 
 
 async def _form_of(request: Request) -> dict[str, str]:

@@ -11,7 +11,7 @@ from separatrix.present.blocks import Cell, Facts, Heading, Level, Note, Page, S
 from separatrix.present.text import words
 
 
-def workbook(page: Page) -> bytes:
+def spreadsheet(page: Page) -> bytes:
     """Return a page as a workbook, with every table of any level."""
     book, names = new_workbook(), set[str]()
     blocks = page.at(Level.FULL | Level.REPORT | Level.SHEET).blocks
@@ -54,8 +54,9 @@ def _parts(column: ShownColumn) -> list[tuple[str, list[Any]]]:
             ends = [getattr(one.value, end, None) for one in column.cells]
             values = [None if v is None else v / size for v, size in zip(ends, sizes, strict=True)]
             parts.append((f"{head}, 95 % {end}", values))
-    if any(one.mark for one in column.cells if one.is_number):
-        parts.append((f"{name}, mark", [one.mark.strip() or None for one in column.cells]))
+    marks = [(one.before + one.mark).strip() or None for one in column.cells]
+    if any(mark for mark, one in zip(marks, column.cells, strict=True) if one.is_number):
+        parts.append((f"{name}, mark", marks))
     if not column.unit and any(symbol for _, symbol in column.scales):
         parts.append((f"{name}, unit", [symbol or None for _, symbol in column.scales]))
     return parts
