@@ -18,13 +18,13 @@ from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from markupsafe import Markup, escape
 
 from separatrix import __version__
-from separatrix.front.page.folder import ANSWER_SUFFIXES, OF_LOG, Form, Page, verb_of
+from separatrix.front.page.folder import ANSWER_SUFFIXES, OF_LOG, Form, Page
 from separatrix.front.page.worker import LOG
 from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import is_inside, reading_only_in
 from separatrix.ground.plain_data import plain
-from separatrix.ground.units import UNITS, format_number, printable, shown
+from separatrix.ground.units import UNITS, format_number, shown
 from separatrix.present import blocks, draw, html
 from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
@@ -187,7 +187,7 @@ def changed(page: Page, name: str, document: Mapping[str, Any]) -> str:
         with refusing_damage(name):
             then, now = (inputs(one) for one in (document["study"], json.loads(json.dumps(study))))
     except InputError as error:
-        return f"The study has changed after this answer, and cannot be compared: {(error.problems or (error,))[0]}"
+        return f"The study or this answer cannot be read: {(error.problems or (error,))[0]}"
     names = [key for key in {**then, **now} if then.get(key) != now.get(key)]
     if names:
         more = f" and {len(names) - MOST_NAMED} more" if names[MOST_NAMED:] else ""

@@ -25,7 +25,7 @@ class Field:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FormSection:
-    """A section with its remark and the faults of the whole of it; open if the study gives one of its keys."""
+    """A section with its remark and the faults of the whole of it; open if the study has one of its keys."""
 
     name: str
     remark: str
