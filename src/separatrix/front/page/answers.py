@@ -15,7 +15,7 @@ from urllib.parse import quote
 import tomlkit
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
-from markupsafe import Markup, escape
+from markupsafe import escape
 
 from separatrix import __version__
 from separatrix.front.page.folder import ANSWER_SUFFIXES, OF_LOG, Form, Page
@@ -161,7 +161,7 @@ def body_of(page: Page, file: Path, verb: str, name: str) -> dict[str, Any]:
         return (
             f'<figure class="plot" data-source="{place}.json/{quote(name)}"><div class="canvas" role="group" '
             f'aria-label="{escape(one.caption)}"></div><figcaption>{html.inline(one.caption)} '
-            f'<a href="{place}.png/{quote(name)}" download="{escape(one.name)}.png">PNG</a></figcaption></figure>'
+            f'<a href="{place}.png/{quote(name)}" download="{one.name}.png">PNG</a></figcaption></figure>'
         )
 
     def view(one: blocks.View) -> str:
@@ -175,7 +175,7 @@ def body_of(page: Page, file: Path, verb: str, name: str) -> dict[str, Any]:
                 body = html.body(found, blocks.Level.REPORT, picture, view)
     except InputError as error:
         return {"title": "", "subtitle": "", "body": "", "refused": str(error)}
-    return {"title": found.title, "subtitle": found.subtitle, "body": Markup(body), "refused": ""}
+    return {"title": found.title, "subtitle": found.subtitle, "body": body, "refused": ""}
 
 
 def changed(page: Page, name: str, document: Mapping[str, Any]) -> str:
