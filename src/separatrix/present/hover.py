@@ -37,10 +37,10 @@ SIDES: dict[str, Json] = {
     "below": {"xanchor": "center", "yanchor": "top", "yshift": -5},
     "on": {"xanchor": "center", "yanchor": "middle"},
 }
-INCH, HEAD, FOOT, KEY = 100, 26, 56, 21
-"""Pixels of an inch of the spec, above a panel, below it, and of a line of the legend."""
+INCH, HEAD, FOOT, KEY, LINE = 100, 26, 56, 21, 120
+"""Pixels of an inch of the spec, above a panel, below it, of a line of the legend; and its letters."""
 
-LETTER, BAR, ASIDE = 0.0078, 0.09, 0.13
+LETTER, BAR, ASIDE = 0.0085, 0.09, 0.13
 """Shares of the width: a letter beside a panel, a bar of colours, before a panel that has a neighbour."""
 
 
@@ -51,7 +51,7 @@ def plotly(spec: Figure) -> Json:
     in SI.
     """
     names = [one.name for one in _named(spec)]
-    keys = KEY * ceil(len(dict.fromkeys(names)) / 2) + 14 if names else 6
+    keys = KEY * ceil(sum(len(one) + 9 for one in dict.fromkeys(names)) / LINE) + 14 if names else 6
     slot = HEAD + FOOT + INCH * spec.height
     layout: Json = {
         "hovermode": "closest",
@@ -86,7 +86,8 @@ def _shares(panels: tuple[Panel, ...], widths: tuple[float, ...]) -> Iterator[li
     at = 0.0
     for place, (panel, width) in enumerate(zip(panels, given, strict=True)):
         share = width / sum(given)
-        beside = max([LETTER * len(one.text) + 0.01 for one in panel.labels], default=0.01)
+        letters = [len(one.text) + 3 * bool(one.marker) for one in panel.labels]
+        beside = 0.01 + LETTER * max(letters, default=0)
         beside += BAR if any(isinstance(one, Cells) for one in panel.marks) else 0.0
         yield [
             at + (ASIDE * share * len(panels) / 2 if place else 0.0),
