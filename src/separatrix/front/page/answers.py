@@ -223,7 +223,10 @@ def at_point(
     }
     cage = found["study"]["cage"]
     question: dict[str, object] = {one: str(cage[one]["value"]) for one in ("motion", "ball") if one in cage}
-    words = [f"{key.rpartition('.')[2]} {format_number(value, 4)}" for key, (value, _) in axes.items()]
+    words = [
+        f"{key.rpartition('.')[2].replace('_', ' ')} {format_number(value, 4)}"
+        for key, (value, _) in axes.items()
+    ]
     question["kick"] = f"{axes.pop(KICK, (found['kick'], ''))[0]:.7g} m/s"
     if RESTITUTION in axes:
         question["restitution_factor"] = f"{axes.pop(RESTITUTION)[0]:.7g}"

@@ -38,21 +38,34 @@ async function show(figure) {
     canvas.style.height = `${layout.height}px`;
     const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
     await Plotly.react(canvas, data, { ...layout, ...look }, options);
-    canvas.removeAllListeners("plotly_click");
-    canvas.on("plotly_click", (event) => choose(figure.closest(".answer").dataset, event.points[0], layout.meta[0]));
   } catch (error) {
     message(error.message);
   }
 }
 
-// A point of the first panel: of a map it is simulated, of a log running-in ends there.
-function choose({ point, cut }, { x, y, xaxis }, [across, up]) {
-  if (xaxis._id !== "x") return;
-  if (point) htmx.ajax("POST", point, { target: "#jobs", values: { x: x * across, y: y * up } });
-  if (!cut) return;
-  const field = document.getElementById("run-in");
-  field.value = `${Number((x * across).toPrecision(4))} ${cut}`;
-  field.form.requestSubmit();
+// A click in the first panel, not a drag: a point of a map is simulated, running-in of a log ends there.
+function choosing(figure) {
+  const canvas = figure.querySelector(".canvas");
+  const { point, cut } = figure.closest(".answer").dataset;
+  let down = [];
+  canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; }, true);
+  document.addEventListener("pointerup", ({ clientX, clientY }) => {
+    const [x0, y0] = down;
+    down = [];
+    if (!(Math.hypot(clientX - x0, clientY - y0) < 4)) return;
+    const box = canvas.getBoundingClientRect();
+    const { xaxis, yaxis } = canvas._fullLayout;
+    const across = clientX - box.left - xaxis._offset;
+    const up = clientY - box.top - yaxis._offset;
+    if (across < 0 || up < 0 || across > xaxis._length || up > yaxis._length) return;
+    const [[ofX, ofY]] = canvas.layout.meta;
+    const at = { x: xaxis.p2d(across) * ofX, y: yaxis.p2d(up) * ofY };
+    if (point) htmx.ajax("POST", point, { target: "#jobs", values: at });
+    const field = document.getElementById("run-in");
+    if (!cut || !field) return;
+    field.value = `${Number(at.x.toPrecision(4))} ${cut}`;
+    field.form.requestSubmit();
+  }, true);
 }
 
 // Each fault of a text is written at its line, over the text.
@@ -186,6 +199,7 @@ function ended(event) {
 document.addEventListener("DOMContentLoaded", () => {
   const figures = document.querySelectorAll(".plot");
   for (const figure of figures) show(figure);
+  for (const figure of document.querySelectorAll(":is([data-point], [data-cut]) .plot")) choosing(figure);
   dark.addEventListener("change", () => figures.forEach(show));
   for (const code of document.querySelectorAll(".code")) paint(code);
   for (const kind of ["input", "scroll"]) {
