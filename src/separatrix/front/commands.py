@@ -5,13 +5,22 @@ from __future__ import annotations
 import contextlib
 import inspect
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
 
 import typer
 
-from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
+from separatrix.front.console import (
+    answer,
+    answer_json,
+    breakable,
+    complain,
+    interrupted,
+    interruptible,
+    progress_bar,
+)
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
@@ -205,7 +214,8 @@ def computed_with_progress(
 ) -> Computed:
     """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
     with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
-        found = computed(verb, study, options, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        how = partial(computed, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        found = breakable(partial(how, verb, study, options))
     if found.runs_taken and not quiet:
         from separatrix.verdict.ledger import NAME
 
@@ -270,10 +280,10 @@ def compute_tool(tool: Tool, given: Mapping[str, Any]) -> Document:
     """Compute the document of a tool, with a bar of progress where that takes time."""
     options = options_of(tool, given)
     if not tool.takes_time:
-        return tool.compute(options)
+        return breakable(partial(tool.compute, options))
     count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:
-        return tool.compute(options, count, progress)
+        return breakable(partial(tool.compute, options, count, progress))
 
 
 def deliver_tool(tool: Tool, found: Document, given: Mapping[str, Any]) -> None:
