@@ -16,6 +16,7 @@ from separatrix.present.figure import (
     Band,
     Cells,
     Figure,
+    Hatched,
     Numbers,
     Panel,
     Trace,
@@ -98,8 +99,9 @@ def _shares(panels: tuple[Panel, ...], widths: tuple[float, ...]) -> Iterator[li
 
 def _panel(layout: Json, data: list[Json], panel: Panel, end: str, known: set[str], place: Json) -> None:
     x, y, axes = f"x{end}", f"y{end}", {"xaxis": f"x{end}", "yaxis": f"y{end}"}
-    layout[f"xaxis{end}"] = _axis(panel.x, _values(panel, "x")) | {"domain": place["x"], "anchor": y}
-    layout[f"yaxis{end}"] = _axis(panel.y, _values(panel, "y")) | {"domain": place["y"], "anchor": x}
+    bare = {} if panel.has_frame else {"showgrid": False, "showticklabels": False, "ticks": ""}
+    layout[f"xaxis{end}"] = _axis(panel.x, _values(panel, "x")) | {"domain": place["x"], "anchor": y} | bare
+    layout[f"yaxis{end}"] = _axis(panel.y, _values(panel, "y")) | {"domain": place["y"], "anchor": x} | bare
     if panel.is_to_scale:
         layout[f"yaxis{end}"] |= {"scaleanchor": x}
         layout[f"xaxis{end}"].pop("range", None)
@@ -111,6 +113,8 @@ def _panel(layout: Json, data: list[Json], panel: Panel, end: str, known: set[st
                 data += [_once(one | axes, one.pop("of", ""), known) for one in _band(mark, panel)]
             case Cells():
                 data.append(_cells(mark, panel, place) | axes)
+            case Hatched():
+                data.append(_once(_hatched(mark, panel) | axes, mark.name, known))
             case Across():
                 layout["shapes"].append(_once(_across(mark, panel, x, y), mark.name, known))
             case Words():
@@ -135,6 +139,11 @@ def _axis(one: Axis, values: list[float]) -> Json:
         ends = [min(values, default=0.0), max(values, default=1.0)]
         given = [own if own is not None else end for own, end in zip((one.low, one.high), ends, strict=True)]
         found["range"] = [_placed(value, one) for value in given]
+    if one.ticks:
+        found["tickvals"] = [at / one.size for at, _ in one.ticks]
+        found["ticktext"] = [_text(name) for _, name in one.ticks]
+    if one.most_ticks:
+        found["nticks"] = one.most_ticks
     if one.names:
         found |= {"tickvals": [*range(len(one.names))], "ticktext": [*map(_text, one.names)]}
         found |= {"automargin": True, "showgrid": False}
@@ -147,7 +156,7 @@ def _values(panel: Panel, way: str) -> list[float]:
     found: list[float | None] = []
     for mark in panel.marks:
         match mark:
-            case Trace() | Cells():
+            case Trace() | Cells() | Hatched():
                 found += getattr(mark, way)
                 found += [*mark.low, *mark.high] if isinstance(mark, Trace) and mark.ends_along == way else []
             case Band():
@@ -197,12 +206,16 @@ def _trace(one: Trace, panel: Panel, end: str) -> Json:
     found: Json = {"x": x, "y": y, "mode": mode, "xaxis": f"x{end}", "yaxis": f"y{end}"}
     found["line"] = {"color": one.colour, "width": 1.4 * one.width, "dash": LINES.get(one.line, "solid")}
     if one.marker:
-        sign = SIGNS.get(one.marker, "circle")
-        sign += "-open" if one.is_open and not sign.endswith("-open") else ""
-        found["marker"] = {"color": one.colour, "size": 2.0 * one.size, "symbol": sign, "opacity": 1}
-        found["marker"]["line"] = {"color": one.colour, "width": 1.5 if sign.endswith("-open") else 0}
-    if one.fill:
-        found |= {"fill": "toself", "fillcolor": _faint(one.colour, one.fill)}
+        sign, inside, edge = SIGNS.get(one.marker, "circle"), one.colour, one.colour
+        if one.has_halo:  # above colours
+            inside, edge = ("#ffffff", one.colour) if one.is_open else (one.colour, "#ffffff")
+        elif one.is_open and not sign.endswith("-open"):
+            sign += "-open"
+        width = 1.6 if one.has_halo or sign.endswith("-open") else 0
+        found["marker"] = {"color": inside, "size": 2.0 * one.size, "symbol": sign, "opacity": 1}
+        found["marker"]["line"] = {"color": edge, "width": width}
+    if one.fill or one.face:
+        found |= {"fill": "toself", "fillcolor": one.face or _faint(one.colour, one.fill)}
     if one.hover:
         found |= {"text": [_text(text).replace("; ", "<br>") for text in one.hover], "hoverinfo": "text"}
     else:
@@ -249,6 +262,19 @@ def _across(one: Across, panel: Panel, x: str, y: str) -> Json:
         f"{other}0": 0,
         f"{other}1": 1,
         "line": line,
+    }
+
+
+def _hatched(one: Hatched, panel: Panel) -> Json:
+    """Return cells with a thin veil: Plotly has no strokes there."""
+    veil = one.fill or one.colour
+    found: Json = {"type": "heatmap", "x": _scaled(one.x, panel.x), "y": _scaled(one.y, panel.y)}
+    found["z"] = [[1 if is_one else None for is_one in row] for row in one.where]
+    return found | {
+        "colorscale": [[0, veil], [1, veil]],
+        "showscale": False,
+        "opacity": 0.4,
+        "hoverinfo": "skip",
     }
 
 
