@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from separatrix.verdict.long_jobs import Progress
 
 VERBS = (
-    *("check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate", "rank"),
-    *("sensitivity", "sweep"),
+    *("bearing", "traction", "restitution", "mobility", "stability", "map", "rank"),
 )
 """Modules of this package, each a question to a study, in the order of the chain."""
 

@@ -13,7 +13,7 @@ from typing import Any
 import tomlkit
 from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import InlineTable, Item, Table
+from tomlkit.items import Array, InlineTable, Item, Table
 
 from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
@@ -190,8 +190,10 @@ def parsed(text: str) -> TOMLDocument:
 
 
 def _put(table: MutableMapping[str, Any], key: str, value: object) -> None:
-    """Set a key; the comment behind its old value stays."""
+    """Set a key; comments behind its old value and in its old list stay."""
     old = table.get(key)
+    if isinstance(old, Array) and isinstance(value, list) and _same_list(old, value):
+        return
     new = tomlkit.item(value)
     if isinstance(value, dict) and not isinstance(old, Table):
         new = tomlkit.inline_table()
@@ -206,6 +208,15 @@ def _put(table: MutableMapping[str, Any], key: str, value: object) -> None:
         behind.append(body.pop())
     table.append(key, new)
     body.extend(reversed(behind))
+
+
+def _same_list(old: Array, value: list[object]) -> bool:
+    """Make a list another one by removing and adding items; return whether that was enough."""
+    for item in [item for item in old.unwrap() if item not in value]:
+        old.remove(item)
+    for item in value[len(old) :]:
+        old.append(item)
+    return bool(old.unwrap() == value)
 
 
 def _typed(value: str, *, is_name: bool = False) -> object:
