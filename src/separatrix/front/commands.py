@@ -102,11 +102,15 @@ def named(text: str | None, option: str, what: str) -> Path | None:
 # Options of a verb as those of its command.
 
 
-def signature(options: Mapping[str, tuple[Any, Option, Any]], *beside: str) -> inspect.Signature:
-    """Return the signature of a command: the options of a verb, and those `beside` them."""
+def signature(
+    options: Mapping[str, tuple[Any, Option, Any]],
+    *beside: str,
+    more: Mapping[str, tuple[Any, Any]] | None = None,
+) -> inspect.Signature:
+    """Return the signature of a command: the options of a verb, those `beside` them, and `more`."""
     kinds = {name: _typed(name, *one) for name, one in options.items()}
     before = {"study": BESIDE["study"]} if "study" in beside else {}
-    after = {name: BESIDE[name] for name in beside if name != "study"}
+    after = dict(more or {}) | {name: BESIDE[name] for name in beside if name != "study"}
     return inspect.Signature(
         [
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default)
@@ -131,7 +135,7 @@ def _typed(name: str, kind: Any, note: Option, default: Any) -> tuple[Any, Any]:
         return Annotated[
             text, typer.Argument(metavar=note.metavar, help=note.help, show_default=False)
         ], default
-    look = {"help": note.help} | ({"metavar": note.metavar} if note.metavar else {})
+    look: dict[str, Any] = {"help": note.help} | ({"metavar": note.metavar} if note.metavar else {})
     return Annotated[text, typer.Option(flag, **look)], default
 
 
@@ -294,3 +298,11 @@ def deliver_tool(tool: Tool, found: Document, given: Mapping[str, Any]) -> None:
         answer_json(found)
     else:
         print_page(tool.page(part_of(found)), full=given.get("full", False))
+
+
+def save_tool(folder: Path, tool: Tool, found: Document, *, pictures_only: bool = False) -> None:
+    """Write the document of a tool, its page as text, HTML and workbook, and its pictures; all or none."""
+    from separatrix.ground.document import part_of
+    from separatrix.verbs.answer_files import save_page
+
+    save_page(folder, tool.name, tool.page(part_of(found)), None if pictures_only else found)

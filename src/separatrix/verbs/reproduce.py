@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import types
 from collections.abc import Iterator, Mapping
@@ -16,6 +15,7 @@ from separatrix.ground.quantity import ABSENT, Quantity, alone
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import Ratio, printable, shown
 from separatrix.present.blocks import Block, Cell, Column, Heading, Level, Note, Page, Table, text_column
+from separatrix.verbs import verb_named
 from separatrix.verbs.parts.comparison import is_number
 from separatrix.verbs.saved_answers import AGAIN, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool, Verb
@@ -82,7 +82,7 @@ def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -
     kept = kept_by(stored, where)
     if stored.get("complete") is False:
         raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
-    verb: Verb = importlib.import_module(f"separatrix.verbs.{stored['verb']}").VERB
+    verb = verb_named(stored["verb"])
     study = study_again(kept["study"])
     options = options_from(verb, kept["command"].get("question"))
     require(study, verb.name, *verb.needs)
@@ -100,17 +100,14 @@ def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -
 
 def _answered(verb: Verb, study: Study, options: Any, jobs: int, progress: Progress | None) -> Document:
     """Return the document of a verb that is computed without a folder."""
-    from separatrix.ground.errors import grouped, noted_warnings
+    from separatrix.verbs import computed
     from separatrix.verbs.answer_files import document
-    from separatrix.verdict.long_jobs import Interrupted, Runner
+    from separatrix.verdict.long_jobs import Interrupted
 
-    with noted_warnings() as notes:
-        try:
-            runner = (Runner(jobs=jobs, progress=progress),) if verb.keeps_runs else ()
-            record = verb.compute(study, options, *runner)
-        except Interrupted:  # what was finished cannot be compared
-            raise Interrupted from None
-        return document(verb.name, record, study, grouped(notes))
+    found = computed(verb, study, options, jobs=jobs, progress=progress)
+    if not found.is_complete:  # what was finished cannot be compared
+        raise Interrupted
+    return document(verb, found)
 
 
 def kept_by(stored: Document, where: str) -> Document:
