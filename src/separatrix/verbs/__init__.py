@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from separatrix.verdict.long_jobs import Progress
 
 VERBS = (
-    *("bearing", "traction", "restitution", "mobility", "stability", "map", "rank"),
+    *("check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate", "rank"),
+    *("sensitivity", "sweep"),
 )
 """Modules of this package, each a question to a study, in the order of the chain."""
 
