@@ -9,7 +9,6 @@ from separatrix.chain.impact_restitution import ball_pocket_stiffness, hertz_coe
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.ground.plain_data import plain
-from separatrix.present.text.chain import basis
 from separatrix.study.candidates import require_friction
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
@@ -24,6 +23,7 @@ from separatrix.study.study import (
     PocketShape,
     StabilitySettings,
 )
+from separatrix.told.chain import basis
 from separatrix.verbs.answer_records import OfCage
 from separatrix.verbs.shapes import shape
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 import separatrix
-from separatrix.present.text.sentences import verdict_sentences
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.record import Facts, Kept, Paragraph, Table
 from separatrix.reporting.stages import bearing_and_cage
 from separatrix.study.study import ClearanceState
+from separatrix.told.sentences import verdict_sentences
 from separatrix.verbs import restitution
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")

@@ -10,9 +10,9 @@ import pytest
 
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.solution import solve
-from separatrix.present.text.stability import curve
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
+from separatrix.told.stability import curve
 from separatrix.verdict import long_jobs as runner
 from separatrix.verdict.critical_friction import CriticalFriction, critical_friction, own_restitution_factor
 from separatrix.verdict.long_jobs import Runner

@@ -15,9 +15,9 @@ from commands import refused
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.impact_restitution import damping_for
 from separatrix.front import main
-from separatrix.present.text.answer import in_words
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
+from separatrix.told.answer import in_words
 from separatrix.verbs import simulate
 from separatrix.verbs.answer_files import document
 from separatrix.verdict.judgement import Verdict, judge

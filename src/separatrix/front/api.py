@@ -80,7 +80,7 @@ class Answer(Generic[Record]):
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.present.text.answer import in_words
+        from separatrix.told.answer import in_words
 
         return in_words(self.verb, self.record, self.study, self.notes, full=full)
 

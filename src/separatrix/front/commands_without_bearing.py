@@ -18,7 +18,7 @@ from separatrix.ground.units import parse, printable, shown
 if TYPE_CHECKING:
     from separatrix.friction.log_series import ReducedLogs
     from separatrix.friction.logs import UnmappedError
-    from separatrix.present.text.materials import Shown
+    from separatrix.told.materials import Shown
 
 TRIBOMETER = "Friction with its scatter from raw logs of tests."
 TRIBOMETER_EPILOG = (
@@ -183,7 +183,7 @@ def _show(
     library: Libraries = None,
     json: Json = False,
 ) -> None:
-    from separatrix.present.text.materials import shown as in_words
+    from separatrix.told.materials import shown as in_words
     from separatrix.verbs.without_bearing import materials
 
     at = None if temperature is None else _temperature(temperature)

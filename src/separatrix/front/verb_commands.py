@@ -208,7 +208,7 @@ def _deliver(
     animate: str | None,
 ) -> None:
     """Write the answer, then the files, which take as long again, and print where they are."""
-    from separatrix.present.text.answer import in_words, whereabouts
+    from separatrix.told.answer import in_words, whereabouts
     from separatrix.verbs.answer_files import document
 
     made = document(verb.name, found.record, found.study, found.question)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
+from separatrix.ground.document import Document as Document
 from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Rows
@@ -160,10 +161,6 @@ def _kind(hint: object) -> _Kind:
         unit = unit or next((one.unit for one in inside if one.unit is not None), None)
         axes = axes or next((one.axes for one in inside if one.axes is not None), None)
     return _Kind(unit, axes, rows)
-
-
-Document = dict[str, Any]
-"""Plain data of an answer, of a study, or of a part of one: text, numbers, None, lists and dictionaries."""
 
 
 class NotFiniteError(SeparatrixError, ArithmeticError):

@@ -375,7 +375,7 @@ def format_quantity(value: float | None, unit: str, digits: int = 4) -> str:
         return "none"
     if unit == "-":
         return format_number(value, digits)
-    size, symbol = _readable(abs(value), unit)
+    size, symbol = readable(abs(value), unit)
     return f"{format_number(value / size, digits)} {symbol}"
 
 
@@ -389,7 +389,10 @@ def format_number(value: float, digits: int = 4) -> str:
     return f"{rounded:.{digits}g}"
 
 
-def _readable(size: float, unit: str) -> tuple[float, str]:
+def readable(size: float, unit: str, wanted: str = "") -> tuple[float, str]:
+    """Return the unit that suits a number of this size [SI], or the wanted one: its size and its symbol."""
+    if wanted:
+        return parse(f"1 {wanted}", unit), wanted
     choices = _READABLE.get(unit, ((1.0, unit),))
     if size == 0.0:
         return next((c for c in choices if c[1] == HABITS.get(unit)), choices[0])

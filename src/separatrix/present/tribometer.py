@@ -19,7 +19,7 @@ from separatrix.friction.reduction import Reduction, TestFriction
 from separatrix.ground.plain_data import Document, Leaf, plain
 from separatrix.ground.units import Array
 from separatrix.present.dataset_arrays import variable
-from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
+from separatrix.told.tables import ABSENT, heading, paragraph, quantity, section, table
 
 Node = dict[str, Leaf]
 

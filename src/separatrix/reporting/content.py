@@ -21,12 +21,12 @@ from separatrix.comparing.shown import (
     shown_rows,
 )
 from separatrix.ground.errors import InputError
-from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.reporting.evidence import evidence, inputs, outside, provenance, uncertainty
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.pictures import picture, picture_of
 from separatrix.reporting.record import Block, Facts, Kept, Paragraph, Report, Row, Section, Table, quantity
 from separatrix.reporting.stages import bearing_and_cage, stages
+from separatrix.told.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.verbs import Computed, Verb, verb_named
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from separatrix.ground.errors import grouped, harmless, json_text
 from separatrix.ground.files import staged
 from separatrix.ground.plain_data import NOTES, Group, plain, shape, units_of
-from separatrix.present.text.answer import in_words
+from separatrix.told.answer import in_words
 
 if TYPE_CHECKING:
     import xarray as xr

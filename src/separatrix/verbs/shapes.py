@@ -20,8 +20,8 @@ from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, node_of, plain, units_of
 from separatrix.ground.plain_data import shape as shape
 from separatrix.ground.units import Rows, Watt
-from separatrix.present.text.sentences import pocket_force
-from separatrix.present.text.tables import quantity
+from separatrix.told.sentences import pocket_force
+from separatrix.told.tables import quantity
 from separatrix.verbs.answer_records import (
     CheckAnswer,
     MapAnswer,
@@ -34,7 +34,7 @@ from separatrix.verbs.answer_records import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.judgement import Judgement, KickCount
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
 from separatrix.verdict.swept_cases import Sweep
@@ -145,6 +145,11 @@ def _(found: MobilityAnswer) -> Node:
 
 
 # The cage.
+
+
+@shape.register
+def _(found: KickCount) -> Node:
+    return fields_of(found) | {"stable": Leaf(found.calm)}
 
 
 @shape.register

@@ -12,8 +12,9 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.ground.plain_data import Leaf, Node, field_units, fields_of, plain
-from separatrix.present.text.sentences import strain_facts
-from separatrix.present.text.tables import (
+from separatrix.study.study import PressureSlip, Study, Worn
+from separatrix.told.sentences import strain_facts
+from separatrix.told.tables import (
     facts,
     number,
     paragraph,
@@ -23,7 +24,6 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.study.study import PressureSlip, Study, Worn
 from separatrix.verbs.answer_records import MobilityAnswer, OfCage, RestitutionAnswer, TractionAnswer
 from separatrix.verbs.shapes import shape
 

@@ -6,9 +6,10 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from separatrix.ground.plain_data import Document, plain
-from separatrix.present.text.cage import judgement_facts, motion_words
-from separatrix.present.text.chain import basis
-from separatrix.present.text.sentences import (
+from separatrix.study.study import Study
+from separatrix.told.cage import judgement_facts, motion_words
+from separatrix.told.chain import basis
+from separatrix.told.sentences import (
     by_verdict,
     drift,
     margin,
@@ -19,8 +20,8 @@ from separatrix.present.text.sentences import (
     verdict,
     verdict_sentences,
 )
-from separatrix.present.text.stability import ensemble_facts
-from separatrix.present.text.tables import (
+from separatrix.told.stability import ensemble_facts
+from separatrix.told.tables import (
     ABSENT,
     facts,
     grouped,
@@ -32,7 +33,6 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.study.study import Study
 from separatrix.verbs.answer_records import RankingAnswer
 from separatrix.verdict.judgement import Judgement, Verdict
 from separatrix.verdict.ranking_records import (

@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from separatrix.ground.plain_data import plain
-from separatrix.present.text.chain import basis
-from separatrix.present.text.ranking import newtons
-from separatrix.present.text.sentences import next_test
-from separatrix.present.text.tables import (
+from separatrix.study.study import Study
+from separatrix.told.chain import basis
+from separatrix.told.ranking import newtons
+from separatrix.told.sentences import next_test
+from separatrix.told.tables import (
     ABSENT,
     facts,
     grouped,
@@ -22,7 +23,6 @@ from separatrix.present.text.tables import (
     significant,
     table,
 )
-from separatrix.study.study import Study
 from separatrix.verbs.answer_records import SensitivityAnswer
 from separatrix.verdict.uncertain_records import (
     AllowedFilm,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
-from separatrix.present.text.tables import ABSENT, grouped, interval, quantity, significant
+from separatrix.told.tables import ABSENT, grouped, interval, quantity, significant
 
 Row = Mapping[str, Any]
 """A document of an answer, or a part of one."""

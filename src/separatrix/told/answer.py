@@ -10,12 +10,16 @@ from operator import itemgetter
 
 from separatrix.ground.plain_data import Document
 from separatrix.ground.units import format_quantity
-from separatrix.present.text.cage import simulate
-from separatrix.present.text.chain import bearing, mobility, restitution, running_clearances, traction
-from separatrix.present.text.ranking import every_environment, only_table, rank
-from separatrix.present.text.sensitivity import sensitivity
-from separatrix.present.text.stability import stability, stability_map, sweep
-from separatrix.present.text.tables import (
+from separatrix.study.cage_body import cage_inertia
+from separatrix.study.pocket_shape import half_play, tilt
+from separatrix.study.sources import inputs_of, resolved
+from separatrix.study.study import ORDER, CageDesign, ClearanceState, Guidance, Study
+from separatrix.told.cage import simulate
+from separatrix.told.chain import bearing, mobility, restitution, running_clearances, traction
+from separatrix.told.ranking import every_environment, only_table, rank
+from separatrix.told.sensitivity import sensitivity
+from separatrix.told.stability import stability, stability_map, sweep
+from separatrix.told.tables import (
     ABSENT,
     facts,
     friction_table,
@@ -26,10 +30,6 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.study.cage_body import cage_inertia
-from separatrix.study.pocket_shape import half_play, tilt
-from separatrix.study.sources import inputs_of, resolved
-from separatrix.study.study import ORDER, CageDesign, ClearanceState, Guidance, Study
 from separatrix.verbs.answer_records import CheckAnswer
 
 INCOMPLETE = "INCOMPLETE: interrupted. What was not finished is left out, or has a dash in its place."

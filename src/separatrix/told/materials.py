@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from separatrix.ground.units import Kelvin, format_quantity
-from separatrix.present.text.tables import (
+from separatrix.study.library.records import CONDITIONS, UNITS, AnyRecord, Datum, Fluid, FrictionTable
+from separatrix.told.tables import (
     ABSENT,
     facts,
     friction_table,
@@ -17,7 +18,6 @@ from separatrix.present.text.tables import (
     section,
     table,
 )
-from separatrix.study.library.records import CONDITIONS, UNITS, AnyRecord, Datum, Fluid, FrictionTable
 
 WORDS = {
     "poisson_ratio": "Poisson's ratio",

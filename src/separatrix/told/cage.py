@@ -6,9 +6,11 @@ import math
 
 from separatrix.cage import History, MovingCage
 from separatrix.cage.closed_forms import drift_rate_law
-from separatrix.present.text.chain import basis, running_clearances
-from separatrix.present.text.sentences import pocket_force
-from separatrix.present.text.tables import (
+from separatrix.study.candidates import cage_candidate, environment_of
+from separatrix.study.study import Guidance, Study
+from separatrix.told.chain import basis, running_clearances
+from separatrix.told.sentences import pocket_force
+from separatrix.told.tables import (
     facts,
     number,
     paragraph,
@@ -18,8 +20,6 @@ from separatrix.present.text.tables import (
     significant,
     stated,
 )
-from separatrix.study.candidates import cage_candidate, environment_of
-from separatrix.study.study import Guidance, Study
 from separatrix.verbs.answer_records import SimulationAnswer
 from separatrix.verbs.shapes import outcome_sentence, rubbing_power
 from separatrix.verdict.critical_friction import own_restitution_factor

@@ -6,10 +6,12 @@ from collections import Counter
 from collections.abc import Sequence
 
 from separatrix.ground.plain_data import field_units, plain
-from separatrix.present.text.cage import friction_text
-from separatrix.present.text.chain import basis
-from separatrix.present.text.sentences import deciding, drift_sentence, time_shares
-from separatrix.present.text.tables import (
+from separatrix.study.candidates import cage_candidate
+from separatrix.study.study import Study
+from separatrix.told.cage import friction_text
+from separatrix.told.chain import basis
+from separatrix.told.sentences import deciding, drift_sentence, time_shares
+from separatrix.told.tables import (
     ABSENT,
     facts,
     interval,
@@ -22,8 +24,6 @@ from separatrix.present.text.tables import (
     stated,
     table,
 )
-from separatrix.study.candidates import cage_candidate
-from separatrix.study.study import Study
 from separatrix.verbs.answer_records import MapAnswer, StabilityAnswer
 from separatrix.verdict.map_records import NOT_RUN, Inference, MapAxis, MapChange, StabilityMap, Stopping
 from separatrix.verdict.stability_curve import StabilityCurve
