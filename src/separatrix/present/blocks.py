@@ -121,11 +121,12 @@ class Table:
 
 
 def _shown(column: Column, cells: Sequence[Cell]) -> ShownColumn:
-    kinds = {(one.quantity, one.unit) for one in cells if one.quantity is not None}
+    known = [one for one in cells if one.is_number and one.value is not None]
+    kinds = {(one.quantity, one.unit) for one in known}
     unit, texts, scales = "", [one.text for one in cells], [one.scale for one in cells]
     if len(kinds) == 1:  # in a table of quantities as rows, each has its own unit
         numbers = [place for place, one in enumerate(cells) if one.is_number]
-        first = cells[numbers[0]]
+        first = known[0]
         values: list[Any] = [cells[place].value for place in numbers]
         found, unit, size = in_column(values, first.quantity or Quantity(label=""), first.unit)
         scales = [(size, unit)] * len(cells)
@@ -202,6 +203,11 @@ class Page:
             kept.append(one)
         return replace(self, blocks=tuple(reversed(kept)), appendix=())
 
+    def without_notes(self) -> Page:
+        """Return the page without caveats and legends: the answer alone."""
+        kept = [one for one in self.blocks if not isinstance(one, Note) or one.kind in ("lead", "text")]
+        return replace(self, blocks=tuple(kept))
+
     @property
     def lead(self) -> tuple[str, ...]:
         """The answer in a few sentences."""
@@ -220,6 +226,8 @@ def joined(title: str, subtitle: str, parts: Sequence[tuple[str, Page]]) -> Page
         for one in page.blocks:
             if isinstance(one, Heading):
                 blocks.append(replace(one, depth=3))
+            elif isinstance(one, Note) and one.kind == "lead" and page is not parts[0][1]:
+                blocks.append(replace(one, kind="text"))
             elif not (isinstance(one, Note) and one.kind == "caveat" and one in blocks):
                 blocks.append(one)
     appendix = dict.fromkeys(one.appendix for _, one in parts)

@@ -24,7 +24,6 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import (
-    BLACK,
     CYCLE,
     GREY,
     MARKERS,
@@ -37,7 +36,6 @@ from separatrix.present.figure import (
     Mark,
     Panel,
     Trace,
-    Words,
     sign,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
@@ -81,8 +79,6 @@ MOTION = (
     "cone_ratio",
     "axial_travel",
 )
-VERDICT_AT, RIGHT = 1.05, 1.24
-"""Column of the verdicts in the overview, beyond the axis, and the end of the picture."""
 
 
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
@@ -135,7 +131,7 @@ def page(answer: Part) -> Page:
         *in_detail(known),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *ensemble_facts(answer), *holds_for(answer), level=LONG),
-        *restitution_blocks(answer.chain),
+        *restitution_blocks(answer.chain, REPORT),
         *pocket(answer.pocket),
         *(curve_blocks(answer.stability, REPORT) if "stability" in answer else []),
         *(block for one in others for block in environment(one.name, one.materials)),
@@ -175,7 +171,7 @@ def verdicts(name: str, rows: Sequence[Part], *, legend: bool = False, level: Le
 def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:
     """Return motion, stable runs from each initial disturbance, largest offset, drift, forces and rubbing."""
     rolls = any(count.rolls for row in rows for count in row.by_kick)
-    of_them = [_runs("rolls", "of them roll")] if rolls else []
+    of_them = [_runs("of them roll", "rolls")] if rolls else []
     known = [one for one in SHORT if any(one in row for row in rows)]
     speeds = " ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in kicks)
     caption = (
@@ -186,7 +182,7 @@ def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:
     columns = (
         _name(),
         motion_column(),
-        _runs("stable", "stable runs"),
+        _runs("stable runs", "settles", "rolls"),
         *of_them,
         *map(evidence_column, known),
     )
@@ -197,8 +193,13 @@ def _name() -> Column:
     return text_column("material", lambda row: row.name)
 
 
-def _runs(key: str, head: str) -> Column:
-    return text_column(head, lambda row: " ".join(str(getattr(count, key)) for count in row.by_kick))
+def _runs(head: str, *keys: str) -> Column:
+    """Return the column of runs that end in one of some ways, from each initial disturbance."""
+
+    def counts(row: Part) -> str:
+        return " ".join(str(sum(getattr(count, key) for key in keys)) for count in row.by_kick)
+
+    return text_column(head, counts)
 
 
 def motion(name: str, rows: Sequence[Part], level: Level = LONG) -> Table:
@@ -436,13 +437,13 @@ def on_the_curve(answer: Part, place: Part) -> Figure:
     ]
     signs.append(sign("o", GREY, "threshold with its 95 % interval", is_open=True))
     panel = curve_panel(
+        answer,
         answer.stability,
         title=_title(place.name),
-        eta=answer.restitution_factor,
-        marks=tuple(found),
+        more=found,
+        frictions=[row.friction for row in rows],
         labels=labels,
         head="rank  candidate  friction",
-        least_top=max((row.friction for row in rows), default=0.0),
     )
     return Figure(
         rows=((panel,),),
@@ -450,7 +451,6 @@ def on_the_curve(answer: Part, place: Part) -> Figure:
         alt="Critical friction against restitution factor, with the friction of each candidate at the "
         "bearing's own restitution factor; the table has the numbers.",
         height=4.3,
-        widths=(),
         legend=tuple(signs),
     )
 
@@ -509,7 +509,15 @@ def overview(answer: Part) -> Figure:
             size=4.5,
         )
     )
-    found += _verdict_column(own.materials, place)
+    verdicts_here = tuple(
+        Label(
+            y=place[row.name],
+            text=verdict(row),
+            colour=_colour(row),
+            marker=VERDICT_MARKERS.get(verdict(row), "x"),
+        )
+        for row in own.materials
+    )
     ranks = dict(
         zip(
             (row.name for row in own.materials),
@@ -518,27 +526,16 @@ def overview(answer: Part) -> Figure:
         )
     )
     ticks = tuple(f"{name}  {ranks[name]}" for name in names)
-    x = axis("restitution_threshold", "-", [], low=-0.012, high=RIGHT)
+    x = axis("restitution_threshold", "-", [], low=-0.012, high=1.0)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=ticks)
     title = f"Restitution thresholds, larger is better; after each name its rank in {own.name}"
     return Figure(
-        rows=((Panel(title=title, x=x, y=y, marks=tuple(found)),),),
+        rows=((Panel(title=title, x=x, y=y, marks=tuple(found), labels=verdicts_here, head="verdict"),),),
         heading=figure_heading(answer, f"seed {answer.seed}"),
         alt="Restitution threshold of each candidate in each environment, and overall with its interval; the "
         "table has the numbers.",
         height=0.9 + 0.32 * len(names),
     )
-
-
-def _verdict_column(rows: Sequence[Part], place: dict[str, float]) -> list[Mark]:
-    """Return verdicts at the right: a mark and its word for each candidate."""
-    found: list[Mark] = [Words(x=VERDICT_AT - 0.01, y=len(rows) - 0.5, text="verdict here", colour=GREY)]
-    for row in rows:
-        marker = VERDICT_MARKERS.get(verdict(row), "x")
-        look: dict[str, Any] = {"line": "", "marker": marker, "colour": _colour(row), "size": 5.0}
-        found.append(Trace(x=(VERDICT_AT,), y=(place[row.name],), **look))
-        found.append(Words(x=VERDICT_AT + 0.01, y=place[row.name], text=verdict(row), colour=BLACK))
-    return found
 
 
 VERB = Verb(

@@ -34,7 +34,7 @@ from separatrix.verbs.answer_records import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.verdict.judgement import Judgement, KickCount
+from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
 from separatrix.verdict.swept_cases import Sweep
@@ -145,11 +145,6 @@ def _(found: MobilityAnswer) -> Node:
 
 
 # The cage.
-
-
-@shape.register
-def _(found: KickCount) -> Node:
-    return fields_of(found) | {"stable": Leaf(found.calm)}
 
 
 @shape.register
@@ -290,7 +285,7 @@ def _(found: Sweep) -> Node:
 
 def to_xarray(answer: object) -> xr.Dataset:
     """Return the labelled arrays of an answer, with their units, without the study behind it."""
-    from separatrix.present.dataset_arrays import arrays_of
+    from separatrix.present.dataset import arrays_of
 
     node = Group(shape(answer))
     return arrays_of(node_of(plain(node, left_out=[]), units_of(node)))

@@ -7,6 +7,7 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import (
     Block,
+    Cell,
     Column,
     Equation,
     Heading,
@@ -18,6 +19,7 @@ from separatrix.present.blocks import (
 )
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
 from separatrix.verbs.parts.answer_page import figure_heading
+from separatrix.verbs.parts.study_facts import bearing_facts
 from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
 RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
@@ -174,3 +176,34 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
             level=level,
         ),
     ]
+
+
+def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
+    """Return the basis of a verdict: bearing, operation, film, and the numbers of the chain."""
+    chain = answer.chain
+
+    def both(name: str) -> str:
+        return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
+
+    over = OVERDAMPED if chain.restitution_factor_free_spin == 0.0 else ""
+    eta = (
+        "{restitution_factor} with race dampings summed (Eq. 18); {restitution_factor_free_spin}"
+        f"{over} if the ball may spin; {{restitution_factor_hertz}} with a Hertzian pocket"
+    )
+    rows: list[tuple[str, str | Cell]] = [
+        *bearing_facts(answer),
+        ("Contact angles under load", both("contact_angle")),
+        ("Loads of the ball", both("load")),
+        ("Traction slopes", both("slope")),
+        fact(chain, "race_damping", named("race_damping")),
+        (named("restitution_factor"), said(chain, eta)),
+        ("Stiffness of ball and pocket", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+    ]
+    rows += [] if chain.clearances is None else clearance_facts(chain.clearances)
+    if "orbital_share" in chain:  # of a bearing whose balls do not run alike
+        lead = (
+            "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+            "{orbital_share} of the speed variance"
+        )
+        rows.append(("Free balls lead and lag", said(chain, lead)))
+    return rows
