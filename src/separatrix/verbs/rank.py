@@ -540,7 +540,6 @@ def overview(answer: Part) -> Figure:
 
 VERB = Verb(
     name="rank",
-    help="Rank the cage materials: verdict, margin, reason.",
     compute=compute,
     page=page,
     needs=("cage", "ranking"),
