@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
+from matplotlib.patheffects import withTickedStroke
 from matplotlib.transforms import Bbox, offset_copy
 
 from separatrix.ground.errors import InputError
@@ -99,8 +100,8 @@ class Drawing(NamedTuple):
     targets: tuple[tuple[float, float, str], ...] = ()
 
 
-MOST_TARGETS = 400
-"""Of a trace."""
+MOST_TARGETS, MANY = 400, 5000
+"""Targets of a trace at most; points of a line from which it is drawn as pixels."""
 
 
 def svg(spec: Figure) -> Drawing:
@@ -174,7 +175,7 @@ def _drawn(spec: Figure) -> Canvas:
         for axes, panel in zip(
             part.subplots(1, len(row), squeeze=False, width_ratios=widths)[0], row, strict=True
         ):
-            _panel(axes, panel)
+            draw_panel(axes, panel)
     for one in spec.legend:
         _trace(figure.axes[0], one, spec.panels[0])
     _legend(figure)
@@ -196,7 +197,8 @@ def _named(spec: Figure) -> list[Any]:
     return [one for one in (*marks, *spec.legend) if getattr(one, "name", "")]
 
 
-def _panel(axes: Axes, panel: Panel) -> None:
+def draw_panel(axes: Axes, panel: Panel) -> None:
+    """Draw title, marks, axes and labels of a panel."""
     axes.set_title(symbols(panel.title))
     for way, one in (("x", panel.x), ("y", panel.y)):
         if one.is_log:
@@ -226,7 +228,8 @@ def _panel(axes: Axes, panel: Panel) -> None:
     _axis(axes, "x", panel.x)
     _axis(axes, "y", panel.y)
     if panel.is_to_scale:
-        axes.set_aspect("equal", adjustable="datalim")
+        is_square = panel.x.low is not None and panel.y.low is not None
+        axes.set_aspect("equal", adjustable="box" if is_square else "datalim")
     if panel.labels:
         _labels(axes, panel)
 
@@ -266,6 +269,9 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
         draw(place, low, high, color=one.colour, lw=1.4, zorder=3)
     marker = f"${one.marker}$" if one.marker == "*" else one.marker
     look: Any = {"color": one.colour, "ls": DASHES[one.line], "lw": one.width, "marker": marker or None}
+    look |= {"alpha": one.opacity, "rasterized": len(x) > MANY}
+    if one.has_ticks:
+        look["path_effects"] = [withTickedStroke(angle=90, spacing=9, length=0.5)]
     look |= {
         "ms": one.size,
         "mfc": "white" if one.is_open else one.colour,

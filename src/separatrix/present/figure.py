@@ -38,7 +38,8 @@ class Axis:
 class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
-    `fill` is the opacity inside a closed line. A trace without points stands only in the legend.
+    `fill` is the opacity inside a closed line. A line `has_ticks` on its left where one side of it is meant.
+    A trace without points stands only in the legend.
     """
 
     x: Numbers
@@ -54,6 +55,8 @@ class Trace:
     high: Numbers = ()
     ends_along: str = "y"
     fill: float = 0.0
+    opacity: float = 1.0
+    has_ticks: bool = False
     hover: tuple[str, ...] = ()
 
 
