@@ -194,7 +194,7 @@ def motion_facts(answer: Part) -> Facts:
         sense = DIRECTIONS[answer.whirl_direction]
         seen = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
         whirl = said(answer, seen)
-    offset = "{largest_offset} at most, {mean_offset} on average, varying by {offset_spread} (0: a circle)"
+    offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
     return facts(
         ("Offset", said(answer, offset)),
         ("Tilt", _tilt(answer)),

@@ -42,7 +42,7 @@ from separatrix.verbs.parts.cage_scene import (
     spectrum_reach,
     whirl_spectrum,
 )
-from separatrix.verbs.parts.telling import axis, quantity
+from separatrix.verbs.parts.telling import axis, quantity, told
 
 SHOWN = 1600
 """Points of a course in time, at most."""
@@ -130,19 +130,19 @@ def offset(answer: Part, title: str) -> Panel:
     land, play = land_boundary(answer), largest_play(answer)
     limits = [] if play is None else [Limit(play, "pockets", BLACK)]
     limits += [] if land is None else [Limit(float(land.max()), "land", VERMILION)]
-    courses = [("largest_offset", far, {"colour": BLUE, "name": "offset of the centre"})]
-    if is_in_space(answer):
-        courses.append(
-            ("axial_place", array(answer, "axial_place"), {"colour": GREEN, "name": "axial place"})
-        )
-    y = "offset, axial place" if is_in_space(answer) else "offset"
-    return _course(answer, title, courses, limits, label=y)
+    if not is_in_space(answer):
+        return _course(answer, title, [Course("largest_offset", far, "", BLUE)], limits, label="offset")
+    courses = [
+        Course("largest_offset", far, "offset", BLUE),
+        Course("axial_place", array(answer, "axial_place"), "axial place", GREEN),
+    ]
+    return _course(answer, title, courses, limits, label="offset, axial place")
 
 
 def tilt(answer: Part, title: str) -> Panel:
     """Return the angle between the axes of cage and bearing against time."""
     found = np.hypot(*array(answer, "lean").T)
-    return _course(answer, title, [("lean", found, {"colour": BLUE})], tilt_limits(answer), label="tilt")
+    return _course(answer, title, [Course("lean", found, "", BLUE)], tilt_limits(answer), label="tilt")
 
 
 def tilt_limits(answer: Part) -> list[Limit]:
@@ -156,9 +156,9 @@ def tilt_limits(answer: Part) -> list[Limit]:
 def forces(answer: Part, title: str) -> Panel:
     """Return the largest force of any pocket, and that of the lands, against time."""
     pocket, land = array(answer, "contact_force").max(axis=1), array(answer, "land_force")
-    courses = [("contact_force", pocket, {"colour": BLUE, "name": "largest force of a pocket"})]
+    courses = [Course("contact_force", pocket, "pocket, largest", BLUE)]
     if np.any(land):
-        courses.append(("land_force", land, {"colour": VERMILION, "line": "--", "name": "force of the land"}))
+        courses.append(Course("land_force", land, "land", VERMILION, "--"))
     limit = answer.get("force_limit")
     limits = [] if limit is None else [Limit(limit, "races hold", GREY)]
     return _course(answer, title, courses, limits, label="force")
@@ -166,55 +166,52 @@ def forces(answer: Part, title: str) -> Panel:
 
 def energy(answer: Part, title: str) -> Panel:
     """Return the kinetic energy of the cage, and the work of each source since the start."""
-    kinetic = array(answer, "kinetic_energy")
-    courses = [("kinetic_energy", kinetic, {"colour": BLACK, "name": "kinetic energy"})]
-    labels = []
-    for name, colour in zip(answer.work.values, (BLUE, *CYCLE[1:]), strict=False):
-        done = array(answer.work, name)
-        if np.any(done):
-            courses.append(("work", done, {"colour": colour}))
-            labels.append(Label(y=float(done[-1]), text=name.replace("_", " "), colour=colour))
-    return _course(answer, title, courses, [], label="energy, work", labels=labels)
+    courses = [Course("kinetic_energy", array(answer, "kinetic_energy"), "kinetic energy", BLACK)]
+    done = {name: array(answer.work, name) for name in answer.work.values}
+    for (name, values), colour in zip(done.items(), CYCLE, strict=False):
+        if np.any(values):
+            courses.append(Course("work", values, name.replace("_", " "), colour))
+    return _course(answer, title, courses, [], label="energy, work")
 
 
-Course = tuple[str, Array, dict[str, Any]]
-"""The name of a quantity, its values at the samples, and how its line looks."""
+class Course(NamedTuple):
+    """A quantity against time: its name, its values at the samples, its label, and how its line looks."""
+
+    quantity: str
+    values: Array
+    label: str
+    colour: str
+    line: str = "-"
 
 
 def _course(
-    answer: Part,
-    title: str,
-    courses: Sequence[Course],
-    limits: Sequence[Limit],
-    *,
-    label: str,
-    labels: Sequence[Label] = (),
+    answer: Part, title: str, courses: Sequence[Course], limits: Sequence[Limit], *, label: str
 ) -> Panel:
     """Return quantities of one unit against time, with the limits near to them and the judged part."""
-    time, every = array(answer, "time"), np.concatenate([values for _, values, _ in courses])
-    top = float(np.abs(every).max()) or 1e-12
-    near = [one for one in limits if one.value <= NEAR * top]
-    most = max([top, *(one.value for one in near)])
-    low, high = min(0.0, 1.1 * float(every.min())), max(1.12 * max(float(every.max()), most * bool(near)), 0.0)
-    first, until = answer.judged_from, answer.followed
+    time, unit = array(answer, "time"), answer.unit(courses[0].quantity)
+    every = np.concatenate([one.values for one in courses])
+    near = [one for one in limits if one.value <= NEAR * float(np.abs(every).max())]
+    high = 1.12 * max([0.0, float(every.max()), *(one.value for one in near)]) or 1e-12
+    low, first, until = min(0.0, 1.1 * float(every.min())), answer.judged_from, answer.followed
     marks: list[Mark] = []
     if until > first:
         look: dict[str, Any] = {"colour": GREY, "opacity": 0.2, "name": "judged part"}
         marks.append(Band(x=[first, until], low=[low, low], high=[high, high], **look))
     marks += [Across(at=one.value, axis="y", colour=one.colour, line="--") for one in near]
-    unit = answer.unit(courses[0][0])
-    for name, values, look in courses:
-        at = thinned(values)
+    labels = [Label(y=one.value, text=one.name, colour=one.colour) for one in near]
+    for one in courses:
+        at = thinned(one.values)
         hover = tuple(
-            f"{alone(float(t), quantity('time'), answer.unit('time'))}: "
-            f"{look.get('name', label)} {alone(float(v), quantity(name), unit)}"
-            for t, v in zip(time[at], values[at], strict=True)
+            f"{alone(t, quantity('time'), answer.unit('time'))}: "
+            f"{one.label or label} {alone(v, quantity(one.quantity), unit)}"
+            for t, v in zip(time[at].tolist(), one.values[at].tolist(), strict=True)
         )
-        marks.append(Trace(x=time[at].tolist(), y=values[at].tolist(), width=0.8, hover=hover, **look))
-    named = [Label(y=one.value, text=one.name, colour=one.colour) for one in near]
+        shape: dict[str, Any] = {"colour": one.colour, "line": one.line, "width": 0.8, "hover": hover}
+        marks.append(Trace(x=time[at].tolist(), y=one.values[at].tolist(), **shape))
+        labels += [Label(y=float(one.values[-1]), text=one.label, colour=one.colour)] if one.label else []
     x = axis("time", answer.unit("time"), [time[-1]], low=0.0, high=float(time[-1]) or 1e-3)
-    y = axis(courses[0][0], unit, [most], label=label, low=low, high=high or 1e-12)
-    return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=(*named, *labels))
+    y = axis(courses[0].quantity, unit, [high], label=label, low=low, high=high)
+    return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
 
 
 def thinned(values: Array, most: int = SHOWN) -> Array:
@@ -235,18 +232,21 @@ def spectrum(answer: Part, *others: Part, title: str) -> Panel:
     at = seen[thinned(share[seen])]
     unit = answer.unit("whirl_frequency")
     label = "frequency; backward < 0 < forward"
-    words: list[Mark] = []
-    if "whirl_frequency" in answer:
-        place = float(frequency[share.argmax()])
-        text = alone(answer.whirl_frequency, quantity("whirl_frequency"), unit)
-        words = [Words(x=place, y=1.0, text=f"whirl {text}", side="left" if place > 0.0 else "right")]
+    whirl: list[Mark] = []
+    if "whirl_frequency" in answer and answer.whirl_direction:
+        place = answer.whirl_direction * answer.whirl_frequency
+        side, text = ("left" if place > 0.0 else "right"), told(answer, "whirl_frequency")
+        whirl = [
+            Across(at=place, colour=VERMILION, line="--"),
+            Words(x=place, y=1.07, text=f"judged part: {text}", colour=VERMILION, side=side),
+        ]
     return Panel(
         title=title,
         x=axis("whirl_frequency", unit, [most], label=label, low=-most, high=most),
-        y=Axis(label="amplitude over the largest [-]", low=0.0, high=1.12),
+        y=Axis(label="relative amplitude [-]", low=0.0, high=1.12),
         marks=(
             Across(at=0.0, colour=GREY),
+            *whirl,
             Trace(x=frequency[at].tolist(), y=share[at].tolist(), colour=BLUE, width=0.8),
-            *words,
         ),
     )
