@@ -35,7 +35,7 @@ _PUBLIC = {
     "comparing.records": "Comparison",
     "comparing.saved": "load",
     "verbs.without_bearing": "Materials TribometerAnswer materials tribometer",
-    "ground.errors": "ConvergenceError DataError InputError SeparatrixError ValidityWarning",
+    "ground.errors": "ConvergenceError DataError InputError SeparatrixError",
     "verdict.swept_cases": "Sweep SweptCase",
     "friction.logs": "read_log",
     "friction.reduction": "reduce_log",

@@ -11,8 +11,6 @@ import subprocess
 import sys
 import threading
 import time
-import warnings
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -21,7 +19,7 @@ from separatrix.front import console
 from separatrix.front.console import Interruptible, one_line
 from separatrix.ground.compiled import part
 from separatrix.ground.compiling import COMPILING
-from separatrix.ground.errors import InputError, ValidityWarning, noted_warnings
+from separatrix.ground.errors import InputError
 from separatrix.ground.files import staged, writable_folder
 
 COMMAND = [sys.executable, "-m", "separatrix"]
@@ -346,16 +344,3 @@ def test_other_unraisable_errors_take_their_usual_way(monkeypatch):
         Fails()
     assert [one.exc_type for one in seen] == [ValueError]
     assert console.sys.unraisablehook == seen.append
-
-
-def test_warnings_of_many_threads_are_noted_once_each():
-    """Threads of a pool warn while the filter is in place: nothing is lost and nothing is twice."""
-    sentences = [f"sentence {i}" for i in range(50)]
-
-    def warn(_: int) -> None:
-        for sentence in sentences:
-            warnings.warn(sentence, ValidityWarning, stacklevel=2)
-
-    with noted_warnings() as notes, ThreadPoolExecutor(8) as pool:
-        list(pool.map(warn, range(32)))
-    assert sorted(notes) == sorted(sentences)

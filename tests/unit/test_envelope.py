@@ -114,7 +114,7 @@ def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
     grid = [(n, t) for n in (600.0, 900.0) for t in np.linspace(0.5e-6, 1e-6, 31)]
     cases = [{SPEED: n, "film.thickness": t, "cage.mass": 0.003} for n, t in grid]
     cases[3]["cage.mass"] = -1.0
-    found = present.document("sweep", sweep(STUDY, cases), STUDY, [])
+    found = present.document("sweep", sweep(STUDY, cases), STUDY)
     data = present.dataset(found)
     assert not has_envelope(data)
     plots, figure = sweep_plots(data), dict(draw("sweep", data))["sweep"]

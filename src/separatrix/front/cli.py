@@ -1,29 +1,39 @@
-"""The command line: its commands with their help, `new` and `app` among them, and the form of a refusal."""
+"""The command line: its commands with their help, those on files among them, and the form of a refusal."""
 
 from __future__ import annotations
 
 import contextlib
 import json as plain_json
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from separatrix.front import (
-    commands_without_bearing as without_bearing,
+from separatrix.front.commands import (
+    ANSWERED,
+    Jobs,
+    Json,
+    Quiet,
+    command_of,
+    computed_with_progress,
+    folder,
+    threads,
+    tool_command,
+    whole_number,
 )
-from separatrix.front import report_command as reporting
-from separatrix.front import (
-    saved_answer_commands as saved_answers,
-)
-from separatrix.front.console import answer, complain
-from separatrix.front.verb_commands import ANSWERED, Json, command_of, whole_number
-from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.files import refuse_existing, write_new
-from separatrix.verbs import VERBS
+from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible
+from separatrix.ground.errors import InputError, SeparatrixError, harmless
+from separatrix.ground.files import refuse_existing, writable_folder, write_new
+from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
+
+if TYPE_CHECKING:
+    from separatrix.ground.document import Document
+    from separatrix.study.study import Study
+    from separatrix.verbs.report import Report
 
 FAULT, WRONG_INPUT = 1, 2
 
@@ -35,13 +45,22 @@ separatrix rank cryogenic-turbopump
 """
 PAGE = "Open the page: edit, run and look at the studies of a folder in a browser."
 PAGE_EPILOG = (
-    "It is served on 127.0.0.1 only, to who has the link that is printed; nothing leaves this machine. Jobs "
-    "keep their finished runs: a page that is ended in the middle of one goes on when it is asked again. "
-    'Needs the extra app: pip install "separatrix[app]".'
+    "Only this computer can open the page, by the printed link. If you stop the page during a job, start the "
+    'job again to resume it. Needs the extra app: pip install "separatrix[app]".'
 )
 FOLDER_HELP = "Where the studies are [default: here]."
-NEEDED = ("fastapi", "uvicorn", "plotly", "tomlkit")
+NEEDED = ("starlette", "uvicorn", "plotly")
 MOST_PORT = 65535
+
+REPORT = "Everything on one study as a document: HTML, and PDF with --pdf."
+REPORT_EPILOG = (
+    "Of a folder: from the answers in it; nothing long is computed. Of a study: bearing, traction, "
+    "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
+    "same inputs that are there already are taken. The HTML needs no other file and no network."
+)
+ASKED_HELP = "A study, or a folder of answers."
+REPORT_OUT = "Folder of the report [default: that of the answers; none with --json]."
+PDF_HELP = "Also write report.pdf; needs the extra pdf."
 
 
 def _new(
@@ -76,14 +95,14 @@ def _new(
 
 
 def _page(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help=FOLDER_HELP, show_default=False)] = Path(
+    place: Annotated[Path, typer.Argument(metavar="FOLDER", help=FOLDER_HELP, show_default=False)] = Path(
         "."
     ),
     port: Annotated[int | None, whole_number("Port to listen on [default: any that is free].")] = None,
     open_it: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
 ) -> int:
-    if not folder.is_dir():
-        raise InputError(str(folder), "is not a folder", cure="Name the folder of your studies.")
+    if not place.is_dir():
+        raise InputError(str(place), "is not a folder", cure="Name the folder of your studies.")
     if port is not None and not 1 <= port <= MOST_PORT:
         raise InputError("--port", f"must lie between 1 and {MOST_PORT}", got=str(port))
     if lacking := [name for name in NEEDED if find_spec(name) is None]:
@@ -91,8 +110,8 @@ def _page(
         raise InputError("separatrix app", f"needs {', '.join(lacking)}", cure=cure)
     from separatrix.front.page.server import Server
 
-    server = Server(folder.resolve(), port=port or 0)
-    answer(f"The page of {folder.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
+    server = Server(place.resolve(), port=port or 0)
+    answer(f"The page of {place.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
     if open_it:
         webbrowser.open(server.link)
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
@@ -100,27 +119,115 @@ def _page(
     return ANSWERED
 
 
+# The report.
+
+
+@interruptible("no report was written.")
+def _report(
+    asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=ASKED_HELP)],
+    pdf: Annotated[bool, typer.Option("--pdf", help=PDF_HELP)] = False,
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help=REPORT_OUT)] = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    """Write the report of a study or of a folder, and return the exit status."""
+    to, compute = folder(out), partial(computed_with_progress, options=None, quiet=quiet, jobs=threads(jobs))
+    if pdf:
+        from separatrix.present.pdf import typesetter
+
+        if json and to is None:
+            raise InputError("--pdf", "needs a folder with --json", cure="Give --out DIR.")
+        typesetter()
+    from separatrix.study.reading import read_study
+    from separatrix.study.study import shipped_studies
+
+    writes = to is not None or not json
+    with contextlib.ExitStack() as stack:
+        is_folder = Path(asked).is_dir() and asked not in shipped_studies()
+        study = None if is_folder else read_study(asked)
+        usual = Path(asked) if study is None else Path(study.name)
+        place = stack.enter_context(writable_folder(to or usual)) if writes else None
+        place = (to or usual) if writes else None
+        made = _of_folder(usual, compute) if study is None else _of_study(study, place, compute)
+        if made is None:
+            return interrupted("no report was written. Run the same command to resume.")
+        files = [] if place is None else made.write(place, with_pdf=pdf)
+        if json:
+            answer_json(made.document(files))
+        else:
+            lines = [harmless(made.summary())]
+            if files and not quiet:
+                lines += ["", f"The report is {' and '.join(map(str, files))}"]
+            answer("\n".join(lines) + "\n")
+    return ANSWERED
+
+
+def _kept(compute: Callable[..., Any], study: Study, place: Path | None, verb: str) -> Document:
+    """Compute an answer; its files are written if there is a folder, without figures."""
+    from separatrix.study.reading import require
+    from separatrix.verbs.answer_files import document, save_answer
+
+    asked = verb_named(verb)
+    require(study, verb, *asked.needs)
+    found = document(asked, compute(asked, study, folder=place))
+    if place is not None:
+        save_answer(place, asked, found, pictures=False)
+    return found
+
+
+def _of_study(study: Study, place: Path | None, compute: Callable[..., Any]) -> Report | None:
+    """Return the report of a study; None if that was interrupted."""
+    from separatrix.verbs.report import add_missing, is_answer_to, report_of, wanted
+    from separatrix.verbs.saved_answers import VERBS as SAVED
+    from separatrix.verbs.saved_answers import read_answer
+
+    kept = {verb: place / f"{verb}.json" for verb in SAVED} if place is not None else {}
+    known = {verb: read_answer(path) for verb, path in kept.items() if path.exists()}
+    found = {verb: one for verb, one in known.items() if is_answer_to(one, study)}
+    missing = add_missing(found, wanted(study), partial(_kept, compute, study, place))
+    if any(one.get("complete") is False for one in found.values()):
+        return None
+    return report_of(found, missing, str(place or study.name))
+
+
+def _of_folder(place: Path, compute: Callable[..., Any]) -> Report:
+    """Return the report of a folder, with what its chain lacks if its study can be read back."""
+    from separatrix.verbs.report import CHAIN, add_missing, report_of, wanted
+    from separatrix.verbs.saved_answers import read_folder
+
+    found, missing = read_folder(place), list[str]()
+    study = _read_back(next(iter(found.values())))
+    if study is not None:
+        lacking = [verb for verb in wanted(study) if verb in CHAIN]
+        missing = add_missing(found, lacking, partial(_kept, compute, study, None))
+    return report_of(found, missing, str(place))
+
+
+def _read_back(found: Document) -> Study | None:
+    """Return the study of an answer, from what it keeps; None where that has another one."""
+    from separatrix.ground.plain_data import plain
+    from separatrix.study.reading import study_again
+    from separatrix.study.sources import resolved
+
+    try:
+        study = study_again(found["provenance"]["study"])
+    except (InputError, KeyError, TypeError):  # it keeps no study, or that of another version
+        return None
+    return study if plain(resolved(study), "study") == found["study"] else None
+
+
 def _application() -> typer.Typer:
     """Return the command line, with the verbs in the order of the chain."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     app.callback(invoke_without_command=True, help=HELP)(_start)
     app.command("new", help="Write a commented study file to fill in.")(_new)
-    for verb in VERBS:
+    for verb in map(verb_named, VERBS):
         app.command(verb.name, help=verb.help, epilog=verb.epilog)(command_of(verb))
-    for name, command, text, epilog in (
-        (
-            "tribometer",
-            without_bearing.tribometer,
-            without_bearing.TRIBOMETER,
-            without_bearing.TRIBOMETER_EPILOG,
-        ),
-        ("compare", saved_answers.compare, saved_answers.COMPARE, saved_answers.COMPARE_EPILOG),
-        ("reproduce", saved_answers.reproduce, saved_answers.REPRODUCE, saved_answers.REPRODUCE_EPILOG),
-        ("report", reporting.report, reporting.HELP, reporting.EPILOG),
-        ("app", _page, PAGE, PAGE_EPILOG),
-    ):
-        app.command(name, help=text, epilog=epilog)(command)
-    app.add_typer(without_bearing.materials_application(), name="materials", help=without_bearing.MATERIALS)
+    for tool in map(tool_named, TOOLS):
+        app.command(tool.name, help=tool.help, epilog=tool.epilog)(OWN.get(tool.name, tool_command)(tool))
+    app.command("report", help=REPORT, epilog=REPORT_EPILOG)(_report)
+    app.command("app", help=PAGE, epilog=PAGE_EPILOG)(_page)
     return app
 
 

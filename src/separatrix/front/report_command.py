@@ -21,7 +21,7 @@ from separatrix.front.verb_commands import (
     folder,
     threads,
 )
-from separatrix.ground.errors import InputError, harmless, noted_warnings
+from separatrix.ground.errors import InputError, harmless
 from separatrix.ground.files import writable_folder
 from separatrix.verbs import Computed
 
@@ -67,6 +67,7 @@ def report(
     """Write the report of a study, of a folder, or of two answers, and return the exit status."""
     to, compute = folder(out), partial(computed_with_progress, question={}, quiet=quiet, jobs=threads(jobs))
     from separatrix.reporting.formats import typesetter, write
+    from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
 
     if pdf:
@@ -89,9 +90,9 @@ def report(
             place = written_to(asked)
             made = _of_folder(Path(asked), compute)
         else:
-            study, notes = _read(asked)
+            study = read_study(asked)
             place = written_to(study.name)
-            made = _of_study(study, notes, place, compute)
+            made = _of_study(study, place, compute)
         if made is None:
             return interrupted(UNFINISHED)
         files = [] if place is None else write(made, place, with_pdf=pdf)
@@ -105,26 +106,17 @@ def report(
     return ANSWERED
 
 
-def _read(asked: str) -> tuple[Study, list[str]]:
-    from separatrix.study.reading import read_study
-
-    with noted_warnings() as notes:
-        return read_study(asked), notes
-
-
-def _answers(
-    study: Study, notes: list[str], folder: Path | None, compute: Compute
-) -> tuple[dict[str, Kept], list[str], bool]:
+def _answers(study: Study, folder: Path | None, compute: Compute) -> tuple[dict[str, Kept], list[str], bool]:
     from separatrix.reporting.content import answers_of, keeping
 
-    return answers_of(study, folder, keeping(lambda verb: compute(verb, study, folder=folder), notes, folder))
+    return answers_of(study, folder, keeping(lambda verb: compute(verb, study, folder=folder), folder))
 
 
-def _of_study(study: Study, notes: list[str], folder: Path | None, compute: Compute) -> Report | None:
+def _of_study(study: Study, folder: Path | None, compute: Compute) -> Report | None:
     """Return the report of a study; None if that was interrupted."""
     from separatrix.reporting.content import report_of
 
-    kept, missing, is_complete = _answers(study, notes, folder, compute)
+    kept, missing, is_complete = _answers(study, folder, compute)
     return report_of(kept, missing) if is_complete else None
 
 
@@ -139,7 +131,7 @@ def _of_folder(folder: Path, compute: Compute) -> Report:
     study = _read_back(next(iter(found.values())).document, str(folder))
     if study is not None:
         wanted = [verb for verb in verbs_of(study) if verb in CHAIN]
-        missing = add_missing(found, wanted, keeping(partial(compute, study=study, folder=None), [], None))
+        missing = add_missing(found, wanted, keeping(partial(compute, study=study, folder=None), None))
     try:
         return report_of({verb: found[verb] for verb in NEEDED if verb in found}, missing)
     except DAMAGE as error:
@@ -174,27 +166,28 @@ def _of_two(asked: tuple[str, str], compute: Compute, *, writes: bool) -> Report
     return report_of_two(first, second) if first and second else None
 
 
-def _read_side(asked: str) -> dict[str, Saved] | tuple[Study, list[str]]:
-    """Return the answers of one of two by verb, or its study with what was noted."""
+def _read_side(asked: str) -> dict[str, Saved] | Study:
+    """Return the answers of one of two by verb, or its study."""
     from separatrix.comparing.saved import ENDINGS, read_answers
+    from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
 
     path = Path(asked)
     kept = path.suffix.casefold() in ENDINGS or (path.is_dir() and asked not in shipped_studies())
-    return read_answers(path) if kept else _read(asked)
+    return read_answers(path) if kept else read_study(asked)
 
 
 def _answers_of_side(
-    asked: str, side: dict[str, Saved] | tuple[Study, list[str]], compute: Compute, *, writes: bool
+    asked: str, side: dict[str, Saved] | Study, compute: Compute, *, writes: bool
 ) -> dict[str, Saved]:
     """Return the answers of one of two; those of a study are computed, none if that was interrupted."""
     from separatrix.comparing.saved import Saved
 
     if isinstance(side, dict):
         return side
-    folder = Path(side[0].name) if writes else None
+    folder = Path(side.name) if writes else None
     with contextlib.nullcontext() if folder is None else writable_folder(folder):
-        kept, _, is_complete = _answers(*side, folder, compute)
+        kept, _, is_complete = _answers(side, folder, compute)
     return {
         verb: Saved(path=asked, verb=verb, document=one.document) for verb, one in kept.items() if is_complete
     }

@@ -14,7 +14,7 @@ from separatrix.comparing.records import Agreement
 from separatrix.comparing.saved import Document, Saved, read_answers
 from separatrix.front.console import answer, answer_json, interruptible, progress_bar
 from separatrix.front.verb_commands import FULL_HELP, OPTIONS, Jobs, Json, Quiet, folder, threads
-from separatrix.ground.errors import InputError, grouped, noted_warnings
+from separatrix.ground.errors import InputError
 from separatrix.ground.files import staged, writable_folder
 from separatrix.ground.units import printable, shown
 from separatrix.verbs import Verb, computed, verb_named
@@ -113,14 +113,13 @@ def _again(saved: Saved, quiet: bool, jobs: int) -> Reproduced:
     if stored.get("complete") is False:
         raise InputError(saved.path, "was interrupted", cure="Resume it: run its command again.")
     verb = verb_named(saved.verb)
-    with noted_warnings() as notes:
-        study, question = study_again(kept["study"]), _question(verb, kept["command"].get("question"))
-        require(study, verb.name, *verb.needs)
-        with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
-            found = computed(verb, study, question, jobs=jobs, progress=progress)
-        if not found.is_complete:
-            raise Interrupted
-        made = document(verb.name, found.record, found.study, grouped(notes), found.question)
+    study, question = study_again(kept["study"]), _question(verb, kept["command"].get("question"))
+    require(study, verb.name, *verb.needs)
+    with progress_bar(f"reproduce {verb.name} {study.name}", quiet=quiet) as progress:
+        found = computed(verb, study, question, jobs=jobs, progress=progress)
+    if not found.is_complete:
+        raise Interrupted
+    made = document(verb.name, found.record, found.study, found.question)
     result = agreement(stored, plain_json.loads(plain_json.dumps(made)))
     versions = tuple(_versions(stored, kept))
     return Reproduced(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
-from separatrix.ground.errors import InputError, grouped, noted_warnings
+from separatrix.ground.errors import InputError
 from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
 from separatrix.verbs import Computed, Verb, asked_study, computed, processors
@@ -161,7 +161,7 @@ def run(
 
     @interruptible("runs that were finished are kept." if is_kept else "no file was written.")
     def work() -> int:
-        with noted_warnings() as notes, contextlib.ExitStack() as stack:
+        with contextlib.ExitStack() as stack:
             asked = asked_study(verb, study, models)
             to = Path(asked.name) if place is None and verb.writes_files and not json else place
             if to is not None:
@@ -169,7 +169,7 @@ def run(
             found = computed_with_progress(
                 verb, asked, question, quiet=quiet, jobs=count, folder=to, cluster=cluster
             )
-            _deliver(verb, found, grouped(notes), to, json=json, quiet=quiet, full=full, animate=animate)
+            _deliver(verb, found, to, json=json, quiet=quiet, full=full, animate=animate)
         if found.is_complete:
             return ANSWERED
         more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
@@ -200,7 +200,6 @@ def computed_with_progress(
 def _deliver(
     verb: Verb,
     found: Computed,
-    notes: list[str],
     folder: Path | None,
     *,
     json: bool,
@@ -212,7 +211,7 @@ def _deliver(
     from separatrix.told.answer import in_words, whereabouts
     from separatrix.verbs.answer_files import document
 
-    made = document(verb.name, found.record, found.study, notes, found.question)
+    made = document(verb.name, found.record, found.study, found.question)
     if json:
         answer_json(made)
     else:

@@ -16,6 +16,9 @@ from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Rows
 
+NOTES = "notes"
+"""Field of a record that its node leaves out: an answer gathers them as its warnings."""
+
 
 class Leaf(NamedTuple):
     """A number, text, array or None; `axes` are the names of its dimensions, None for its own name."""
@@ -144,7 +147,7 @@ def _item(value: object, kind: _Kind) -> Item:
 @functools.cache
 def _kinds(record: type) -> dict[str, _Kind]:
     hints = get_type_hints(record, include_extras=True)
-    return {field.name: _kind(hints[field.name]) for field in fields(record)}
+    return {one.name: _kind(hints[one.name]) for one in fields(record) if one.name != NOTES}
 
 
 def _kind(hint: object) -> _Kind:

@@ -29,12 +29,13 @@ TONES = ("STABLE", "UNSTABLE", "UNDECIDED")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A value with what describes it; `mark` follows its text and is no part of the number."""
+    """A value with what describes it; `before` and `mark` stand around its text, no part of the number."""
 
     value: Number | str | bool
     quantity: Quantity | None = None
     unit: str = "-"
     mark: str = ""
+    before: str = ""
 
     @property
     def is_number(self) -> bool:
@@ -46,7 +47,7 @@ class Cell:
         """As it stands alone."""
         if self.quantity is None or isinstance(self.value, str):
             return f"{ABSENT if self.value is None else self.value}{self.mark}"
-        return alone(self.value, self.quantity, self.unit) + self.mark
+        return self.before + alone(self.value, self.quantity, self.unit) + self.mark
 
     @property
     def scale(self) -> tuple[float, str]:
@@ -120,16 +121,17 @@ class Table:
 
 
 def _shown(column: Column, cells: Sequence[Cell]) -> ShownColumn:
-    kinds = {(one.quantity, one.unit) for one in cells if one.quantity is not None}
+    known = [one for one in cells if one.is_number and one.value is not None]
+    kinds = {(one.quantity, one.unit) for one in known}
     unit, texts, scales = "", [one.text for one in cells], [one.scale for one in cells]
     if len(kinds) == 1:  # in a table of quantities as rows, each has its own unit
         numbers = [place for place, one in enumerate(cells) if one.is_number]
-        first = cells[numbers[0]]
+        first = known[0]
         values: list[Any] = [cells[place].value for place in numbers]
         found, unit, size = in_column(values, first.quantity or Quantity(label=""), first.unit)
         scales = [(size, unit)] * len(cells)
         for place, text in zip(numbers, found, strict=True):
-            texts[place] = text + cells[place].mark
+            texts[place] = cells[place].before + text + cells[place].mark
     return ShownColumn(column.head, unit, tuple(texts), tuple(cells), tuple(scales), column.is_text)
 
 
@@ -179,16 +181,17 @@ Block = Heading | Facts | Table | Picture | View | Note | Equation
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """An answer: its title, what it was computed for, and its blocks."""
+    """An answer: its title, what it was computed for, its blocks, and its inputs and their sources."""
 
     title: str
     subtitle: str
     blocks: tuple[Block, ...]
+    appendix: tuple[Block, ...] = ()
 
     def at(self, level: Level) -> Page:
         """Return the page with the blocks of a level, without headings that nothing follows."""
         kept: list[Block] = []
-        for one in reversed(self.blocks):
+        for one in reversed((*self.blocks, *self.appendix)):
             if not one.level & level or (isinstance(one, Table) and not one.rows):
                 continue
             if isinstance(one, Facts) and not one.pairs:
@@ -198,7 +201,12 @@ class Page:
             if isinstance(one, Heading) and is_bare:
                 continue
             kept.append(one)
-        return replace(self, blocks=tuple(reversed(kept)))
+        return replace(self, blocks=tuple(reversed(kept)), appendix=())
+
+    def without_notes(self) -> Page:
+        """Return the page without caveats and legends: the answer alone."""
+        kept = [one for one in self.blocks if not isinstance(one, Note) or one.kind in ("lead", "text")]
+        return replace(self, blocks=tuple(kept))
 
     @property
     def lead(self) -> tuple[str, ...]:
@@ -208,6 +216,22 @@ class Page:
 
 def _depth(one: Block) -> int:
     return one.depth if isinstance(one, Heading) else 0
+
+
+def joined(title: str, subtitle: str, parts: Sequence[tuple[str, Page]]) -> Page:
+    """Return pages as sections of one, each under its title; notes that several have stand once."""
+    blocks: list[Block] = []
+    for name, page in parts:
+        blocks.append(Heading(name))
+        for one in page.blocks:
+            if isinstance(one, Heading):
+                blocks.append(replace(one, depth=3))
+            elif isinstance(one, Note) and one.kind == "lead" and page is not parts[0][1]:
+                blocks.append(replace(one, kind="text"))
+            elif not (isinstance(one, Note) and one.kind == "caveat" and one in blocks):
+                blocks.append(one)
+    appendix = dict.fromkeys(one.appendix for _, one in parts)
+    return Page(title, subtitle, tuple(blocks), next(iter(appendix), ()))
 
 
 def facts(*pairs: tuple[str, Cell | str | None], level: Level = Level.ALWAYS) -> Facts:

@@ -204,7 +204,7 @@ def _mapped(node: Node) -> Node:
     return node
 
 
-DOCUMENT_ONLY = ("undecided", "next_tests", "notes", "allowed_friction", "allowed_films")
+DOCUMENT_ONLY = ("undecided", "next_tests", "allowed_friction", "allowed_films")
 CASES = ("environment", "material")
 
 

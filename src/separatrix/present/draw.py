@@ -19,7 +19,7 @@ from matplotlib.transforms import Bbox, offset_copy
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
-from separatrix.present.blocks import spans
+from separatrix.present.blocks import Page, Picture, spans
 from separatrix.present.figure import (
     GREY,
     Across,
@@ -83,12 +83,24 @@ SIDES: dict[str, dict[str, Any]] = {
 }
 
 
-def save(spec: Figure, path: Path) -> None:
-    """Write a figure in the format of the ending, one of `NOTHING`."""
-    if path.suffix not in NOTHING:
-        raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
+def save(spec: Figure, *paths: Path) -> Drawing:
+    """Write a figure in the formats of the endings, each one of `NOTHING`; return it as SVG, drawn once."""
+    for path in paths:
+        if path.suffix not in NOTHING:
+            raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
     with mpl.rc_context(STYLE):
-        drawn(spec).savefig(path, metadata=NOTHING[path.suffix])
+        figure = _drawn(spec)
+        for path in paths:
+            figure.savefig(path, metadata=NOTHING[path.suffix])
+        return _svg(figure, spec)
+
+
+def plot(page: Page, name: str | None = None) -> Canvas:
+    """Return the first picture of a page, or the one of this name."""
+    for one in page.blocks:
+        if isinstance(one, Picture) and name in (None, one.name):
+            return drawn(one.figure())
+    raise InputError(page.title, f"has no picture {name or 'of this answer'}")
 
 
 class Drawing(NamedTuple):
@@ -106,13 +118,14 @@ MOST_TARGETS, MANY = 400, 5000
 
 def svg(spec: Figure) -> Drawing:
     """Return a figure as SVG, its texts drawn, and where its points with a text are."""
+    return save(spec)
+
+
+def _svg(figure: Canvas, spec: Figure) -> Drawing:
     buffer = io.StringIO()
-    with mpl.rc_context(STYLE):
-        figure = _drawn(spec)
-        figure.savefig(buffer, format="svg", metadata=NOTHING[".svg"])
-        places = [
-            one for axes, panel in zip(figure.axes, spec.panels, strict=False) for one in _places(axes, panel)
-        ]
+    figure.savefig(buffer, format="svg", metadata=NOTHING[".svg"])
+    axes = [one for one in figure.axes if one.get_label() != "<colorbar>"]
+    places = [at for one, panel in zip(axes, spec.panels, strict=True) for at in _places(one, panel)]
     return _small(buffer.getvalue())._replace(targets=tuple(places))
 
 

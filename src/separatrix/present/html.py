@@ -36,10 +36,19 @@ LONG = 24
 """Letters of a text from which it may be broken into lines."""
 
 
-def html(page: Page, documents: Mapping[str, Any] | None = None, level: Level = Level.REPORT) -> str:
+PictureHtml = Callable[[Picture], str]
+
+
+def html(
+    page: Page,
+    documents: Mapping[str, Any] | None = None,
+    level: Level = Level.REPORT,
+    picture: PictureHtml | None = None,
+) -> str:
     """Return a page as one file; its pictures can run nothing.
 
-    `documents` are the answers behind it by their verbs: they go into the file as JSON.
+    `documents` are the answers behind it by their verbs: they go into the file as JSON. `picture` shows a
+    picture otherwise than as SVG that is drawn for it.
     """
     shown = page.at(level)
     heads = [one for one in shown.blocks if isinstance(one, Heading) and one.depth == 2]
@@ -50,6 +59,9 @@ def html(page: Page, documents: Mapping[str, Any] | None = None, level: Level = 
     title, subtitle = escape(page.title), escape(page.subtitle)
     style = (
         _static("page.css").replace("@TITLE@", _css(page.title)).replace("@SUBTITLE@", _css(page.subtitle))
+    )
+    behind = (
+        f'<script type="application/json" id="separatrix-answers">{answers}</script>' if documents else ""
     )
     return harmless(f"""<!DOCTYPE html>
 <html lang="en">
@@ -68,11 +80,11 @@ def html(page: Page, documents: Mapping[str, Any] | None = None, level: Level = 
 </header>
 {f'<nav aria-label="Contents"><ol>{contents}</ol></nav>' if heads[2:] else ""}
 <main>
-{body(shown, level)}
+{body(shown, level, picture)}
 </main>
-<footer><p>{subtitle}. The answers behind this page are in this file, as JSON.</p></footer>
+<footer><p>{subtitle}.{" The answers behind this page are in this file, as JSON." if documents else ""}</p></footer>
 <div id="tip" role="status" hidden></div>
-<script type="application/json" id="separatrix-answers">{answers}</script>
+{behind}
 <script>
 {_static("page.js")}</script>
 </body>
@@ -80,7 +92,7 @@ def html(page: Page, documents: Mapping[str, Any] | None = None, level: Level = 
 """)
 
 
-def body(page: Page, level: Level = Level.REPORT, picture: Callable[[Picture], str] | None = None) -> str:
+def body(page: Page, level: Level = Level.REPORT, picture: PictureHtml | None = None) -> str:
     """Return the blocks of a page; `picture` shows a picture otherwise than as SVG."""
     return "\n".join(_block(one, picture or _picture) for one in page.at(level).blocks)
 
@@ -94,7 +106,7 @@ def _css(text: str) -> str:
     return "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text)
 
 
-def _block(block: Block, picture: Callable[[Picture], str]) -> str:
+def _block(block: Block, picture: PictureHtml) -> str:
     match block:
         case Heading(text=text, depth=depth):
             return f'<h{depth} id="{_id(text)}">{inline(text)}</h{depth}>'
@@ -166,7 +178,11 @@ def _meant(cell: Cell, text: str) -> str:
 
 def _picture(one: Picture) -> str:
     spec = one.figure()
-    drawing = draw.svg(spec)
+    return picture_html(one, draw.svg(spec), spec.alt)
+
+
+def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
+    """Return a picture as it was drawn, with the places that a reader can point at."""
     circles = "".join(
         f'<circle cx="{x}" cy="{y}" r="4" tabindex="{0 if place == 0 else -1}" role="img" '
         f'aria-label="{escape(text)}"></circle>'
@@ -177,7 +193,7 @@ def _picture(one: Picture) -> str:
         f'aria-label="Points of the figure: arrow keys move from one to the next">{circles}</svg>'
     )
     hint = ' <span class="screen">Point at a mark for its numbers.</span>' if circles else ""
-    image = _image(drawing, spec.alt)
+    image = _image(drawing, alt)
     caption = f"<figcaption>{inline(one.caption)}{hint}</figcaption>"
     return f'<figure><div class="paper">{image}{over if circles else ""}</div>{caption}</figure>'
 

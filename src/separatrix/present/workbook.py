@@ -54,8 +54,9 @@ def _parts(column: ShownColumn) -> list[tuple[str, list[Any]]]:
             ends = [getattr(one.value, end, None) for one in column.cells]
             values = [None if v is None else v / size for v, size in zip(ends, sizes, strict=True)]
             parts.append((f"{head}, 95 % {end}", values))
-    if any(one.mark for one in column.cells if one.is_number):
-        parts.append((f"{name}, mark", [one.mark.strip() or None for one in column.cells]))
+    marks = [(one.before + one.mark).strip() or None for one in column.cells]
+    if any(mark for mark, one in zip(marks, column.cells, strict=True) if one.is_number):
+        parts.append((f"{name}, mark", marks))
     if not column.unit and any(symbol for _, symbol in column.scales):
         parts.append((f"{name}, unit", [symbol or None for _, symbol in column.scales]))
     return parts

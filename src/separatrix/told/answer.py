@@ -31,7 +31,6 @@ from separatrix.told.tables import (
     table,
 )
 from separatrix.verbs.answer_records import CheckAnswer
-from separatrix.verbs.shapes import all_notes
 
 INCOMPLETE = "INCOMPLETE: interrupted. What was not finished is left out, or has a dash in its place."
 
@@ -251,7 +250,7 @@ def in_words(
     parts = FULL.get(verb, REPORTS[verb]) if full else REPORTS[verb]
     blocks = [heading(study.title), *missing, *parts(answer, study)]
     means = [at_their_means([*study.distributions])] if study.distributions and verb not in DRAWS else []
-    lines = [paragraph(note, first="Note: ", indent="      ") for note in (*means, *all_notes(answer, notes))]
+    lines = [paragraph(note, first="Note: ", indent="      ") for note in (*means, *notes)]
     return "\n\n".join([*blocks, *(["\n".join(lines)] if lines else [])]) + "\n"
 
 

@@ -33,6 +33,7 @@ class CheckAnswer:
     static_reason: str = ""  # why there are no contacts at standstill; empty if there are
     clearances: Clearances | None = None  # running clearances; null if refused, or if the study states them
     clearances_reason: str = ""  # why the running clearances were refused; empty if they were not
+    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +49,7 @@ class TractionAnswer:
     inner_shear: ShearField  # shear of strips in free rolling, inner race
     outer_shear: ShearField  # shear of strips in free rolling, outer race
     outside: tuple[str, ...]  # where the strips leave their range, a sentence each
+    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +59,7 @@ class RestitutionAnswer:
     solution: Solution  # the chain
     film_thickness: Metre  # film thickness of the study
     lubrication: LubricationCurve | None  # restitution factor against the thickness of other films
+    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +68,7 @@ class MobilityAnswer:
 
     mobility: Mobility  # by the slip fields of the study's contacts
     rigid: LinearMobility  # small motion of the same ball between rigid bodies
+    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +77,7 @@ class OfCage:
 
     solution: Solution  # the chain
     cage: MovingCage  # the cage with its pockets, land and balls, as the runs use it
+    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,7 +32,8 @@ def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
     from separatrix.chain.solution import solve
 
     solution = solve(study)
-    return replace(solution.bearing, clearances=solution.clearances)
+    found, clearances = solution.bearing, solution.clearances
+    return replace(found, clearances=clearances, notes=solution.notes)
 
 
 def page(answer: Part) -> Page:

@@ -13,11 +13,11 @@ from separatrix.verbs import answer_records as answers
 from separatrix.verbs.parts.cage_of_study import (
     MOST_RUNS,
     cage_of,
+    extrapolation_notes,
     kick_speed,
-    warn_of_extrapolation,
 )
 from separatrix.verdict.long_jobs import Runner, made_into
-from separatrix.verdict.map_records import KICK, MapQuestion
+from separatrix.verdict.map_records import KICK, MapQuestion, StabilityMap
 from separatrix.verdict.parameter_axes import (
     DEFAULT_X,
     DEFAULT_Y,
@@ -68,8 +68,13 @@ def compute(
     speed = settings_for(study.stability, cage).middle_kick if kick is None else kick_speed(kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=runs, adaptive=adaptive)
-    warn_of_extrapolation(solution)
+    notes = (*solution.notes, *cage.notes, *extrapolation_notes(solution))
+
+    def made(found: StabilityMap) -> answers.MapAnswer:
+        every = (*notes, *(note for point in found.points for note in point.notes))
+        return answers.MapAnswer(solution=solution, cage=cage, map=found, notes=every)
+
     return made_into(
-        lambda found: answers.MapAnswer(solution=solution, cage=cage, map=found),
+        made,
         lambda: stability_map(asked, runner=runner),
     )

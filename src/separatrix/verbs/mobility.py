@@ -11,6 +11,6 @@ from separatrix.verbs import answer_records as answers
 def compute(study: Study) -> answers.MobilityAnswer:
     """How the races let a ball be pushed along its orbit."""
     records = (study.bearing, study.operation, study.kinematics.model, study.film, study.traction)
-    return answers.MobilityAnswer(
-        mobility=solve(study).mobility, rigid=linear_mobility(*records, SlipLaw.RIGID)
-    )
+    solution = solve(study)
+    found, rigid = solution.mobility, linear_mobility(*records, SlipLaw.RIGID)
+    return answers.MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)

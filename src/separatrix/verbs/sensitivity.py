@@ -39,6 +39,7 @@ def compute(study: Study, runner: Runner, *, samples: int = SAMPLES) -> answers.
             uncertain=found,
             film_thickness=study.film.thickness,
             race_friction=study.film.race_friction,
+            notes=(*solution.notes, *cage.notes, *found.notes),
         ),
         lambda: uncertain_study(study, samples, runner=runner),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -35,7 +35,7 @@ from separatrix.verbs.answer_records import (
     TractionAnswer,
 )
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked, Ranking
+from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
 from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
 from separatrix.verdict.swept_cases import Sweep
 from separatrix.verdict.uncertain_records import NotDrawn, UncertainMaterial
@@ -253,9 +253,7 @@ def _(row: UncertainMaterial | NotDrawn) -> Node:
 
 @shape.register
 def _(found: RankingAnswer) -> Node:
-    node = shape(found.ranking)
-    del node["notes"]
-    return node | _cage(found)
+    return shape(found.ranking) | _cage(found)
 
 
 @shape.register
@@ -283,26 +281,6 @@ def _(found: Sweep) -> Node:
         rest[name] = Leaf(None) if part is None else Group(shape(part))
     rest["complete"] = Leaf(found.complete)
     return {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case")), **rest}
-
-
-def free_balls_decided(found: Ranking) -> list[str]:
-    """Return for which candidates free balls decided in the bearing's own environment; empty if for none."""
-    rows = next(one.materials for one in found.environments if one.name == found.environment)
-    judged = ((row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured))
-    free = [name for name, one in judged if one is not None and one.ball == "free" and one.ball_reason]
-    if not free:
-        return []
-    return [f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."]
-
-
-def all_notes(answer: object, notes: Iterable[str]) -> list[str]:
-    """Return warnings with those that an answer has itself, each once."""
-    own: tuple[str, ...] = ()
-    if isinstance(answer, RankingAnswer):
-        own = (*free_balls_decided(answer.ranking), *answer.ranking.notes)
-    elif isinstance(answer, SensitivityAnswer):
-        own = answer.uncertain.notes
-    return list(dict.fromkeys([*notes, *own]))
 
 
 def to_xarray(answer: object) -> xr.Dataset:

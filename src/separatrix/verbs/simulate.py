@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Part
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import alone
 from separatrix.ground.units import NUMBER, printable
 from separatrix.present.blocks import (
@@ -74,7 +73,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
     from separatrix.verbs.answer_records import SimulationAnswer
-    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, kick_speed, warn_of_extrapolation
+    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.beyond_models import Moved, beyond_motion
     from separatrix.verdict.reasons import force_limit
     from separatrix.verdict.response import cage_at
@@ -90,7 +89,6 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     eta = given_factor(options)
     if eta is not None:
         cage = cage_at(cage, eta, cage.ball_cage_friction)
-    warn_of_extrapolation(solution)
     speed = settings.middle_kick if given is None else given
     history = follow(
         cage,
@@ -104,8 +102,6 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     made_of = cage_candidate(study)
     name = made_of.name if made_of else "The cage"
     moved = [Moved(name, history.largest_contact_force, history.largest_offset)]
-    for note in beyond_motion(solution, moved):
-        warnings.warn(note, ValidityWarning, stacklevel=2)
     limit = force_limit(cage, transmitted_force(solution))
     return SimulationAnswer(
         solution=solution,
@@ -116,6 +112,12 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         run=options.run,
         given_restitution_factor=eta,
         force_limit=limit if isfinite(limit) else None,
+        notes=(
+            *solution.notes,
+            *cage.notes,
+            *extrapolation_notes(solution),
+            *beyond_motion(solution, moved),
+        ),
     )
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import SeparatrixError
 from separatrix.study.study import Study
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import Runner, made_into
 from separatrix.verdict.parameter_axes import (
     Case,
     asked_cases,
@@ -40,6 +41,10 @@ def compute(
         Whether to run the whole ensemble of each case, and to compute its threshold and margin, too.
     """
     asked = asked_cases(vary, cases)
+    solution = solve(study)
     with contextlib.suppress(SeparatrixError):
-        _ = solve(study).clearances  # warns of their guesses; a case warns of nothing
-    return run_cases(study, asked, verdicts=verdicts, margins=margins, runner=runner)
+        _ = solution.clearances  # for their notes
+    return made_into(
+        lambda found: replace(found, notes=solution.notes),
+        lambda: run_cases(study, asked, verdicts=verdicts, margins=margins, runner=runner),
+    )

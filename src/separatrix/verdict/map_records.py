@@ -125,6 +125,7 @@ class MapPoint:
     it whirls, 0 in the band; null in a column that does not change."""
     inferred_decision: Verdict | None = None  # of the points around it, which an adaptive map did not run
     reason: str = NOT_RUN  # of the decision, or why there is none
+    notes: tuple[str, ...] = ()  # where its chain leaves the range of a model, a sentence each
 
     @property
     def side(self) -> int:

@@ -115,7 +115,7 @@ class PointFinder:
         kick = values.get(KICK, self.question.kick)
         settings = solution.study.stability
         ensemble = _decided_ensemble(cage, settings, kick, self.question.runs, self.runner)
-        return _judged(x, y, cage, eta, ensemble)
+        return replace(_judged(x, y, cage, eta, ensemble), notes=(*solution.notes, *cage.notes))
 
     def _find_state(self, values: Values) -> tuple[Solution, MovingCage] | str:
         """Chain and cage of a study, or why there is none: a refusal is worth remembering too.

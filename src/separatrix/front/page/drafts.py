@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-import threading
 import tomllib
 from collections.abc import Mapping, MutableMapping
 from dataclasses import dataclass, field
@@ -16,7 +15,7 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
-from separatrix.ground.errors import DataError, InputError, grouped, noted_warnings
+from separatrix.ground.errors import DataError, InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
 from separatrix.ground.reader import Document, document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
@@ -27,9 +26,6 @@ from separatrix.study.template import study_keys
 
 DRAFT = ".{}.draft"
 """Name of the draft of a study, beside it: a server that is killed loses no edit."""
-
-ONE_AT_A_TIME = threading.Lock()
-"""What studies note on the way is collected by one thread."""
 
 MEND = "Mend it in the text first."
 
@@ -125,19 +121,19 @@ def check(study: Path, root: Path) -> Checked:
         return Checked(text="", study=None, faults=tuple(_faults(error, path, study)))
     inherited, tested = _around(path, root)
     try:
-        with ONE_AT_A_TIME, reading_only_in(root), noted_warnings() as notes:
+        with reading_only_in(root):
             found = read_study(path)
     except InputError as error:
         faults = tuple(_faults(error, path, study))
         return Checked(text=text, study=None, faults=faults, inherited=inherited, tested=tested)
-    noted = tuple(grouped(notes))
-    return Checked(text=text, study=found, faults=(), notes=noted, inherited=inherited, tested=tested)
+    notes = tuple(grouped(found.notes))
+    return Checked(text=text, study=found, faults=(), notes=notes, inherited=inherited, tested=tested)
 
 
 def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], tuple[str, ...]]:
     """Return what a study that extends another has, by section and key, and the materials of its tests."""
     try:
-        with ONE_AT_A_TIME, reading_only_in(root), noted_warnings():
+        with reading_only_in(root):
             found = document_of(Study, path)
             top = {key: value for key, value in found.data.items() if not isinstance(value, dict)}
             sections = {"": top} | {k: v for k, v in found.data.items() if isinstance(v, dict)}

@@ -167,7 +167,6 @@ def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None
 
 def _answered(task: Task, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
-    from separatrix.ground.errors import grouped, noted_warnings
     from separatrix.ground.files import reading_only_in
     from separatrix.study.reading import read_study
     from separatrix.verbs import asked_study, computed, verb_named
@@ -175,7 +174,7 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
 
     question = dict(task.question)
     models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
-    with noted_warnings() as notes, reading_only_in(task.root):
+    with reading_only_in(task.root):
         verb = None if task.verb == REPORT else verb_named(task.verb)
         study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
         _refuse_links_out(task)
@@ -186,10 +185,10 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
             return computed(one, study, question, folder=task.folder, progress=progress)
 
         if verb is None:
-            return _reported(task, study, notes, compute, send)
+            return _reported(task, study, compute, send)
         found = compute(verb)
         send(message="Drawing the figures and writing the files.")
-        answer = document(verb.name, found.record, found.study, grouped(notes), found.question)
+        answer = document(verb.name, found.record, found.study, found.question)
         save_answer(task.folder, found.record, found.study, answer)
         if not found.is_complete:
             return INTERRUPTED
@@ -210,7 +209,6 @@ def _refuse_links_out(task: Task) -> None:
 def _reported(
     task: Task,
     study: Study,
-    notes: list[str],
     compute: Callable[[Verb], Computed],
     send: Send,
 ) -> tuple[str, str]:
@@ -222,7 +220,7 @@ def _reported(
         send(message=f"Computing {verb.name} for the report.")
         return compute(verb)
 
-    found, missing, is_complete = answers_of(study, task.folder, keeping(announced, notes, task.folder))
+    found, missing, is_complete = answers_of(study, task.folder, keeping(announced, task.folder))
     if not is_complete:
         return INTERRUPTED
     send(message="Writing the report.")

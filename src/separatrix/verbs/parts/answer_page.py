@@ -38,7 +38,8 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False) -> Page:
     return Page(
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",
-        (*missing, *blocks, *caveats, *sources(answer)),
+        (*missing, *blocks, *caveats),
+        tuple(sources(answer)),
     )
 
 

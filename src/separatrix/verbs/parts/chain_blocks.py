@@ -5,10 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Block, Equation, Heading, Level, Picture, facts
+from separatrix.present.blocks import (
+    Block,
+    Column,
+    Equation,
+    Heading,
+    Level,
+    Picture,
+    Table,
+    facts,
+    text_column,
+)
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import figure_heading
-from separatrix.verbs.parts.telling import axis, by_race, said
+from separatrix.verbs.parts.answer_page import entry_words, figure_heading
+from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
 RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
 ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
@@ -104,3 +114,98 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
     lands = (("its land", "cage_land_growth"), ("the ring's land", "ring_land_growth"))
     grown += [said(found, f"{part} {{{key}}} in radius") for part, key in lands if found.get(key)]
     return [*rows, ("Thermal strain", ", ".join(known)), ("Growth by rotation", ", ".join(grown))]
+
+
+FACTORS = ("race_damping", "damping_ratio", "restitution_factor")
+DAMPING = ("load", "slope", "rolling_speed")
+OVERDAMPED = " (overdamped)"
+
+
+def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
+    """Return both restitution factors, and what they are made of, with the equations."""
+
+    def factor(end: str) -> Column:
+        head = "if the ball may spin" if end else "dampings summed (Eq. 18)"
+        is_over = chain.get(f"restitution_factor{end}") == 0.0
+        return Column(
+            head,
+            lambda name: cell(
+                chain, name + end, OVERDAMPED if is_over and name == "restitution_factor" else ""
+            ),
+        )
+
+    hertz = "{restitution_factor_hertz} in an impact at the impact speed, less in a harder one"
+    return [
+        Heading("Restitution", level),
+        Equation(
+            r"C_\mu = \dfrac{\alpha_i\,Q_i}{V_i} + \dfrac{\alpha_o\,Q_o}{V_o}",
+            "Race damping $C_mu$ [18]: slopes $alpha$, loads $Q$ and rolling speeds $V$ of both contacts.",
+            level & Level.REPORT,
+        ),
+        Equation(
+            r"\zeta = \dfrac{\sqrt{k_{BC}\,M_C}}{2\,C_\mu}, \qquad "
+            r"\eta = \exp\left(-\dfrac{\pi\,\zeta}{\sqrt{1-\zeta^2}}\right)",
+            "Restitution factor $eta$ of an impact [17, derived anew]: pocket stiffness $k_BC$, cage mass "
+            "$M_C$.",
+            level & Level.REPORT,
+        ),
+        Table(
+            "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
+        ),
+        by_race(
+            "dampings",
+            chain.inner,
+            chain.outer,
+            *DAMPING,
+            level=level,
+            caption=said(
+                chain,
+                "Contacts of the most loaded ball. The damping of its inner race is {inner_damping}, that of "
+                "its outer race {outer_damping}.",
+            ),
+        ),
+        facts(
+            (
+                named("ball_cage_stiffness"),
+                f"{told(chain, 'ball_cage_stiffness')} ({chain.stiffness_source})",
+            ),
+            fact(chain, "cage_mass", named("cage_mass")),
+            ("$eta$ of a Hertzian pocket", said(chain, hertz)),
+            level=level,
+        ),
+    ]
+
+
+def basis_facts(answer: Part) -> list[tuple[str, str]]:
+    """Return what an answer on a cage rests on: bearing, operation, film, and the numbers of the chain."""
+    chain = answer.chain
+
+    def stated(section: str, key: str) -> str:
+        return entry_words((answer.values["study"].get(section) or {}).get(key) or {})
+
+    def both(name: str) -> str:
+        return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
+
+    balls = f"{stated('bearing', 'ball_count')} balls of {stated('bearing', 'ball_diameter')}"
+    point = figure_heading(answer)[1:]
+    summed = "{restitution_factor} with race dampings summed (Eq. 18)"
+    hertz = f"{summed}; {{restitution_factor_free_spin}} if the ball may spin"
+    found = [
+        ("Bearing", f"{balls}, pitch diameter {stated('bearing', 'pitch_diameter')}"),
+        ("Operation", "; ".join(point)),
+        ("Contact angles", both("contact_angle")),
+        ("Loads of the ball", both("load")),
+        ("Traction slopes", both("slope")),
+        ("Race damping $C_mu$", told(chain, "race_damping")),
+        (
+            "Restitution factor $eta$",
+            said(chain, f"{hertz}; {{restitution_factor_hertz}} with a Hertzian pocket"),
+        ),
+        ("Ball/cage stiffness", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+    ]
+    found += clearance_facts(chain.clearances) if "clearances" in chain else []
+    if "orbital_share" in chain:  # of a bearing whose balls do not run alike
+        words = "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+        words += "{orbital_share} of the variance of their speed"
+        found.append(("Free balls lead and lag", said(chain, words)))
+    return found

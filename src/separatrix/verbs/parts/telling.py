@@ -22,8 +22,8 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told."""
-    return QUANTITIES[name]
+    """Return how a quantity of this name is told; one that only full tables have, by its name."""
+    return QUANTITIES.get(name) or Quantity(label=name.replace("_", " "))
 
 
 def estimate(part: Part, name: str) -> Number:
@@ -41,6 +41,13 @@ def cell(part: Part | None, name: str, mark: str = "") -> Cell:
         return Cell(None, quantity(name))
     value = estimate(part, name)
     return Cell(value, quantity(name), part.unit(name), mark if value is not None else "")
+
+
+def named(name: str) -> str:
+    """Return the label of a quantity with its symbol, as a line begins with it."""
+    known = quantity(name)
+    label = known.label[:1].upper() + known.label[1:]
+    return f"{label} ${known.symbol}$" if known.symbol else label
 
 
 def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
