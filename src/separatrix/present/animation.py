@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib as mpl
@@ -15,8 +16,6 @@ from matplotlib.collections import EllipseCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from separatrix.ground.errors import InputError
-from separatrix.ground.files import staged
 from separatrix.ground.units import Array, format_quantity
 from separatrix.present import draw
 from separatrix.present.figure import BLACK, GREY, SKY, VERMILION, Panel
@@ -31,28 +30,26 @@ BALLS, LAND = (LinearSegmentedColormap.from_list("force", [least, VERMILION]) fo
 AROUND = np.linspace(0.0, 2 * np.pi, 361)
 
 
-def animate(
+def animation(
     at: Scene,
     panels: Sequence[tuple[Panel, Array]],
     heading: Sequence[str],
-    path: Path,
     *,
     progress: Callable[[int, int], None] | None = None,
-) -> None:
-    """Write a scene as a GIF, and report (done, total) frames; an interrupt leaves an older file.
+) -> bytes:
+    """Return a scene as a GIF, and report (done, total) frames.
 
     Each panel has the place of its dot at each moment, shape (time, 2) [SI].
     """
-    if path.suffix.lower() != ".gif":
-        raise InputError(str(path), "must end in .gif", got=f'"{path.suffix}"')
     writer = PillowWriter(fps=A_SECOND)
-    with mpl.rc_context(draw.STYLE), staged(path.parent) as stage:
+    with mpl.rc_context(draw.STYLE), TemporaryDirectory() as folder:
         figure = _background(at, [panel for panel, _ in panels], heading)
         cage, *paths = figure.axes
         move = _draw_cage(cage, at)
         clock = cage.text(0.0, 1.0, "", transform=cage.transAxes, va="top")
         dots = [axes.plot([], [], "o", color=VERMILION, ms=5)[0] for axes in paths]
-        writer.setup(figure, str(stage / path.name), DOTS)
+        path = Path(folder) / "animation.gif"
+        writer.setup(figure, str(path), DOTS)
         for frame in range(at.time.size):
             move(frame)
             clock.set_text(format_quantity(float(at.time[frame]), "s"))
@@ -63,6 +60,7 @@ def animate(
             if progress is not None:
                 progress(frame + 1, at.time.size)
         writer.finish()
+        return path.read_bytes()
 
 
 def _background(at: Scene, panels: Sequence[Panel], heading: Sequence[str]) -> Figure:

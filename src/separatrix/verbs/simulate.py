@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Part
@@ -31,6 +30,7 @@ from separatrix.present.figure import Figure
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.telling import quantity, said, told
+from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
 MOST_SHOWN = 20_000
 """Samples of a simulated run, at most: every step of a short one."""
-
-DIRECTIONS = {1: "forward", -1: "backward", 0: "without a direction"}
 
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
@@ -64,6 +62,7 @@ class Options:
         str | float | None,
         Option("Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"),
     ] = None
+    animate: Annotated[str | None, Option("Also write an animation.", "gif")] = None
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
@@ -79,6 +78,8 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.verdict.response import cage_at
     from separatrix.verdict.which_ball import transmitted_force
 
+    if options.animate not in (None, "gif"):
+        raise InputError("--animate", "must be gif", got=printable(options.animate))
     if not 0 <= options.run <= MOST_RUNS:
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
     given = None if options.kick is None else kick_speed(options.kick)
@@ -146,7 +147,7 @@ def page(answer: Part) -> Page:
         force_facts(answer),
         pockets(answer),
         Picture("simulation", lambda: _figure(answer), _caption(answer)),
-        View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
+        View("simulation", lambda: _view(answer), "The moving cage: play, turn, zoom."),
         *(clearance_blocks(clearances) if clearances else []),
         Note(SINGLE, "caveat"),
     )
@@ -193,7 +194,7 @@ def motion_facts(answer: Part) -> Facts:
     """Return how the cage moves in the judged part."""
     whirl = "none: the motion does not last"
     if "whirl_frequency" in answer:
-        sense = DIRECTIONS[answer.whirl_direction]
+        sense = DIRECTIONS[answer.whirl_direction] or "without direction"
         seen = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
         whirl = said(answer, seen)
     offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
@@ -256,7 +257,6 @@ def force_facts(answer: Part) -> Facts:
         pocket += "(`--ball free` has)"
     land = "the cage has no land" if _is_landless(answer) else told(answer, "largest_land_force")
     impacts = f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"
-    rubs = answer.rubbing_force > 0.0
     heat = alone(
         sum(answer.pocket_rubbing_power),
         quantity("pocket_rubbing_power"),
@@ -267,13 +267,9 @@ def force_facts(answer: Part) -> Facts:
         ("Land, largest", land),
         ("Impacts", impacts),
         ("Impulse", _impulse(answer)),
-        ("Friction power", _powers(answer)),
-        (
-            "Rubbing on the land",
-            said(answer, "{rubbing_force} at {rubbing_speed}, {rubbing_power} of heat") if rubs else None,
-        ),
+        *power_facts(answer),
         ("Rubbing in the pockets", f"{heat} of heat, mean of the run"),
-        ("Work on the cage", _works(answer)),
+        ("Work up to the end of the judged part", _works(answer)),
     )
 
 
@@ -286,24 +282,16 @@ def _impulse(answer: Part) -> str:
     return ", ".join(f"{told(answer, name)} {where}" for name, where in places if answer.get(name))
 
 
-def _powers(answer: Part) -> str:
-    def one(part: str, name: str) -> str:
-        power = answer.get(name)
-        size = alone(abs(power), quantity(name), answer.unit(name))
-        return f"{part} {'feeds' if power > 0.0 else 'takes'} {size}"
-
-    known = (("pocket", "pocket_power"), ("land", "land_power"))
-    return ", ".join(one(part, name) for part, name in known if answer.get(name)) or "none"
-
-
 def _works(answer: Part) -> str:
-    done = {name: work[-1] for name, work in answer.work.values.items() if any(work)}
-    told_works = (
-        f"{name.replace('_', ' ')} {alone(work, quantity('work'), answer.work.unit(name))}"
-        for name, work in done.items()
+    """Return the work of each source up to the end of the judged part, beyond which it is not added up."""
+    last = max((at for at, time in enumerate(answer.time) if time <= answer.followed), default=-1)
+    each = (
+        f"{name.replace('_', ' ')} {alone(work[last], quantity('work'), answer.work.unit(name))}"
+        for name, work in answer.work.values.items()
+        if any(work)
     )
-    left = alone(answer.kinetic_energy[-1], quantity("kinetic_energy"), answer.unit("kinetic_energy"))
-    return f"{', '.join(told_works) or 'none'}; kinetic energy at the end {left}"
+    left = alone(answer.kinetic_energy[last], quantity("kinetic_energy"), answer.unit("kinetic_energy"))
+    return f"{', '.join(each) or 'none'}; kinetic energy then {left}"
 
 
 POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impact_rate", "impacts_per_turn")
@@ -327,8 +315,8 @@ def pockets(answer: Part) -> Table:
 def _caption(answer: Part) -> str:
     more = " tilt of its axis," if "lean" in answer else ""
     return (
-        f"The run: path and whirl of the cage centre, its offset,{more} the forces, the kinetic energy and "
-        "the work of each source since the start. The run is judged by its shaded part."
+        f"The run: path and whirl of the cage centre, its offset,{more} the forces; up to the end of "
+        "the judged part, which is shaded, kinetic energy and the work of each source since the start."
     )
 
 
@@ -354,16 +342,20 @@ def _view(answer: Part) -> str:
     return view(figure_heading(answer), page_scene(answer))
 
 
-def animate(answer: Part, path: Path, *, progress: Callable[[int, int], None] | None = None) -> None:
-    """Write the moving cage as a GIF, beside the paths of centre and lean."""
-    from separatrix.present.animation import animate as write
+def files(
+    answer: Part, options: Options | None, progress: Callable[[int, int], None] | None
+) -> Iterator[tuple[str, bytes]]:
+    """Yield the moving cage as a GIF, beside the paths of centre and lean, if it is wanted."""
+    if options is None or options.animate is None:
+        return
+    from separatrix.present.animation import animation
     from separatrix.verbs.parts.cage_scene import scene
     from separatrix.verbs.parts.run_panels import lean, orbit
 
     at = scene(answer)
     panels = [(orbit(answer, title="Cage centre, turning frame"), at.centre)]
     panels += [(lean(answer), at.lean)] if at.in_space else []
-    write(at, panels, figure_heading(answer), path, progress=progress)
+    yield "simulation.gif", animation(at, panels, figure_heading(answer), progress=progress)
 
 
 VERB = Verb(
@@ -375,4 +367,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
+    files=files,
 )

@@ -54,6 +54,12 @@ def is_in_space(answer: Part) -> bool:
     return "lean" in answer
 
 
+def judged_samples(answer: Part) -> int:
+    """Return how many samples lie before the end of the judged part; all if none is judged."""
+    time = array(answer, "time")
+    return int(np.searchsorted(time, answer.followed * (1.0 + 1e-9), side="right")) or time.size
+
+
 def pocket_boundary(answer: Part) -> Array:
     """Return how far the centre may go in each direction until a pocket touches its ball [m].
 

@@ -33,6 +33,7 @@ from separatrix.verbs.parts.cage_scene import (
     array,
     axial_play,
     is_in_space,
+    judged_samples,
     land_boundary,
     land_heights,
     largest_play,
@@ -165,9 +166,13 @@ def forces(answer: Part, title: str) -> Panel:
 
 
 def energy(answer: Part, title: str) -> Panel:
-    """Return the kinetic energy of the cage, and the work of each source since the start."""
-    courses = [Course("kinetic_energy", array(answer, "kinetic_energy"), "kinetic energy", BLACK)]
-    done = {name: array(answer.work, name) for name in answer.work.values}
+    """Return the kinetic energy of the cage, and the work of each source since the start.
+
+    Up to the end of the judged part: the engine adds up no work beyond it.
+    """
+    end = judged_samples(answer)
+    courses = [Course("kinetic_energy", array(answer, "kinetic_energy")[:end], "kinetic energy", BLACK)]
+    done = {name: array(answer.work, name)[:end] for name in answer.work.values}
     for (name, values), colour in zip(done.items(), CYCLE, strict=False):
         if np.any(values):
             courses.append(Course("work", values, name.replace("_", " "), colour))
@@ -188,7 +193,7 @@ def _course(
     answer: Part, title: str, courses: Sequence[Course], limits: Sequence[Limit], *, label: str
 ) -> Panel:
     """Return quantities of one unit against time, with the limits near to them and the judged part."""
-    time, unit = array(answer, "time"), answer.unit(courses[0].quantity)
+    time, unit = array(answer, "time")[: courses[0].values.size], answer.unit(courses[0].quantity)
     every = np.concatenate([one.values for one in courses])
     near = [one for one in limits if one.value <= NEAR * float(np.abs(every).max())]
     high = 1.12 * max([0.0, float(every.max()), *(one.value for one in near)]) or 1e-12
@@ -235,15 +240,16 @@ def spectrum(answer: Part, *others: Part, title: str) -> Panel:
     whirl: list[Mark] = []
     if "whirl_frequency" in answer and answer.whirl_direction:
         place = answer.whirl_direction * answer.whirl_frequency
-        side, text = ("left" if place > 0.0 else "right"), told(answer, "whirl_frequency")
+        text, is_outward = told(answer, "whirl_frequency"), abs(place) < 0.4 * most
+        side = "right" if (place > 0.0) == is_outward else "left"  # across neither zero nor the panel's end
         whirl = [
             Across(at=place, colour=VERMILION, line="--"),
-            Words(x=place, y=1.07, text=f"judged part: {text}", colour=VERMILION, side=side),
+            Words(x=place, y=1.1, text=f"judged part: {text}", colour=VERMILION, side=side),
         ]
     return Panel(
         title=title,
         x=axis("whirl_frequency", unit, [most], label=label, low=-most, high=most),
-        y=Axis(label="relative amplitude [-]", low=0.0, high=1.12),
+        y=Axis(label="relative amplitude [-]", low=0.0, high=1.18),
         marks=(
             Across(at=0.0, colour=GREY),
             *whirl,
