@@ -305,4 +305,4 @@ def _limit(film: Record) -> float:
     """Return the largest restitution factor allowed: 1 where every one is, -1 where none is."""
     if film["restitution_factor"] is not None:
         return float(film["restitution_factor"])
-    return 1.0 if film["reason"].startswith("more") else -1.0
+    return 1.0 if film["is_any_allowed"] else -1.0

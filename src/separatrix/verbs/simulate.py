@@ -60,7 +60,9 @@ class Options:
     run: Annotated[int, Option("Which run of the ensemble.", "N")] = 0
     restitution_factor: Annotated[
         str | float | None,
-        Option("Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"),
+        Option(
+            "Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"
+        ),
     ] = None
     animate: Annotated[str | None, Option("Also write an animation.", "gif")] = None
 
@@ -269,7 +271,7 @@ def force_facts(answer: Part) -> Facts:
         ("Impulse", _impulse(answer)),
         *power_facts(answer),
         ("Rubbing in the pockets", f"{heat} of heat, mean of the run"),
-        ("Work up to the end of the judged part", _works(answer)),
+        ("Work on the cage", _works(answer)),
     )
 
 
@@ -291,7 +293,8 @@ def _works(answer: Part) -> str:
         if any(work)
     )
     left = alone(answer.kinetic_energy[last], quantity("kinetic_energy"), answer.unit("kinetic_energy"))
-    return f"{', '.join(each) or 'none'}; kinetic energy then {left}"
+    until = "" if last == -1 else f"up to {told(answer, 'followed')}: "
+    return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
 
 
 POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impact_rate", "impacts_per_turn")

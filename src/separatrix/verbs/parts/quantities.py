@@ -86,7 +86,7 @@ QUANTITIES: dict[str, Quantity] = {
     "kick_high": Q(label="friction at which most runs whirl", head="most whirl at"),
     "band_few": Q(label="share of runs that whirl at the lower end of the band", unit="%"),
     "band_most": Q(label="share of runs that whirl at the upper end of the band", unit="%"),
-    "runs": Q(label="runs", digits=7),
+    "runs": Q(label="runs", form=".0f"),
     "duration": Q(label="length of a run"),
     "drift_rate_law": Q(label="drift rate by the linear law"),
     # Runs of the cage.
@@ -193,6 +193,23 @@ QUANTITIES: dict[str, Quantity] = {
     "contact_radius": Q(label="contact radius"),
     #
     # Uncertain studies.
+    "film_thickness": Q(label="film thickness"),
+    "race_friction": Q(label="friction of ball on race", symbol="f_BT"),
+    "stopped_risk": Q(label="risk of another verdict of a case that is ended early"),
+    "default_scatter": Q(label="assumed scatter of a friction test", unit="%"),
+    "mean": Q(label="mean", digits=4),
+    "standard_deviation": Q(label="standard deviation"),
+    "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),
+    "skill": Q(label="part of the deviance explained", head="skill", unit="%", form=".0f"),
+    "predicted": Q(label="predicted P(settles)", form=".2f"),
+    "counted": Q(label="counted share that settles", form=".2f"),
+    "bearings": Q(label="bearings", form=".0f"),
+    "size": Q(label="number of bearings", head="bearings", form=".0f"),
+    "settled": Q(label="cases settled on average", head="cases settled", digits=2),
+    "chance": Q(label="chance that it gets a verdict", unit="%", form=".0f"),
+    "probability": Q(label="wanted probability to settle", unit="%"),
+    "scatter": Q(label="scatter of a new cage's friction", unit="%"),
+    "settles": Q(label="whether the cage settles", form=".0f"),
     #
     # Logs, materials and comparisons.
 }

@@ -95,7 +95,9 @@ def lean(answer: Part, title: str = "Lean of the cage's axis") -> Panel:
 
 
 def _ring(radius: Array | float, look: dict[str, Any], name: str) -> Trace:
-    return Trace(x=(radius * np.cos(AROUND)).tolist(), y=(radius * np.sin(AROUND)).tolist(), name=name, **look)
+    return Trace(
+        x=(radius * np.cos(AROUND)).tolist(), y=(radius * np.sin(AROUND)).tolist(), name=name, **look
+    )
 
 
 def _path_panel(
@@ -151,7 +153,9 @@ def tilt_limits(answer: Part) -> list[Limit]:
     play, land = axial_play(answer) / answer.cage.pitch_radius, land_boundary(answer)
     found = [Limit(play, "pockets", BLACK)] if play > 0.0 else []
     reach = float(land_heights(answer).max(initial=0.0)) + 0.5 * answer.cage.land_width
-    return found + ([Limit(float(land.max()) / reach, "land", VERMILION)] if land is not None and reach else [])
+    return found + (
+        [Limit(float(land.max()) / reach, "land", VERMILION)] if land is not None and reach else []
+    )
 
 
 def forces(answer: Part, title: str) -> Panel:
