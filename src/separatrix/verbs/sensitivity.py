@@ -21,7 +21,6 @@ from separatrix.present.blocks import (
     Page,
     Picture,
     Table,
-    explained,
     facts,
     grouped,
     text_column,
@@ -39,11 +38,12 @@ from separatrix.present.figure import (
     Mark,
     Panel,
     Trace,
+    Words,
     sign,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.telling import axis, cell, column, marks, quantity, said, told
+from separatrix.verbs.parts.telling import axis, cell, column, quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     all_numbers,
@@ -77,7 +77,7 @@ SOURCES = {
 OWN = "own friction"
 CHAIN = {"restitution_factor": "Restitution factor $eta$", "race_damping": "Race damping $C_mu$"}
 LISTED, MOST_COLUMNS, LEAST, MOST = 6, 4, 0.01, 7
-"""Items of a list on a screen, inputs of its table, least share that is shown, inputs and cases of a figure."""
+"""Items of a list and inputs of a table on a screen, least share shown, inputs and cases of a figure."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,13 +129,12 @@ def page(answer: Part) -> Page:
         Note(f"With the uncertain inputs drawn, in {own.name}: {by_verdict(each)}.", "lead"),
         *environment(own.name, own.materials, Level.ALWAYS),
         *footnotes(answer),
-        *([Heading("P(stable) elsewhere", BRIEF), elsewhere(answer, others)] if others else []),
+        *(elsewhere(answer, others) if others else []),
         *probabilities(answer),
         Heading("Which test to run next"),
         *next_tests(answer),
         Heading("Main sources of uncertainty"),
         *sources(answer),
-        Heading("Which friction a new material may have"),
         *allowed_frictions(answer),
         Heading(f"Which film keeps the cage stable in {answer.environment}", LONG),
         *allowed_films(answer),
@@ -168,11 +167,11 @@ def environment(name: str, rows: Sequence[Part], level: Level) -> list[Block]:
     each = "; ".join(eta if len(etas) == 1 else f"{eta} {', '.join(who)}" for eta, who in etas.items())
     words = f"Restitution factor $eta$ of the drawn bearings, median (nine in ten): {each}."
     legend = (
-        "s.d.: standard deviation of the friction of a new cage: its scatter from sample to sample, how well the "
-        "mean is known, and what was not tested. P(stable): share of the bearings whose cage settles or rolls in its pockets, from the worst initial "
-        "disturbance, with its 95 % interval. Motion: class of most of them. Offset and force: largest in any "
-        "run; > what the races hold: there it has no meaning. Runs: bearings from the worst initial "
-        "disturbance; fewer where the verdict was plain before."
+        "s.d.: standard deviation of the friction of a new cage: its scatter from sample to sample, how well "
+        "the mean is known, and what was not tested. P(stable): share of the bearings whose cage settles or "
+        "rolls in its pockets, from the worst initial disturbance, with its 95 % interval. Motion: class of "
+        "most of them. Offset and force: largest in any run; > what the races hold: there it has no meaning. "
+        "Runs: bearings from the worst initial disturbance; fewer where the verdict was plain before."
     )
     return [
         Heading(name[:1].upper() + name[1:], level),
@@ -204,7 +203,7 @@ def footnotes(answer: Part) -> Iterator[Note]:
         yield Note(f"{MARK} extrapolated beyond the tests: see `--full`.", "legend", BRIEF)
 
 
-def elsewhere(answer: Part, others: Sequence[Part]) -> Table:
+def elsewhere(answer: Part, others: Sequence[Part]) -> list[Block]:
     """Return verdict and P(stable) of each candidate in the other environments and over all, for a screen."""
 
     def place(name: str, rows: Sequence[Part]) -> Column:
@@ -225,7 +224,10 @@ def elsewhere(answer: Part, others: Sequence[Part]) -> Table:
         *places,
         place("overall, mean friction", answer.overall),
     )
-    return Table("elsewhere", columns, tuple(answer.overall), level=BRIEF)
+    return [
+        Heading("P(stable) elsewhere", BRIEF),
+        Table("elsewhere", columns, tuple(answer.overall), level=BRIEF),
+    ]
 
 
 def holds_for(answer: Part) -> list[tuple[str, str]]:
@@ -255,7 +257,8 @@ def is_friction(name: str) -> bool:
 def next_tests(answer: Part) -> Iterator[Block]:
     """Yield which measurement would settle undecided cases."""
     if not answer.undecided:
-        yield Note("No case is undecided: no measurement would change a verdict.")
+        none = "No case is undecided: no measurement would change a verdict."
+        yield Note(none if answer.complete else "No finished case is undecided.")
         return
     yield Note(f"Undecided: {'; '.join(answer.undecided)}.")
     if not answer.next_tests:
@@ -300,7 +303,7 @@ def sources(answer: Part) -> Iterator[Block]:
         yield Picture(
             "sensitivity-drivers",
             lambda: drivers_figure(answer, known[:MOST]),
-            "What decides whether a cage settles, in the least decided cases, and a test of the fit behind it.",
+            "What decides whether a cage settles in the least decided cases, and a test of the fit behind it.",
         )
     few, weak = "too few bearings end otherwise", "the inputs explain almost no variance"
     reasons = grouped(
@@ -375,8 +378,10 @@ def all_shares(answer: Part) -> Table:
 # What is allowed.
 
 
-def allowed_frictions(answer: Part) -> Iterator[Note]:
-    """Yield the largest friction that a new material may have."""
+def allowed_frictions(answer: Part) -> Iterator[Block]:
+    """Yield the largest friction that a new material may have; nothing before it is known."""
+    if answer.allowed_friction:
+        yield Heading("Which friction a new material may have")
     several = len(answer.allowed_friction) > 1
     for one in answer.allowed_friction:
         pocket = f" in the pockets of {', '.join(one.names)}" if several else ""
@@ -395,7 +400,7 @@ def allowed_films(answer: Part) -> Iterator[Block]:
     """Yield the largest restitution factor of each candidate, and the films that keep to it."""
     films = answer.allowed_films
     if not films:
-        yield Note("No candidate was measured there.", level=LONG)
+        yield Note("No candidate was measured there." if answer.complete else "Not finished.", level=LONG)
         return
     wanted = told(films[0], "probability")
 
@@ -480,13 +485,12 @@ def drawn(answer: Part) -> Iterator[Block]:
 
 def _of_input(name: str) -> Column:
     known = quantity(name)
-    return Column(
-        known.label, lambda row: Cell(getattr(row, name), known, row.values["unit"])
-    )  # `unit` is a method
+    # a row has a key "unit", and a part a method of this name
+    return Column(known.label, lambda row: Cell(getattr(row, name), known, row.values["unit"]))
 
 
 def convergence(answer: Part) -> Iterator[Block]:
-    """Yield P(stable) of the least decided candidate of each environment by bearings; of all in a workbook."""
+    """Yield P(stable) against the number of bearings: of the least decided candidate of each environment."""
     cases = [one for one in answer.convergence if one.size]
     least = {}
     for one in sorted(cases, key=lambda one: -abs(one.probability_stable[-1] - 0.5)):
@@ -553,7 +557,7 @@ def probabilities_figure(answer: Part) -> Figure:
     return Figure(
         rows=tuple(tuple(panels[at : at + 2]) for at in range(0, len(panels), 2)),
         heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt="P(stable) with its interval, of each candidate in each environment; the tables have the numbers.",
+        alt="P(stable) with its interval of each candidate in each environment; the tables have the numbers.",
         height=0.75 + 0.17 * max(len(rows) for _, rows in places),
         legend=tuple(signs),
     )
@@ -571,10 +575,9 @@ def _probabilities(name: str, rows: Sequence[Part]) -> Panel:
             }
             text = f"{row.name}: {row.verdict}, P(stable) {told(row, 'probability_stable')}"
             found.append(_chance(row, float(place), text, look))
-    names = tuple(
-        f"{row.name}{MARK * bool(row.extrapolation)}{'' if is_judged(row) else f': {verdict_of(row)}'}"
-        for row in order
-    )
+        else:
+            found.append(Words(x=0.0, y=float(place), text=verdict_of(row), colour=GREY))
+    names = tuple(row.name + MARK * bool(row.extrapolation) for row in order)
     x = Axis(label="P(stable) [-]", low=-0.02, high=1.02)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=names)
     return Panel(title=name[:1].upper() + name[1:], x=x, y=y, marks=tuple(found))
@@ -586,7 +589,7 @@ def _chance(row: Part, place: float, text: str, look: dict[str, Any]) -> Trace:
 
 
 def drivers_figure(answer: Part, cases: Sequence[Part]) -> Figure:
-    """Return which inputs decide whether a cage settles, and whether the fit behind it predicts the counts."""
+    """Return which inputs decide whether a cage settles, and whether the fit predicts the counts."""
     names = _inputs_shown(cases, MOST)
     shares: list[Mark] = []
     fit: list[Mark] = [
@@ -643,7 +646,8 @@ def film_figure(answer: Part) -> Figure:
     """Return which film keeps each candidate stable: lines in the plane of thickness and race friction."""
     from contourpy import contour_generator
 
-    films, lines, labels = answer.allowed_films, [], []
+    films, labels = answer.allowed_films, []
+    lines: list[Mark] = []
     thickness, friction = films[0].film_thickness[1:], films[0].race_friction
     kinds: dict[str, list[str]] = {"every": [], "no": []}
     for place, film in enumerate(films):
@@ -653,15 +657,15 @@ def film_figure(answer: Part) -> Figure:
             kinds["every" if min(every) >= 0.0 else "no"].append(film.name)
             continue
         colour, ends = CYCLE[place % len(CYCLE)], []
-        for line in contour_generator(thickness, friction, below).lines(0.0):
+        border: Any = contour_generator(thickness, friction, below).lines(0.0)
+        for line in border:
             ends += line.tolist()
             look: dict[str, Any] = {"colour": colour, "width": 1.2, "has_ticks": True}
             lines.append(Trace(x=line[:, 0].tolist(), y=line[:, 1].tolist(), **look))
         labels.append(Label(y=max(ends)[1], text=film.name, colour=colour))
     here = answer.film_thickness_here, answer.race_friction_here
     if here[0]:
-        words = "film of the study"
-        lines.append(Trace(x=here[:1], y=here[1:], line="", marker="o", size=4.5, name=words))
+        lines.append(Trace(x=here[:1], y=here[1:], line="", marker="o", size=4.5, name="film of the study"))
     unit = answer.unit("film_thickness_here")
     wanted = told(films[0], "probability")
     ticks = f"ticks: the side of the films with P(stable) of {wanted} or more"
@@ -677,7 +681,7 @@ def film_figure(answer: Part) -> Figure:
     return Figure(
         rows=((panel,),),
         heading=(*figure_heading(answer, f"seed {answer.seed}"), *words),
-        alt="Lines of film thickness against race friction, one for each candidate; the table has the numbers.",
+        alt="Film thickness against race friction, a line for each candidate; the table has the numbers.",
         height=3.4,
         legend=(sign("", GREY, ticks, line="-"),) if labels else (),
     )

@@ -163,8 +163,9 @@ def frame_moments(answer: Part, most: int) -> Array:
 def shown_parts(time: Array, moments: Array) -> tuple[tuple[float, float], ...]:
     """Return beginning and end of each part of a run that some frames show [s]."""
     steps = np.diff(moments)
-    cuts = np.flatnonzero(steps > GAP * np.median(steps) + 1) + 1 if moments.size > 2 else []
-    return tuple((float(part[0]), float(part[-1])) for part in np.split(time[moments], cuts))
+    far = (steps > GAP * np.median(steps) + 1) & (moments.size > 2)
+    parts = np.split(time[moments], np.flatnonzero(far) + 1)
+    return tuple((float(part[0]), float(part[-1])) for part in parts)
 
 
 def turned_by(cage: Part, time: Array) -> Array:

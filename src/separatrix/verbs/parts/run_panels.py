@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from separatrix.ground.document import Part
 from separatrix.ground.quantity import alone
@@ -223,13 +225,12 @@ def _course(
     return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
 
 
-def thinned(values: Array, most: int = SHOWN) -> Array:
+def thinned(values: Array, most: int = SHOWN) -> NDArray[np.intp]:
     """Return the places of the least and the largest value of each part of a course, rising."""
     if values.size <= most:
         return np.arange(values.size)
     edges = np.linspace(0, values.size, most // 2 + 1).astype(int)
-    pairs = zip(edges[:-1], edges[1:], strict=True)
-    ends = [a + end for a, b in pairs for end in (values[a:b].argmin(), values[a:b].argmax())]
+    ends = [a + end for a, b in pairwise(edges) for end in (values[a:b].argmin(), values[a:b].argmax())]
     return np.unique([0, *ends, values.size - 1])
 
 
