@@ -303,7 +303,7 @@ def sources(answer: Part) -> Iterator[Block]:
         yield Picture(
             "sensitivity-drivers",
             lambda: drivers_figure(answer, known[:MOST]),
-            "What decides whether a cage settles in the least decided cases, and a test of the fit behind it.",
+            "What decides whether a cage settles, in the least decided cases, and a test of the fit.",
         )
     few, weak = "too few bearings end otherwise", "the inputs explain almost no variance"
     reasons = grouped(
