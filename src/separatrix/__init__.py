@@ -44,7 +44,7 @@ _PUBLIC = {
     "reporting.record": "Report",
     "verdict.long_jobs": "Interrupted Runner",
     "verdict.ranking_records": "Ranking",
-    "present.dataset_arrays": "dataset save",
+    "present.dataset": "dataset save",
     "verbs.answer_files": "document",
     "verbs.shapes": "to_dataframe to_xarray",
     "verdict.critical_friction": "critical_friction",

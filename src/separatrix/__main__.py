@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
+from separatrix.front import process
 
-from separatrix.front import main
-
-sys.exit(main())
+process()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import math
 import os
 import re
 import signal
@@ -11,16 +12,18 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
 
 from separatrix.front import console
-from separatrix.front.console import Interruptible, one_line
+from separatrix.front.console import one_line
 from separatrix.ground.compiled import part
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import staged, writable_folder
+from separatrix.verdict import long_jobs
 
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
@@ -152,24 +155,42 @@ def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
         time.sleep(0.1)
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("separatrix: rank case: at work for 0.0")
-    assert "separatrix: rank case: 3 of 12 steps (25 %) after 0." in lines[-1]
+    assert "separatrix: rank case: 25 % after 0." in lines[-1]
     assert threading.active_count() == before
 
 
-def test_what_a_verb_takes_is_told_by_its_first_part(capsys, monkeypatch):
+def test_what_a_verb_takes_is_told_by_its_first_tenth(capsys, monkeypatch):
     """Once, to two digits, in a unit that is easy to read; nothing for a few seconds."""
     clock = [0.0]
     monkeypatch.setattr(console.time, "monotonic", lambda: clock[0])
-    for seconds in (0.4, 7.6, 40.0, 1800.0):
+    for seconds in (4.0, 40.0, 1800.0, 9000.0):
         life = console.Life("rank case")
-        for step in range(1, 101):
-            clock[0] += seconds / 20.0
+        clock[0] += 2.0  # the chain, before the work is known
+        for step in range(101):
             life(step, 100)
+            clock[0] += seconds / 100.0
     assert capsys.readouterr().err.splitlines() == [
-        "separatrix: rank case takes about 38 s.",
-        "separatrix: rank case takes about 3.3 min.",
+        "separatrix: rank case takes about 42 s.",
+        "separatrix: rank case takes about 30 min.",
         "separatrix: rank case takes about 2.5 h.",
     ]
+
+
+def test_nothing_is_estimated_before_a_tenth_nor_of_unknown_work(monkeypatch):
+    """And the time in which kernels are compiled is not work."""
+    clock = [0.0]
+    monkeypatch.setattr(console.time, "monotonic", lambda: clock[0])
+    pace = console.Pace()
+    for now, done, total in ((0.0, 0.0, 1.0), (2.0, 1.0, math.inf), (3.0, 9.0, 100.0)):
+        clock[0] = now
+        pace(done, total)
+        assert pace.left is None
+    COMPILING.on_start(None)
+    clock[0] += 100.0
+    COMPILING.on_end(None)
+    clock[0] += 1.0
+    pace(20.0, 100.0)
+    assert pace.left == pytest.approx(16.0, rel=1e-12)  # a fifth took 4 s
 
 
 def test_compilation_is_told_once(capsys):
@@ -294,53 +315,77 @@ def test_the_commands_of_the_readme_exist():
     assert named <= set(VERBS)
 
 
-class Swallows:
-    """Raises an interrupt where Python cannot pass it on, as in a callback of the compiler."""
-
-    def __del__(self) -> None:
-        raise KeyboardInterrupt
-
-
-def lose_an_interrupt(then) -> None:
-    """Work in which an interrupt is lost, then go on."""
-    with Interruptible():
-        Swallows()
-        then()
-
-
 def wait() -> None:
-    """Five seconds, in steps between which a signal is heard."""
-    for _ in range(500):
+    """Wait in steps between which an interrupt is heard."""
+    while True:
         time.sleep(0.01)
 
 
-def fail() -> None:
-    """Fail as the compiler does where an interrupted step made nothing for it."""
-    raise RuntimeError("no compiled object yet")
+def never_ends() -> None:
+    """Be a kernel that hears nothing, as far as a test can wait."""
+    HELD.wait()
 
 
-@pytest.mark.parametrize("then", [wait, fail])
-def test_a_swallowed_interrupt_is_sent_again_or_counts_once(then):
-    """The work is ended all the same; what it left broken counts as the interrupt, and no second follows."""
-    usual = signal.signal(signal.SIGINT, signal.default_int_handler)  # a test worker may ignore it
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            lose_an_interrupt(then)
-        time.sleep(10 * console.RETRY)  # here a second one would come
-    finally:
-        signal.signal(signal.SIGINT, usual)
+HELD = threading.Event()
 
 
-def test_other_unraisable_errors_take_their_usual_way(monkeypatch):
-    """Only interrupts are kept; the hook is put back afterwards."""
-    seen = []
-    monkeypatch.setattr(console.sys, "unraisablehook", seen.append)
+@pytest.fixture
+def interrupted(monkeypatch):
+    """An interrupt comes as soon as the result is waited for; a test worker may ignore signals."""
 
-    class Fails:
-        def __del__(self) -> None:
-            raise ValueError
+    class Interrupted(Future):
+        def result(self, timeout=None):
+            if not waited:
+                waited.append(True)
+                raise KeyboardInterrupt
+            return super().result(timeout)
 
-    with Interruptible():
-        Fails()
-    assert [one.exc_type for one in seen] == [ValueError]
-    assert console.sys.unraisablehook == seen.append
+    waited = []
+    monkeypatch.setattr(console, "Future", Interrupted)
+    return waited
+
+
+@pytest.mark.usefixtures("interrupted")
+def test_an_interrupt_is_raised_in_the_work():
+    """What it was about is not known any more."""
+    with pytest.raises(KeyboardInterrupt) as caught:
+        console.breakable(wait)
+    assert not isinstance(caught.value, console.LeftBehind)
+
+
+@pytest.mark.usefixtures("interrupted")
+def test_work_that_hears_no_interrupt_is_left_behind(monkeypatch):
+    """After its time, in a thread that does not keep the process."""
+    monkeypatch.setattr(console, "PATIENCE", 0.1)
+    with pytest.raises(console.LeftBehind):
+        console.breakable(never_ends)
+    left = [one for one in threading.enumerate() if one is not threading.main_thread() and one.daemon]
+    HELD.set()
+    for one in left:
+        one.join()
+    assert left
+
+
+@pytest.mark.usefixtures("interrupted")
+def test_an_interrupt_of_a_long_job_sets_its_flag_and_keeps_its_answer():
+    """It does not break in anywhere."""
+
+    def compute(place):
+        while place and not runner.stop.is_set:
+            time.sleep(0.001)
+        if place:
+            raise long_jobs.Interrupted
+        return "done"
+
+    runner = long_jobs.Runner()
+    with pytest.raises(long_jobs.Interrupted) as caught:
+        console.breakable(lambda: runner.work_out(compute, [0, 1], into=dict))
+    assert caught.value.finished in ({0: "done"}, None)
+    assert long_jobs.AT_WORK == []
+
+
+def test_errors_and_results_come_out_of_the_other_thread():
+    """As they are."""
+    assert console.breakable(lambda: 7) == 7
+    with pytest.raises(ZeroDivisionError):
+        console.breakable(lambda: 1 // 0)

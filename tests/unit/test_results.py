@@ -13,7 +13,7 @@ import pytest
 from separatrix.chain.solution import solve
 from separatrix.ground.plain_data import NotFiniteError, field_units, plain
 from separatrix.ground.units import Newton, Ratio, Rows
-from separatrix.present.dataset_arrays import dataset
+from separatrix.present.dataset import dataset
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
 from separatrix.verbs import answer_records as answers

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sqlite3
@@ -25,7 +26,7 @@ from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.study import MotionModel, PocketShape
 from separatrix.verdict.ledger import NAME, Ledger, key_of
-from separatrix.verdict.long_jobs import PART, Interrupted, Runner, joined
+from separatrix.verdict.long_jobs import MORE, PART, Interrupted, Load, Runner, Work, joined, scattered
 from separatrix.verdict.stability_curve import stability_curve
 
 WHEEL = read_study("momentum-wheel")
@@ -83,7 +84,8 @@ def test_a_long_computation_is_stopped_by_an_interrupt():
         raise Interrupted
 
     def interrupt(done, total):
-        raise KeyboardInterrupt
+        if done:
+            raise KeyboardInterrupt
 
     runner = Runner(jobs=2, progress=interrupt)
     with pytest.raises(Interrupted) as caught:
@@ -103,7 +105,70 @@ def test_places_that_follow_are_computed_once():
     runner = Runner(progress=lambda *at: told.append(at))
     found = runner.work_out(compute, [1, 2], into=dict, more=lambda place, _: [3] if place < 3 else [])
     assert sorted(computed) == sorted(found) == [1, 2, 3]
-    assert told[-1] == (3, 3)
+    assert told[0] == (0.0, math.inf)  # nothing is known yet
+    assert told[-1][0] == told[-1][1] > 0.0
+
+
+def work_of(**loads):
+    """Work of places by name."""
+    work = Work()
+    work.loads |= loads
+    return work
+
+
+def test_places_of_one_size_are_expected_to_take_the_same_time():
+    """Whatever was made of one of them; nothing is known before the first run."""
+    work = work_of(a=Load(100), b=Load(100), c=Load(100))
+    assert work.so_far(1) == (0.0, math.inf)
+    work.spend("a", 3.0, 70)
+    work.finish("a", 9.0)
+    assert work.so_far(1) == (3.0, 9.0)
+    work.spend("b", 1.0, 90)
+    assert work.so_far(1) == (4.0, 9.0)
+
+
+def test_before_one_is_finished_all_go_on_as_they_began():
+    """A search and a verdict, each at its own pace; what has not begun at that of all by its dearness."""
+    work = work_of(search=Load(100, dear=2.0), verdict=Load(200), other=Load(100, dear=2.0))
+    work.spend("search", 4.0, 20)  # 20 s in all
+    work.spend("verdict", 2.0, 40)  # 10 s; 6 s for 80 units
+    assert work.so_far(1) == (6.0, pytest.approx(20.0 + 10.0 + 200.0 * 6.0 / 80.0))
+
+
+def test_the_last_search_keeps_one_thread_busy():
+    """The others wait: the time that is left is its own, however many they are."""
+    work = work_of(search=Load(100))
+    work.spend("search", 5.0, 50)
+    assert work.so_far(1) == (5.0, 10.0)
+    assert work.so_far(4) == (5.0, 25.0)
+
+
+def test_places_that_will_follow_are_expected():
+    """Until the one that they follow from is known."""
+    work = work_of(node=Load(100, follow=0.5))
+    work.spend("node", 5.0, 50)
+    assert work.so_far(1) == (5.0, 15.0)
+    work.finish("node", 5.0)
+    assert work.so_far(1) == (5.0, 5.0)
+
+
+def test_kept_runs_say_nothing_of_the_others():
+    """They took no time; a place that takes longer than expected takes a little longer still."""
+    work = work_of(kept=Load(100), new=Load(100), next=Load(100))
+    work.keep("kept")
+    work.finish("kept", 0.001)
+    assert work.so_far(1)[1] == math.inf
+    work.spend("new", 6.0, 300)
+    assert work.so_far(1)[1] == pytest.approx(0.001 + MORE * 6.0 + 2.0)
+
+
+def test_the_first_tenth_of_scattered_places_resembles_all():
+    """Of 100 places whose time grows a hundredfold, ten in their order and ten as they are scattered."""
+    times = [100.0 ** (i / 99.0) for i in range(100)]
+    mean = sum(times) / 100
+    assert sum(times[:10]) / 10 < mean / 10.0
+    assert sum(scattered(times)[:10]) / 10 == pytest.approx(mean, rel=0.3)
+    assert sorted(scattered(times)) == times
 
 
 def test_an_interrupt_is_noticed_and_breaks_in_nowhere():

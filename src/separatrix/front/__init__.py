@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
-__all__ = ["main"]
+__all__ = ["main", "process"]
 
 BLAS_THREADS = "OPENBLAS_NUM_THREADS"
 """Our threads are those of --jobs; our matrices are small, and more threads in a product would only wait."""
+
+
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -34,3 +41,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from separatrix.front.console import interrupted
 
         return interrupted("no file was written.")
+
+
+def process() -> NoReturn:
+    """Run the command line and end the process; threads that an interrupt left behind end with it."""
+    status = main()
+    if status != INTERRUPTED:
+        sys.exit(status)
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError, AttributeError):  # a closed one, or none
+            stream.flush()
+    os._exit(status)

@@ -103,7 +103,7 @@ class Answer(Generic[Record]):
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
-        from separatrix.present.dataset_arrays import dataset
+        from separatrix.present.dataset import dataset
 
         return dataset(self.document())
 
@@ -163,7 +163,7 @@ def simulate(
     run: int = 0,
     restitution_factor: str | Ratio | None = None,
 ) -> Answer[SimulationAnswer]:
-    """One run of the cage, from an initial disturbance in text with a unit or [m/s]: options as of the command."""
+    """One run of the cage, from an initial disturbance in text with a unit or [m/s]."""
     question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
     return _answer("simulate", study, question)
 
@@ -215,7 +215,7 @@ def map(
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Answer[MapAnswer]:
-    """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
+    """Where the cage is stable in the plane of two parameters: see `stability` for the rest."""
     question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
     return _answer("map", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
@@ -260,7 +260,7 @@ def sweep(
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Answer[Sweep]:
-    """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
+    """Chain and verdict of many cases: see `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
     question = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
     return _answer("sweep", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
@@ -286,7 +286,8 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
         {one.verb: one.document()} if isinstance(one, Answer) else read_answers(Path(one))
         for one in (first, second)
     ]
-    return compared(*sides)
+    names = [one.study.name if isinstance(one, Answer) else str(one) for one in (first, second)]
+    return compared(*sides, names=(names[0], names[1]))
 
 
 def report(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json as plain_json
 import webbrowser
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,21 +19,38 @@ from separatrix.front.commands import (
     Json,
     Quiet,
     command_of,
+    compute_tool,
     computed_with_progress,
+    deliver_tool,
     folder,
+    named,
+    options_of,
+    save_tool,
+    signature,
     threads,
     tool_command,
     whole_number,
 )
-from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible
+from separatrix.front.console import (
+    answer,
+    answer_json,
+    breakable,
+    complain,
+    interrupted,
+    interruptible,
+    progress_bar,
+)
 from separatrix.ground.errors import InputError, SeparatrixError, harmless
-from separatrix.ground.files import refuse_existing, writable_folder, write_new
+from separatrix.ground.files import refuse_existing, staged, writable_folder, write_new
+from separatrix.ground.units import printable, shown
 from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
 
 if TYPE_CHECKING:
+    from separatrix.friction.log_series import ReducedLogs
     from separatrix.ground.document import Document
     from separatrix.study.study import Study
     from separatrix.verbs.report import Report
+    from separatrix.verbs.verb import Tool
 
 FAULT, WRONG_INPUT = 1, 2
 
@@ -217,6 +234,109 @@ def _read_back(found: Document) -> Study | None:
     return study if plain(resolved(study), "study") == found["study"] else None
 
 
+# Tools that write files.
+
+
+def _comparing(tool: Tool) -> Callable[..., int]:
+    """Return the command that compares two answers, and writes document, text and pictures."""
+
+    @interruptible("nothing was compared.")
+    def command(**given: Any) -> int:
+        to = folder(given["out"]) or (None if given["json"] else Path("compare"))
+        with contextlib.nullcontext() if to is None else writable_folder(to):
+            found = compute_tool(tool, given)
+            if to is not None:
+                save_tool(to, tool, found)
+        deliver_tool(tool, found, given)
+        if to is not None and not given["json"] and not given["quiet"]:
+            answer(f"\nText, data and figures are in {to}/\n")
+        return ANSWERED
+
+    command.__signature__ = signature(tool.shown_options(), "full", "json", "out", "quiet")  # type: ignore[attr-defined]
+    return command
+
+
+FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
+PLOTS_HELP = "Folder of a picture for each test [default: beside the friction file]."
+WRITTEN: dict[str, tuple[Any, Any]] = {
+    "out": (Annotated[str | None, typer.Option(metavar="FILE", help=FRICTION_HELP)], None),
+    "plots": (Annotated[str | None, typer.Option(metavar="DIR", help=PLOTS_HELP)], None),
+}
+
+
+def _reducing(tool: Tool) -> Callable[..., int]:
+    """Return the command that reduces logs, and writes a friction file and pictures of the tests."""
+
+    @interruptible("no friction file was written.")
+    def command(**given: Any) -> int:
+        to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
+        if to is not None:
+            _refuse_out(to)
+            pages = pages or to.with_name(f"{to.stem}-plots")
+        with contextlib.ExitStack() as folders:
+            for one in (to and to.parent, pages):
+                if one is not None:
+                    folders.enter_context(writable_folder(one))
+            found = _reduced(tool, given, to)
+            if pages is not None:
+                save_tool(pages, tool, found, pictures_only=True)
+            deliver_tool(tool, found, given)
+            if pages is not None and not given["json"] and not given["quiet"]:
+                answer(f"\nPictures of the tests are in {pages}/\n")
+        return ANSWERED
+
+    beside = ("full", "json", "quiet", "jobs")
+    command.__signature__ = signature(tool.shown_options(), *beside, more=WRITTEN)  # type: ignore[attr-defined]
+    return command
+
+
+def _reduced(tool: Tool, given: Mapping[str, Any], to: Path | None) -> Document:
+    """Compute the document of logs, and write their friction file; a draft of a map if one is needed."""
+    from separatrix.friction.logs import UnmappedError
+    from separatrix.verbs.tribometer import document, reduced
+
+    try:
+        if to is None:
+            return compute_tool(tool, given)
+        options, count = options_of(tool, given), threads(given["jobs"])
+        with progress_bar(tool.name, quiet=given["quiet"]) as progress:
+            found: ReducedLogs = breakable(partial(reduced, options, count, progress, complete=True))
+    except UnmappedError as error:
+        raise error.with_draft_written() from None
+    if found.friction_tests is not None:
+        from separatrix.friction.friction_file import friction_text
+
+        with staged(to.parent) as stage:
+            (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
+            refuse_existing(to)  # it may have been made since the first check
+    return document(found, str(to))
+
+
+def _refuse_out(out: Path) -> None:
+    try:
+        is_folder = out.is_dir()
+    except OSError as error:
+        where = f"--out {printable(str(out), 200)}"
+        raise InputError(where, "cannot be written", error.strerror or type(error).__name__) from None
+    if out.suffix != ".toml" or is_folder:
+        cure = 'Name a file like "friction.toml".'
+        raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
+    refuse_existing(out)
+
+
+OWN: dict[str, Callable[[Tool], Callable[..., int]]] = {"compare": _comparing, "tribometer": _reducing}
+"""Tools whose command writes files."""
+
+
+def _materials() -> typer.Typer:
+    from separatrix.verbs.materials import LIST, SHOW
+
+    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    for tool in (LIST, SHOW):
+        app.command(tool.name.split()[-1], help=tool.help, epilog=tool.epilog)(tool_command(tool))
+    return app
+
+
 def _application() -> typer.Typer:
     """Return the command line, with the verbs in the order of the chain."""
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
@@ -226,6 +346,7 @@ def _application() -> typer.Typer:
         app.command(verb.name, help=verb.help, epilog=verb.epilog)(command_of(verb))
     for tool in map(tool_named, TOOLS):
         app.command(tool.name, help=tool.help, epilog=tool.epilog)(OWN.get(tool.name, tool_command)(tool))
+    app.add_typer(_materials(), name="materials", help="The library of materials.")
     app.command("report", help=REPORT, epilog=REPORT_EPILOG)(_report)
     app.command("app", help=PAGE, epilog=PAGE_EPILOG)(_page)
     return app
@@ -241,8 +362,7 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        others = ("tribometer", "compare", "reproduce", "report", "app", "materials")
-        verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
+        verbs = ", ".join(["new", *VERBS, *TOOLS, "materials", "report", "app"])
         raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
 
 

@@ -5,13 +5,22 @@ from __future__ import annotations
 import contextlib
 import inspect
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
 
 import typer
 
-from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible, progress_bar
+from separatrix.front.console import (
+    answer,
+    answer_json,
+    breakable,
+    complain,
+    interrupted,
+    interruptible,
+    progress_bar,
+)
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
@@ -93,11 +102,15 @@ def named(text: str | None, option: str, what: str) -> Path | None:
 # Options of a verb as those of its command.
 
 
-def signature(options: Mapping[str, tuple[Any, Option, Any]], *beside: str) -> inspect.Signature:
-    """Return the signature of a command: the options of a verb, and those `beside` them."""
+def signature(
+    options: Mapping[str, tuple[Any, Option, Any]],
+    *beside: str,
+    more: Mapping[str, tuple[Any, Any]] | None = None,
+) -> inspect.Signature:
+    """Return the signature of a command: the options of a verb, those `beside` them, and `more`."""
     kinds = {name: _typed(name, *one) for name, one in options.items()}
     before = {"study": BESIDE["study"]} if "study" in beside else {}
-    after = {name: BESIDE[name] for name in beside if name != "study"}
+    after = dict(more or {}) | {name: BESIDE[name] for name in beside if name != "study"}
     return inspect.Signature(
         [
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default)
@@ -122,7 +135,7 @@ def _typed(name: str, kind: Any, note: Option, default: Any) -> tuple[Any, Any]:
         return Annotated[
             text, typer.Argument(metavar=note.metavar, help=note.help, show_default=False)
         ], default
-    look = {"help": note.help} | ({"metavar": note.metavar} if note.metavar else {})
+    look: dict[str, Any] = {"help": note.help} | ({"metavar": note.metavar} if note.metavar else {})
     return Annotated[text, typer.Option(flag, **look)], default
 
 
@@ -205,7 +218,8 @@ def computed_with_progress(
 ) -> Computed:
     """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
     with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
-        found = computed(verb, study, options, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        how = partial(computed, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+        found = breakable(partial(how, verb, study, options))
     if found.runs_taken and not quiet:
         from separatrix.verdict.ledger import NAME
 
@@ -270,10 +284,10 @@ def compute_tool(tool: Tool, given: Mapping[str, Any]) -> Document:
     """Compute the document of a tool, with a bar of progress where that takes time."""
     options = options_of(tool, given)
     if not tool.takes_time:
-        return tool.compute(options)
+        return breakable(partial(tool.compute, options))
     count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:
-        return tool.compute(options, count, progress)
+        return breakable(partial(tool.compute, options, count, progress))
 
 
 def deliver_tool(tool: Tool, found: Document, given: Mapping[str, Any]) -> None:
@@ -284,3 +298,11 @@ def deliver_tool(tool: Tool, found: Document, given: Mapping[str, Any]) -> None:
         answer_json(found)
     else:
         print_page(tool.page(part_of(found)), full=given.get("full", False))
+
+
+def save_tool(folder: Path, tool: Tool, found: Document, *, pictures_only: bool = False) -> None:
+    """Write the document of a tool, its page as text, HTML and workbook, and its pictures; all or none."""
+    from separatrix.ground.document import part_of
+    from separatrix.verbs.answer_files import save_page
+
+    save_page(folder, tool.name, tool.page(part_of(found)), None if pictures_only else found)

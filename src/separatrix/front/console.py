@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-import _thread
 import contextlib
+import contextvars
+import ctypes
 import functools
 import math
 import os
+import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from types import TracebackType
-from typing import TYPE_CHECKING, ParamSpec, TextIO
+from concurrent.futures import Future
+from types import FrameType
+from typing import TYPE_CHECKING, ParamSpec, TextIO, TypeVar
 
+from separatrix.front import INTERRUPTED
 from separatrix.ground.errors import InputError, harmless, json_text, one_line
 
 if TYPE_CHECKING:
     from separatrix.ground.units import Second
 
 Given = ParamSpec("Given")
-
-INTERRUPTED = 130
-"""Exit status after Ctrl-C."""
+Answer = TypeVar("Answer")
 
 LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
@@ -30,17 +32,20 @@ LINE_EVERY: Second = 20.0
 WORTH_PRINTING: Second = 5.0
 """A shorter work does not tell its time."""
 
-LOADING: Second = 1.0
-"""Time from the beginning in which steps are taken from an earlier call."""
+FIRST_PART = 0.1
+"""Share of the work after which the time of all is estimated."""
 
-FIRST_PART = 0.05
-"""Share of the steps after which the time of all is estimated."""
+ENOUGH: Second = 1.0
+"""Work in which nothing is estimated."""
 
 COMPILATION = "about a minute"
 """What compiling all that a ranking needs takes."""
 
-RETRY = 0.02
-"""Time after which a swallowed interrupt is sent again [s]."""
+PATIENCE: Second = 1.6
+"""Time that an interrupt waits for the work to end by itself, with what was finished."""
+
+LOOK: Second = 0.05
+"""Time between two looks at whether it has ended."""
 
 
 def complain(message: str) -> None:
@@ -55,34 +60,74 @@ def interrupted(what: str) -> int:
     return INTERRUPTED
 
 
-class Interruptible:
-    """Let Ctrl-C end the work inside, also where the compiler's callbacks swallow it.
+class LeftBehind(KeyboardInterrupt):
+    """An interrupt that the work did not follow in time: its thread still runs."""
 
-    A swallowed interrupt is sent again a little later, unless the work has ended by then; an error that it
-    left behind counts as the interrupt.
+
+def breakable(work: Callable[[], Answer]) -> Answer:
+    """Result of work in another thread, so that an interrupt ends it inside a kernel or the compiler, too.
+
+    Ctrl-C or SIGTERM ends a long job at its next look, and raises KeyboardInterrupt in other work; a module
+    that is being imported is waited for. What does not end within `PATIENCE`, or before a second interrupt,
+    is left behind: the process must end, by `os._exit`.
     """
+    if threading.current_thread() is not threading.main_thread():
+        return work()
+    found: Future[Answer] = Future()
 
-    def __enter__(self) -> None:
-        self._again: list[threading.Timer] = []
-        self._usual = sys.unraisablehook
-        sys.unraisablehook = self._note
+    def note(_: object, error: BaseException | None, __: object) -> bool:
+        if error is not None:
+            found.set_exception(error)
+        return True
 
-    def _note(self, unraisable: sys.UnraisableHookArgs) -> None:
-        if unraisable.exc_type is not KeyboardInterrupt:
-            self._usual(unraisable)
-            return
-        self._again.append(threading.Timer(RETRY, _thread.interrupt_main))
-        self._again[-1].start()
+    def do() -> None:
+        with contextlib.ExitStack() as stack:
+            stack.push(note)
+            found.set_result(work())
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        sys.unraisablehook = self._usual
-        for timer in self._again:
-            timer.cancel()
-            timer.join()
-        if self._again and error is not None:
-            raise KeyboardInterrupt from error
+    thread = threading.Thread(target=contextvars.copy_context().run, args=(do,), daemon=True)
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        thread.start()
+        try:
+            return found.result()
+        except KeyboardInterrupt:
+            if thread.is_alive():
+                _end(thread)
+        if not found.done():
+            raise LeftBehind
+        return found.result()
+    except KeyboardInterrupt:
+        if thread.is_alive():
+            raise LeftBehind from None
+        raise
+    finally:
+        signal.signal(signal.SIGTERM, before or signal.SIG_DFL)
+
+
+def _end(thread: threading.Thread) -> None:
+    """End the work of a thread, or wait in vain."""
+    from separatrix.verdict.long_jobs import AT_WORK
+
+    until, is_told = time.monotonic() + PATIENCE, False
+    while thread.is_alive() and time.monotonic() < until:
+        if not is_told and not is_importing(sys._current_frames().get(thread.ident or 0)):
+            is_told = True
+            for stop in AT_WORK:
+                stop.set()
+            if not AT_WORK:
+                raised = ctypes.py_object(KeyboardInterrupt)
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), raised)
+        thread.join(LOOK)
+
+
+def is_importing(frame: FrameType | None) -> bool:
+    """Whether a module is being imported at a place in the program, or in what called it."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def interruptible(ended: str) -> Callable[[Callable[Given, int]], Callable[Given, int]]:
@@ -92,8 +137,7 @@ def interruptible(ended: str) -> Callable[[Callable[Given, int]], Callable[Given
         @functools.wraps(command)
         def decorated(*args: Given.args, **options: Given.kwargs) -> int:
             try:
-                with Interruptible():
-                    return command(*args, **options)
+                return command(*args, **options)
             except KeyboardInterrupt:
                 return interrupted(ended)
 
@@ -127,26 +171,44 @@ def answer_json(document: dict[str, object]) -> None:
     answer(json_text(document) + "\n")
 
 
-class Life:
-    """How far a verb is; called with (done, total) by the work. Its title is verb and study."""
+class Pace:
+    """Time that is left of a work, from what was done of it; called with (done, total) by the work.
+
+    Compiling is not work.
+    """
+
+    def __init__(self) -> None:
+        self.share = 0.0
+        self.left: Second | None = None
+        self._begun: Second | None = None
+
+    def __call__(self, done: float, total: float) -> None:
+        """Take in how far the work is; the first call, with nothing done, is its beginning."""
+        from separatrix.ground.compiling import COMPILING
+
+        now = COMPILING.clock()
+        if self._begun is None:
+            self._begun = now
+        self.share = done / total if total else 0.0
+        if self.share >= FIRST_PART and now - self._begun > ENOUGH:
+            self.left = (now - self._begun) * (1.0 / self.share - 1.0)
+
+
+class Life(Pace):
+    """How far a verb is, in words. Its title is verb and study."""
 
     def __init__(self, title: str, *, quiet: bool = False) -> None:
-        self.title, self.begun, self.quiet = title, time.monotonic(), quiet
-        self.done = self.total = 0
-        self.first = self.begun, 0  # when the work began in earnest, and what was done then
+        super().__init__()
+        self.title, self.started = title, time.monotonic()
         self.told = self.compiled = quiet  # which prints nothing, as `--quiet` requires
 
-    def __call__(self, done: int, total: int) -> None:
+    def __call__(self, done: float, total: float) -> None:
         """Take in how far the work is; its first part tells what all of it takes."""
-        now = time.monotonic()
-        if now - self.begun < LOADING or not self.total:  # what an earlier call kept comes at once
-            self.first = now, done
-        self.done, self.total = done, total
-        share = (done - self.first[1]) / max(total - self.first[1], 1)
-        if not self.told and now - self.begun > WORTH_PRINTING and FIRST_PART <= share < 1.0:
+        super().__call__(done, total)
+        passed = time.monotonic() - self.started
+        if not self.told and self.left is not None and passed > WORTH_PRINTING and self.share < 1.0:
             self.told = True
-            whole = self.first[0] - self.begun + (now - self.first[0]) / share
-            complain(f"{self.title} takes about {in_words(whole)}.")
+            complain(f"{self.title} takes about {in_words(passed + self.left)}.")
 
     def compiling(self) -> None:
         """Say once that kernels are compiled, which the next command finds done."""
@@ -156,16 +218,11 @@ class Life:
 
     def line(self) -> str:
         """Return how far the work is after which time."""
-        passed = time.monotonic() - self.begun
-        if not 0 < self.done <= self.total:
-            return f"{self.title}: at work for {in_words(passed)}"
-        share = math.floor(100.0 * self.done / self.total)
-        steps = f"{self.done} of {self.total} steps ({share} %) after {in_words(passed)}"
-        begun, before = self.first
-        if self.done == before:
-            return f"{self.title}: {steps}"
-        left = (time.monotonic() - begun) * (self.total - self.done) / (self.done - before)
-        return f"{self.title}: {steps}, about {in_words(left)} left"
+        passed = in_words(time.monotonic() - self.started)
+        if not self.share:
+            return f"{self.title}: at work for {passed}"
+        left = "" if self.left is None else f", about {in_words(self.left)} left"
+        return f"{self.title}: {math.floor(100.0 * self.share)} % after {passed}{left}"
 
 
 @contextlib.contextmanager
@@ -180,15 +237,18 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
         return
     from rich.console import Console
     from rich.markup import escape
-    from rich.progress import Progress
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
     class Drawn(Life):
-        def __call__(self, done: int, total: int) -> None:
+        def __call__(self, done: float, total: float) -> None:
             super().__call__(done, total)
-            bar.update(task, completed=done, total=total)
+            left = "" if self.left is None else f"about {in_words(self.left)} left"
+            bar.update(task, completed=self.share, total=1.0, left=left)
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(escape(harmless(title)), total=None)
+    left = TextColumn("{task.fields[left]}")
+    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), left
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(escape(harmless(title)), total=None, left="")
         with _telling_of_compilation(drawn := Drawn(title)):
             yield drawn
 

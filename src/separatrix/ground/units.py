@@ -42,6 +42,7 @@ Second = Annotated[float, "s"]
 Hertz = Annotated[float, "Hz"]
 Radian = Annotated[float, "rad"]
 RadianPerSecond = Annotated[float, "rad/s"]
+MetreRadianPerSecond = Annotated[float, "m rad/s"]
 Kilogram = Annotated[float, "kg"]
 KilogramMetre = Annotated[float, "kg m"]
 KilogramMetre2 = Annotated[float, "kg m2"]
@@ -346,6 +347,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "s": ((1e-6, "us"), (1e-3, "ms"), (1.0, "s")),
     "rad": ((math.pi / 180, "deg"),),
     "rad/s": ((math.pi / 30, "rpm"),),
+    "m rad/s": ((1e3 * math.pi / 30, "million mm rpm"),),
     "Hz": ((1.0, "Hz"), (1e3, "kHz")),
     "kg": ((1e-6, "mg"), (1e-3, "g"), (1.0, "kg")),
     "N": ((1e-6, "uN"), (1e-3, "mN"), (1.0, "N"), (1e4, "kN")),

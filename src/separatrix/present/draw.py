@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
-from matplotlib.patheffects import withTickedStroke
+from matplotlib.patheffects import withStroke, withTickedStroke
+from matplotlib.ticker import LogLocator
 from matplotlib.transforms import Bbox, offset_copy
 
 from separatrix.ground.errors import InputError
@@ -27,6 +29,7 @@ from separatrix.present.figure import (
     Band,
     Cells,
     Figure,
+    Hatched,
     Numbers,
     Panel,
     Trace,
@@ -83,6 +86,10 @@ SIDES: dict[str, dict[str, Any]] = {
 }
 
 
+MOST_NAMED = 3000.0
+"""Ratio of the ends of a logarithmic axis below which 2 and 5 are named, too."""
+
+
 def save(spec: Figure, *paths: Path) -> Drawing:
     """Write a figure in the formats of the endings, each one of `NOTHING`; return it as SVG, drawn once."""
     for path in paths:
@@ -112,8 +119,8 @@ class Drawing(NamedTuple):
     targets: tuple[tuple[float, float, str], ...] = ()
 
 
-MOST_TARGETS, MANY = 400, 5000
-"""Targets of a trace at most; points of a line from which it is drawn as pixels."""
+MOST_TARGETS, MOST_CELLS, MANY = 400, 900, 5000
+"""Targets of a trace, and of cells; points of a line from which it is drawn as pixels."""
 
 
 def svg(spec: Figure) -> Drawing:
@@ -134,10 +141,16 @@ def _places(axes: Axes, panel: Panel) -> Iterator[tuple[float, float, str]]:
     canvas: Any = axes.get_figure(root=True)
     scale, height = 72.0 / canvas.dpi, canvas.get_size_inches()[1] * 72.0
     for mark in panel.marks:
-        if not isinstance(mark, Trace) or not mark.hover:
+        if not isinstance(mark, Trace | Cells) or not mark.hover:
             continue
-        points = zip(_scaled(mark.x, panel.x), _scaled(mark.y, panel.y), mark.hover, strict=True)
-        for x, y, text in [*points][:: -(-len(mark.hover) // MOST_TARGETS)]:
+        xs, ys, most = _scaled(mark.x, panel.x), _scaled(mark.y, panel.y), MOST_TARGETS
+        texts: Sequence[str]
+        if isinstance(mark, Cells):
+            xs, ys, most = np.tile(xs, ys.size), np.repeat(ys, xs.size), MOST_CELLS
+            texts = [text for row in mark.hover for text in row]
+        else:
+            texts = mark.hover
+        for x, y, text in [*zip(xs, ys, texts, strict=True)][:: -(-len(texts) // most)]:
             inside = axes.viewLim.contains(x, y) if np.isfinite([x, y]).all() else False
             if inside:
                 across, up = axes.transData.transform((x, y))
@@ -234,15 +247,20 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
                 draw(mark.at / size, **look, label=symbols(mark.name) or None)
             case Cells():
                 _cells(axes, mark, panel)
+            case Hatched():
+                _hatched(axes, mark, panel)
             case Words():
                 place = mark.x / panel.x.size, mark.y / panel.y.size
                 look = {"textcoords": "offset points", "fontsize": 7.0, "annotation_clip": False}
                 axes.annotate(symbols(mark.text), place, color=mark.colour, **look, **SIDES[mark.side])
     _axis(axes, "x", panel.x)
     _axis(axes, "y", panel.y)
+    if not panel.has_frame:
+        axes.spines[:].set_visible(False)
+        axes.xaxis.label.set(fontsize=6.5, x=0.0, ha="left")
     if panel.is_to_scale:
-        is_square = panel.x.low is not None and panel.y.low is not None
-        axes.set_aspect("equal", adjustable="box" if is_square else "datalim")
+        is_given = not panel.has_frame or None not in (panel.x.low, panel.y.low)
+        axes.set_aspect("equal", adjustable="box" if is_given else "datalim", anchor="N")
     if panel.labels:
         _labels(axes, panel)
 
@@ -259,11 +277,28 @@ def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
     }
     if ends:
         getattr(axes, f"set_{way}lim")(**ends)
+    if one.is_log:
+        _log_ticks(axes.xaxis if way == "x" else axes.yaxis)
     if one.names:
         getattr(axes, f"set_{way}ticks")(range(len(one.names)), [_literal(name) for name in one.names])
         axes.tick_params(axis=way, length=0)
+    if one.most_ticks:
+        axes.locator_params(axis=way, nbins=one.most_ticks)
+    if one.ticks:
+        places, names = zip(*one.ticks, strict=True)
+        getattr(axes, f"set_{way}ticks")([at / one.size for at in places], [_literal(name) for name in names])
+        getattr(axes, f"set_{way}ticks")([], minor=True)
     if not one.has_ticks:
         getattr(axes, f"set_{way}ticks")([])
+
+
+def _log_ticks(axis: Any) -> None:
+    """Name 1, 2 and 5 of each decade, without powers, where few decades are shown."""
+    low, high = sorted(axis.get_view_interval())
+    if low > 0.0 and high / low < MOST_NAMED:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
 
 
 def _scaled(values: Numbers, axis: Axis) -> Array:
@@ -274,6 +309,8 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     x, y = _scaled(one.x, panel.x), _scaled(one.y, panel.y)
     if one.fill:
         axes.fill(x, y, color=one.colour, alpha=one.fill, lw=0)
+    if one.face:
+        axes.fill(x, y, facecolor=one.face, lw=0, zorder=2)
     if one.low:
         low, high = (
             _scaled(end, panel.x if one.ends_along == "x" else panel.y) for end in (one.low, one.high)
@@ -290,6 +327,8 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
         "mfc": "white" if one.is_open else one.colour,
         "label": symbols(one.name) or None,
     }
+    if one.has_halo:
+        look["path_effects"] = [withStroke(linewidth=one.width + 1.6, foreground="white")]
     axes.plot(x, y, zorder=2 if one.line else 4, clip_on=bool(one.line) or not len(x), **look)
 
 
@@ -300,6 +339,21 @@ def _cells(axes: Axes, one: Cells, panel: Panel) -> None:
     mesh = axes.pcolormesh(x, y, values, vmin=one.low, vmax=one.high, cmap=one.colours, rasterized=True)
     bar: Any = axes.figure.colorbar(mesh, ax=axes, label=symbols(one.label))
     bar.outline.set_visible(False)
+
+
+def _hatched(axes: Axes, one: Hatched, panel: Panel) -> None:
+    """Draw a strip for each row of cells side by side, and name them once."""
+    x, y = (_edges(_scaled(v, a), is_log=a.is_log) for v, a in ((one.x, panel.x), (one.y, panel.y)))
+    corners = []
+    for j, row in enumerate(one.where):
+        ends = np.flatnonzero(np.diff([0, *map(int, row), 0]))
+        for a, b in zip(ends[::2], ends[1::2], strict=True):
+            corners.append([(x[a], y[j]), (x[b], y[j]), (x[b], y[j + 1]), (x[a], y[j + 1])])
+    if not corners:
+        return
+    look: Any = {"edgecolor": one.colour, "hatch": one.strokes, "linewidth": 0.0}
+    axes.add_collection(PolyCollection(corners, facecolor=one.fill or "none", **look), autolim=False)
+    axes.fill_between([], [], facecolor=one.fill or GREY, label=symbols(one.name), **look)
 
 
 def _edges(places: Array, *, is_log: bool) -> Array:

@@ -11,6 +11,8 @@ PURPLE, SKY, BLACK, GREY = "#CC79A7", "#56B4E9", "#000000", "#6b6b6b"
 
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 MARKERS = ("o", "s", "^", "v", "P", "*", "p")
+SEQUENCE = ("#440154", "#3F4788", "#277E8E", "#2CB17E", "#9BD93C")
+"""Five colours from dark to light, for curves in an order."""
 VERDICT_COLOURS = {"STABLE": BLUE, "UNSTABLE": VERMILION, "UNDECIDED": ORANGE}
 VERDICT_MARKERS = {"STABLE": "o", "UNSTABLE": "X", "UNDECIDED": "D"}
 
@@ -22,7 +24,8 @@ Numbers = Sequence[float | None]
 class Axis:
     """An axis: its label with symbol and unit, the size of that unit, its ends [SI].
 
-    `names` are those of the places 0, 1, ...
+    `names` are those of the places 0, 1, ...; `ticks` are places with a name each, in the place of others;
+    `most_ticks` is a bound for numbers of many digits.
     """
 
     label: str
@@ -31,15 +34,18 @@ class Axis:
     high: float | None = None
     is_log: bool = False
     names: tuple[str, ...] = ()
+    ticks: tuple[tuple[float, str], ...] = ()
     has_ticks: bool = True
+    most_ticks: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
-    `fill` is the opacity inside a closed line. A line `has_ticks` on its left where one side of it is meant.
-    A trace without points stands only in the legend.
+    `fill` is the opacity inside a closed line, `face` a colour there that hides what was drawn before,
+    `has_halo` a white edge above colours. A line `has_ticks` on its left where one side of it is meant. A
+    trace without points stands only in the legend.
     """
 
     x: Numbers
@@ -57,6 +63,8 @@ class Trace:
     fill: float = 0.0
     opacity: float = 1.0
     has_ticks: bool = False
+    has_halo: bool = False
+    face: str = ""
     hover: tuple[str, ...] = ()
 
 
@@ -99,6 +107,19 @@ class Cells:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Hatched:
+    """Strokes over some of the cells of these places, above a `fill` if it is stated."""
+
+    x: Numbers
+    y: Numbers
+    where: Sequence[Sequence[bool]]
+    name: str
+    colour: str = "#ffffff"
+    strokes: str = "////"
+    fill: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Words:
     """A text at a place of a panel, in data; `side` is where it stands beside the place."""
 
@@ -119,12 +140,15 @@ class Label:
     marker: str = ""
 
 
-Mark = Trace | Band | Across | Cells | Words
+Mark = Trace | Band | Across | Cells | Hatched | Words
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
-    """Marks over two axes; `head` is above its labels."""
+    """Marks over two axes; `head` is above its labels.
+
+    A drawing has no frame: the label of x is what stands below it.
+    """
 
     title: str
     x: Axis
@@ -133,6 +157,7 @@ class Panel:
     labels: tuple[Label, ...] = ()
     head: str = ""
     is_to_scale: bool = False
+    has_frame: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

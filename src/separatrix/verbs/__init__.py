@@ -26,7 +26,7 @@ VERBS = (
 )
 """Modules of this package, each a question to a study, in the order of the chain."""
 
-TOOLS = ("tribometer", "materials", "compare", "reproduce")
+TOOLS = ("tribometer", "compare", "reproduce")
 """Modules, each a question without a study of its own."""
 
 
@@ -40,7 +40,7 @@ def verb_named(name: str) -> Verb:
 
 def tool_named(name: str) -> Tool:
     """Return a tool by its name."""
-    found: Tool = importlib.import_module(f"separatrix.verbs.{name}").TOOL
+    found: Tool = importlib.import_module(f"separatrix.verbs.{name}").VERB
     return found
 
 

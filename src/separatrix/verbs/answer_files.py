@@ -99,32 +99,49 @@ def save_answer(
     InputError
         The folder cannot be written.
     """
-    from separatrix.present.blocks import Level
-    from separatrix.present.text import text
-
     page = page_of_document(verb, found)
     with staged(folder) as stage:
-        (stage / f"{verb.name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
-        (stage / f"{verb.name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
-        if not verb.writes_data or found.get("complete") is False:
-            return
-        # what follows takes seconds to load
-        from separatrix.present.dataset_arrays import dataset, save
-        from separatrix.present.workbook import workbook
+        is_whole = verb.writes_data and found.get("complete") is not False
+        _write(stage, verb.name, page, found, with_pictures=pictures and is_whole, is_whole=is_whole)
+        if is_whole:
+            from separatrix.present.dataset import dataset, save
 
-        save(dataset(found), stage / f"{verb.name}.nc")
-        (stage / f"{verb.name}.xlsx").write_bytes(workbook(page))
-        if pictures:
-            _draw(page, stage, verb.name)
-        if verb.files is not None:
+            save(dataset(found), stage / f"{verb.name}.nc")
+        if is_whole and verb.files is not None:
             for name, content in verb.files(part_of(found), options, progress):
                 (stage / name).write_bytes(content)
 
 
+def save_page(folder: Path, name: str, page: Page, found: Document | None) -> None:
+    """Write a page of another answer and its document; without that its pictures alone."""
+    with staged(folder) as stage:
+        if found is None:
+            _draw(page, stage, "")
+        else:
+            _write(stage, name, page, found)
+
+
+def _write(
+    stage: Path, name: str, page: Page, found: Document, *, with_pictures: bool = True, is_whole: bool = True
+) -> None:
+    """Write document and text; of a whole answer the workbook, the pictures, and the page with them."""
+    from separatrix.present.blocks import Level
+    from separatrix.present.text import text
+
+    (stage / f"{name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
+    (stage / f"{name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
+    if is_whole:
+        from separatrix.present.spreadsheet import spreadsheet
+
+        (stage / f"{name}.xlsx").write_bytes(spreadsheet(page))
+    if with_pictures:
+        _draw(page, stage, name)
+
+
 def _draw(page: Page, stage: Path, name: str) -> None:
-    """Write each picture once drawn, and the page with them."""
+    """Write each picture, drawn once, and with a name the page with them."""
     from separatrix.present import draw
-    from separatrix.present.blocks import Level, View
+    from separatrix.present.blocks import Level, Picture, View
     from separatrix.present.html import html, picture_html
 
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
@@ -140,6 +157,8 @@ def _draw(page: Page, stage: Path, name: str) -> None:
     for one in page.blocks:
         if isinstance(one, View):
             (stage / f"{one.name}.html").write_text(one.html(), encoding="utf-8")
-    (stage / f"{name}.html").write_text(
-        html(page, level=Level.REPORT | Level.FULL, picture=picture), encoding="utf-8"
-    )
+        elif isinstance(one, Picture):
+            picture(one)
+    if name:
+        level = Level.REPORT | Level.FULL
+        (stage / f"{name}.html").write_text(html(page, level=level, picture=picture), encoding="utf-8")

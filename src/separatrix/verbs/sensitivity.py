@@ -476,17 +476,18 @@ def drawn(answer: Part) -> Iterator[Block]:
         text_column("input", lambda row: row.name),
         text_column("distribution", lambda row: row.distribution),
         text_column("source", lambda row: SOURCES[row.source]),
-        *(_of_input(name) for name in ("mean", "standard_deviation")),
+        _of_input("mean", "mean"),
+        _of_input("standard_deviation", "standard deviation"),
     )
     yield Table("uncertain inputs", columns, tuple(answer.inputs), level=SHEET)
     yield from convergence(answer)
     yield clouds(answer)
 
 
-def _of_input(name: str) -> Column:
+def _of_input(name: str, head: str) -> Column:
     known = quantity(name)
     # a row has a key "unit", and a part a method of this name
-    return Column(known.label, lambda row: Cell(getattr(row, name), known, row.values["unit"]))
+    return Column(head, lambda row: Cell(getattr(row, name), known, row.values["unit"]))
 
 
 def convergence(answer: Part) -> Iterator[Block]:

@@ -255,7 +255,7 @@ def _(found: Sweep) -> Node:
 
 def to_xarray(answer: object) -> xr.Dataset:
     """Return the labelled arrays of an answer, with their units, without the study behind it."""
-    from separatrix.present.dataset_arrays import arrays_of
+    from separatrix.present.dataset import arrays_of
 
     node = Group(shape(answer))
     return arrays_of(node_of(plain(node, left_out=[]), units_of(node)))

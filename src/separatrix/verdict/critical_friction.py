@@ -14,6 +14,7 @@ from separatrix.chain.impact_restitution import restitution_factor as nominal
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.response import (
+    BATCH,
     SEARCHED_FRICTION,
     Count,
     Crossing,
@@ -123,6 +124,15 @@ def critical_friction(
 
 def _notes(responses: Mapping[MetrePerSecond, Response]) -> tuple[str, ...]:
     return tuple(note for _, response in sorted(responses.items()) for note in response.notes)
+
+
+def expected_runs(settings: StabilitySettings, *, band: bool) -> float:
+    """Runs that one critical friction takes, about; the first counts find where it is."""
+    first = min(BATCH, settings.runs)
+    if not band:
+        return 4.0 * first + END_RUNS * settings.runs
+    each = 5.0 * first + END_RUNS * settings.runs
+    return 4.0 * first + MIDDLE_RUNS * settings.runs + len(settings.kicks) * each
 
 
 def own_restitution_factor(cage: MovingCage) -> Ratio:

@@ -27,12 +27,12 @@ from separatrix.verdict.beyond_models import (
     not_measured,
     pocket_of,
 )
-from separatrix.verdict.counting import BLOCK, RISK, allowed_film, allowed_friction, counted, settles
+from separatrix.verdict.counting import BLOCK, RISK, RUNS, allowed_film, allowed_friction, counted, settles
 from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
 from separatrix.verdict.draws import Case, UncertainInput
 from separatrix.verdict.drivers import drivers, fitted, next_tests, reducible_shares, sobol_shares
 from separatrix.verdict.judgement import Judgement, Verdict, wilson_interval
-from separatrix.verdict.long_jobs import Interrupted, Runner
+from separatrix.verdict.long_jobs import Interrupted, Load, Runner
 from separatrix.verdict.ranking_records import MeanFriction, lowest_among, overall
 from separatrix.verdict.uncertain_records import (
     AllowedFilm,
@@ -86,7 +86,11 @@ def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None
         whole = _answer(study, drawn, judged, answered, bearings)
         return replace(whole, shares=shares if isinstance(shares, tuple) else (), complete=complete)
 
-    return runner.work_out(lambda key: pieces[key](), pieces, into=answer)
+    def load(key: Case | str) -> Load:
+        """Work of a piece, in runs: an inverse question is a search from each kick."""
+        return Load(len(drawn.kicks) * (len(drawn.runs) if isinstance(key, Case) else 2 * RUNS))
+
+    return runner.work_out(lambda key: pieces[key](), pieces, into=answer, load=load)
 
 
 def _answer(

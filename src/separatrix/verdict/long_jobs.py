@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import signal
 import threading
 import zlib
@@ -10,7 +11,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Seq
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import fields
 from queue import Empty, SimpleQueue
-from typing import Any, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from separatrix.cage.ensemble import (
     pieces_of,
 )
 from separatrix.cage.moving_cage import MovingCage
+from separatrix.ground.compiling import COMPILING
 from separatrix.ground.units import MetrePerSecond, Ratio, Second
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.ledger import Ledger, key_of
@@ -39,8 +41,8 @@ Answer = TypeVar("Answer")
 class Progress(Protocol):
     """Is called with how far a long job is."""
 
-    def __call__(self, done: int, total: int, /) -> None:
-        """Take in how many points of those known so far are done."""
+    def __call__(self, done: float, total: float, /) -> None:
+        """Take in how much work is done of all that is expected, in any unit; of infinite if not known."""
 
 
 LOOK = 0.1  # time between two looks at whether the work was interrupted [s]
@@ -52,6 +54,88 @@ WAITING = 4
 """Threads for each that may work, most of which wait for their runs."""
 
 NAMES = tuple(field.name for field in fields(Ensemble))
+
+AT_WORK: list[Stop] = []
+"""Flags of the jobs of this process that are at work."""
+
+MORE = 1.2
+"""What a place takes at least, in parts of what it took so far."""
+
+BEGUN = 0.1
+"""Share of its runs after which a place is expected to go on as it began."""
+
+
+class Load(NamedTuple):
+    """Work of a place as far as it is known before."""
+
+    runs: float = 1.0  # of so many; or just one piece of work
+    dear: float = 1.0  # time of a run beside that of others
+    follow: float = 0.0  # places like it that will be wanted once it is known, on average
+
+
+class Work:
+    """How far a job is, by the time that its places took and the runs that they made for it.
+
+    A place is expected to take the mean time of the finished ones of as many runs; without any, it goes on as
+    it began, or as all did. Places whose runs were kept by an earlier job say nothing of the others.
+    """
+
+    def __init__(self) -> None:
+        self._lock, self.loads = threading.Lock(), dict[Hashable, Load]()
+        self._kept, self._finished = set[Hashable](), set[Hashable]()
+        self._spent: dict[Hashable, tuple[Second, float]] = {}
+
+    def spend(self, place: Hashable, spent: Second, runs: float) -> None:
+        """Add time that a thread worked for runs of a place."""
+        with self._lock:
+            before, made = self._spent.get(place, (0.0, 0.0))
+            self._spent[place] = before + spent, made + runs
+
+    def keep(self, place: Hashable) -> None:
+        """Note that runs of a place were kept before."""
+        with self._lock:
+            self._kept.add(place)
+
+    def finish(self, place: Hashable, whole: Second) -> None:
+        """Note that a place is finished; the `whole` time counts if it made no runs."""
+        with self._lock:
+            self._spent.setdefault(place, (whole, self.loads[place].runs))
+            self._finished.add(place)
+
+    def so_far(self, threads: int) -> tuple[Second, Second]:
+        """Work done and all that is expected [s], of these threads; a place keeps one busy, no more."""
+        with self._lock:
+            done = sum(spent for spent, _ in self._spent.values())
+            known = {
+                place: self._spent[place] for place in self.loads.keys() & self._spent.keys() - self._kept
+            }
+            units = sum(made * self.loads[place].dear for place, (_, made) in known.items())
+            rate = sum(spent for spent, _ in known.values()) / units if units else 0.0
+            alike: dict[float, list[Second]] = {}
+            for place in known.keys() & self._finished:
+                alike.setdefault(self.loads[place].runs, []).append(known[place][0])
+            left = longest = 0.0
+            for place in self.loads.keys() - self._finished:
+                load, (spent, made) = self.loads[place], self._spent.get(place, (0.0, 0.0))
+                times = alike.get(load.runs)
+                expected = rate * load.runs * load.dear
+                if times:
+                    expected = sum(times) / len(times)
+                elif made > BEGUN * load.runs:
+                    expected = spent * load.runs / made
+                rest = max(expected, MORE * spent) - spent
+                left, longest = left + rest + load.follow * expected, max(longest, rest)
+        return done, done + max(left, threads * longest) if rate else math.inf
+
+
+def scattered(places: Iterable[Place]) -> list[Place]:
+    """Places in an order whose every part resembles the whole: neighbours take alike time."""
+    known = list(places)
+    order = sorted(range(len(known)), key=lambda i: i * GOLDEN % 1.0)
+    return [known[i] for i in order]
+
+
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 
 
 class Interrupted(KeyboardInterrupt):
@@ -95,6 +179,7 @@ class Runner:
         self.jobs, self.progress, self.ledger, self.executor = jobs, progress, ledger, executor
         self.stop = Stop()
         self._gathered: Gathered | None = None  # while `work_out` is at work
+        self._work, self._here = Work(), threading.local()
 
     def ensemble(
         self,
@@ -117,22 +202,33 @@ class Runner:
         known = _unpacked(self.ledger.get(key), cage, shape)
         if known is not None:
             self.ledger.taken += shape[0] * shape[1]
+            self._work.keep(self._place)
             return known
         found = self._followed(asked, kicks)
         arrays = (np.asarray(getattr(found, name)) for name in _names(cage))
         self.ledger.put(key, zlib.compress(b"".join(array.tobytes() for array in arrays), 1))
         return found
 
+    @property
+    def _place(self) -> Hashable:
+        """Place for which this thread works."""
+        return getattr(self._here, "place", None)
+
     def _followed(self, asked: Sequence[Runs], kicks: Sequence[MetrePerSecond]) -> Ensemble:
         """Follow runs elsewhere, or here with those of other places; an interrupt ends them."""
         if self.stop.is_set:
             raise Interrupted
+        begun = COMPILING.clock()
         if self.executor is not None:
-            return self._elsewhere(self.executor.submit(run_each, asked, kicks))
+            found = self._elsewhere(self.executor.submit(run_each, asked, kicks))
+            self._work.spend(self._place, COMPILING.clock() - begun, found.outcome.size)
+            return found
         if self._gathered is None:
             found = run_each(asked, kicks, stop=self.stop)
         else:
-            found = ensemble_of(asked, kicks, self._gathered.follow(pieces_of(asked, kicks)))
+            evidence, spent = self._gathered.follow(pieces_of(asked, kicks))
+            found = ensemble_of(asked, kicks, evidence)
+            self._work.spend(self._place, spent, found.outcome.size)
         if self.stop.is_set:  # it may have ended these runs
             raise Interrupted
         return found
@@ -172,6 +268,7 @@ class Runner:
         *,
         into: Callable[[dict[Place, Result]], Answer],
         more: Callable[[Place, Mapping[Place, Result]], Iterable[Place]] | None = None,
+        load: Callable[[Place], Load] = lambda _: Load(),
         progress: Progress | None = None,
     ) -> Answer:
         """Answer made of the results of `compute` at each place, and at the places that follow from them.
@@ -190,10 +287,12 @@ class Runner:
         more : callable, optional
             Given a place just finished and all results so far: which places it makes wanted, whatever the
             order. None is computed twice.
+        load : callable, optional
+            How much work a place is; by default all are alike.
         progress : callable, optional
-            Called instead of the runner's own.
+            Called with the numbers of places done and known, instead of the runner's own with the work.
         """
-        report = progress or self.progress
+        work = self._work = Work()
         results: dict[Place, Result] = {}
         done: SimpleQueue[tuple[Place, Future[Result]]] = SimpleQueue()
         wanted: dict[Place, Future[Result]] = {}
@@ -206,30 +305,41 @@ class Runner:
             with turns:
                 if self.stop.is_set:
                     raise Interrupted
-                return compute(place)
+                self._here.place, begun = place, COMPILING.clock()
+                found = compute(place)
+                work.finish(place, COMPILING.clock() - begun)
+                return found
 
         def submit(new: Iterable[Place]) -> None:
             for place in new:
                 if place not in wanted:
+                    work.loads[place] = load(place)
                     wanted[place] = pool.submit(in_turn, place)
                     wanted[place].add_done_callback(lambda finished, at=place: done.put((at, finished)))  # type: ignore[misc]
+
+        def report() -> None:
+            if progress is not None:
+                progress(len(results), len(wanted))
+            elif self.progress is not None:
+                self.progress(*work.so_far(self.jobs))
 
         with _noticed(self.stop):
             try:
                 submit(() if self.stop.is_set else places)
+                report()
                 while len(results) < len(wanted) and not self.stop.is_set:
                     with contextlib.suppress(Empty, Interrupted):
                         place, future = done.get(timeout=LOOK)
                         results[place] = future.result()
                         submit(more(place, results) if more is not None else ())
-                        if report is not None:
-                            report(len(results), len(wanted))
+                    report()
             except KeyboardInterrupt:
                 self.stop.set()
             finally:
                 pool.shutdown(wait=not self.stop.is_set, cancel_futures=True)
                 if self.stop.is_set:
-                    wait(wanted.values(), timeout=GRACE)
+                    under_way = [future for future in wanted.values() if not future.cancelled()]
+                    wait(under_way, timeout=GRACE)
                 self._gathered = None
             while self.stop.is_set and not done.empty():
                 place, future = done.get()
@@ -250,20 +360,24 @@ def made_into(make: Callable[[Result], Answer], compute: Callable[[], Result]) -
 
 @contextlib.contextmanager
 def _noticed(stop: Stop) -> Iterator[None]:
-    """Let an interrupt set an event instead of breaking in anywhere; the second one breaks in."""
+    """Let an interrupt set an event instead of breaking in anywhere; the second one breaks in.
+
+    In another thread than the main one, what hears of interrupts finds the flag in `AT_WORK`.
+    """
 
     def note(number: int, frame: object) -> None:  # noqa: ARG001 - as signals call it
         if stop.is_set:
             raise KeyboardInterrupt
         stop.set()
 
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = [(number, signal.signal(number, note)) for number in (signal.SIGINT, signal.SIGTERM)]
+    is_main = threading.current_thread() is threading.main_thread()
+    signals = (signal.SIGINT, signal.SIGTERM) if is_main else ()
+    before = [(number, signal.signal(number, note)) for number in signals]
+    AT_WORK.append(stop)
     try:
         yield
     finally:
+        AT_WORK.remove(stop)
         for number, handler in before:
             signal.signal(number, handler or signal.SIG_DFL)
 

@@ -192,7 +192,7 @@ def fill(question: MapQuestion, finder: Callable[[tuple[float, float]], MapPoint
     def find(wanted: Iterable[Place]) -> None:
         before, report = len(filled.found), runner.progress
 
-        def so_far(done: int, _: int) -> None:
+        def so_far(done: float, _: float) -> None:
             found = before + done
             if report is not None:
                 report(found, max(found, len(xs) * len(ys) - len(filled.inferred)))

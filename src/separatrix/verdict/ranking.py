@@ -36,7 +36,7 @@ from separatrix.verdict.critical_friction import CriticalFriction
 from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
 from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
@@ -242,11 +242,19 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
 
     return question.runner.work_out(
         lambda piece: _computed(question, piece),
-        # verdicts come first, so that an interrupt leaves some
-        [*keys, *cases, (question.reference, (OWN_DAMPING, None)), *nodes],
+        # the longest first, as its runs wait for each other; then verdicts, so that an interrupt leaves some
+        [(question.reference, (OWN_DAMPING, None)), *scattered(keys), *scattered(cases), *nodes],
         into=ranked,
         more=lambda piece, results: _more(question, piece, results),
+        load=lambda piece: _load(question, piece),
     )
+
+
+def _load(question: _Question, piece: Piece) -> Load:
+    """Work of a piece: runs of a verdict, or those of a node."""
+    if not isinstance(piece, Case) and isinstance(piece[1], tuple):
+        return question.tracers[piece[0]].load(piece[1])
+    return Load(len(question.settings.kicks) * question.settings.runs)
 
 
 def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement:

@@ -15,12 +15,14 @@ from concurrent.futures import Future, wait
 import numpy as np
 
 from separatrix.cage.ensemble import Ensemble, Piece, Runs, Stop, ensemble_of, follow, follow_alike, pieces_of
-from separatrix.ground.units import Array, MetrePerSecond
+from separatrix.ground.compiling import COMPILING
+from separatrix.ground.units import Array, MetrePerSecond, Second
 
 TOGETHER = 256
 """Runs that are followed together, about: a second or two of work, of which an interrupt leaves nothing."""
 
 Evidence = dict[str, Array]  # by name, of a piece: each array has shape (run, ...)
+Followed = tuple[Evidence, Second]  # with the time that a thread took for it
 
 
 def run_each(asked: Sequence[Runs], kicks: Sequence[MetrePerSecond], *, stop: Stop | None = None) -> Ensemble:
@@ -66,11 +68,11 @@ class Gathered:
     def __init__(self, turns: Turns, jobs: int, stop: Stop) -> None:
         self._turns, self._jobs, self._stop = turns, jobs, stop
         self._lock = threading.Lock()
-        self._waiting: list[tuple[Piece, Future[Evidence]]] = []
+        self._waiting: list[tuple[Piece, Future[Followed]]] = []
 
-    def follow(self, pieces: Sequence[Piece]) -> Evidence:
-        """Evidence of pieces, one after the other, for a thread that has a turn."""
-        mine = [(piece, Future[Evidence]()) for piece in pieces]
+    def follow(self, pieces: Sequence[Piece]) -> Followed:
+        """Evidence of pieces, one after the other, for a thread that has a turn; and their time."""
+        mine = [(piece, Future[Followed]()) for piece in pieces]
         futures = [future for _, future in mine]
         with self._lock:
             self._waiting += mine
@@ -82,7 +84,8 @@ class Gathered:
                 wait(futures)
                 self._turns.take()
         found = [future.result() for future in futures]
-        return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+        evidence = {name: np.concatenate([one[name] for one, _ in found]) for name in found[0][0]}
+        return evidence, sum(spent for _, spent in found)
 
     def _follow_some(self) -> bool:
         """Follow pieces that wait, alike as the engine needs them; False if none does."""
@@ -92,22 +95,24 @@ class Gathered:
             kind, count = self._waiting[0][0].numbers.kind, 0
             alike = [one for one in self._waiting if one[0].numbers.kind == kind]
             most = min(TOGETHER, math.ceil(sum(len(piece.states) for piece, _ in alike) / self._jobs))
-            batch: list[tuple[Piece, Future[Evidence]]] = []
+            batch: list[tuple[Piece, Future[Followed]]] = []
             while count < most:
                 batch.append(alike[len(batch)])
                 count += len(batch[-1][0].states)
             taken = set(map(id, batch))
             self._waiting = [one for one in self._waiting if id(one) not in taken]
         found: Evidence | None = None
+        begun = COMPILING.clock()
         try:
             found = follow_alike(kind, [piece for piece, _ in batch], self._stop)
         finally:
             if found is None:  # the error is raised here; those that wait for these runs must not wait on
                 for _, future in batch:
                     future.set_exception(RuntimeError("runs that were followed together with these failed"))
-        at = 0
+        at, spent = 0, (COMPILING.clock() - begun) / count
         for piece, future in batch:
             last = at + len(piece.states)
-            future.set_result({name: values[at:last] for name, values in found.items()})
+            evidence = {name: values[at:last] for name, values in found.items()}
+            future.set_result((evidence, spent * len(piece.states)))
             at = last
         return True

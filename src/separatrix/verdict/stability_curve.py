@@ -18,9 +18,10 @@ from separatrix.verdict.critical_friction import (
     CriticalFriction,
     LinearLimit,
     critical_friction,
+    expected_runs,
     linear_limit,
 )
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import Load, Runner
 from separatrix.verdict.response import SEARCHED_FRICTION, GrowthCounter, Side
 
 Point = TypeVar("Point")
@@ -112,7 +113,9 @@ def stability_curve(
         complete = here is not None and tracer.complete(found)
         return curve_of_points(cage, settings, list(found.values()), here=here, complete=complete)
 
-    return runner.work_out(tracer.point, [*tracer.first, (OWN_DAMPING, None)], into=curve, more=tracer.more)
+    return runner.work_out(
+        tracer.point, [(OWN_DAMPING, None), *tracer.first], into=curve, more=tracer.more, load=tracer.load
+    )
 
 
 Node = tuple[Ratio, Ratio | None]  # a restitution factor (or `OWN_DAMPING`), and a guess of its friction
@@ -153,6 +156,12 @@ class Tracer:
         counts, band = self.counter, self.band or node[0] == OWN_DAMPING
         eta = None if node[0] == OWN_DAMPING else node[0]
         return critical_friction(counts.cage, eta, counts.settings, counter=counts, band=band, guess=node[1])
+
+    def load(self, node: Node) -> Load:
+        """Work of a node; about as many follow as a curve begins with."""
+        runs = expected_runs(self.counter.settings, band=self.band or node[0] == OWN_DAMPING)
+        is_halved = node[0] in COARSE and not self.given and self.frictions is None
+        return Load(runs, dear=2.0, follow=0.7 if is_halved else 0.0)
 
     def more(self, node: Node, found: Mapping[Node, CriticalFriction]) -> list[Node]:
         """Nodes that are wanted once this one is known."""

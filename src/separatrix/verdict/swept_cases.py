@@ -26,7 +26,7 @@ from separatrix.ground.units import (
 from separatrix.study.candidates import require_friction
 from separatrix.study.study import Operation, Study
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.long_jobs import Runner, scattered
 from separatrix.verdict.map_records import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.verdict.parameter_axes import MOST_CASES, TIME_SHARE, Case
 from separatrix.verdict.reasons import CageMotion
@@ -240,7 +240,7 @@ def sweep(
             complete=len(found) == len(cases),
         )
 
-    return runner.work_out(run, range(len(cases)), into=table)
+    return runner.work_out(run, scattered(range(len(cases))), into=table)
 
 
 def _names(cases: Sequence[Case]) -> list[str]:

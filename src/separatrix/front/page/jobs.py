@@ -29,8 +29,9 @@ class Job:
     task: Task
     study: str
     state: str = WAITING
-    done: int = 0
-    total: int = 0
+    share: float | None = None  # of the work that is done; None before that is known
+    left: float | None = None  # time that the rest takes [s]; None before a tenth is done
+    is_cancelling: bool = False
     message: str = ""
     started: float | None = None
     ended: float | None = None
@@ -44,17 +45,6 @@ class Job:
     def is_active(self) -> bool:
         """Whether it waits or runs."""
         return self.state in ACTIVE
-
-    @property
-    def share(self) -> float | None:
-        """Share of its known points that are done; None before there is one."""
-        return self.done / self.total if self.total else None
-
-    @property
-    def left(self) -> float | None:
-        """Time that is left if the rest goes as what was done; None before a twentieth is done."""
-        is_known = self.state == RUNNING and self.total and 20 * self.done >= self.total
-        return self.seconds * (self.total - self.done) / self.done if is_known and self.done else None
 
     @property
     def seconds(self) -> float:
@@ -124,7 +114,7 @@ class Jobs:
             if job.state == WAITING:
                 self._change(number, state="cancelled", message="Cancelled before it began.")
             elif self._pipe is not None:
-                self._change(number, message="Cancelling: the runs in hand are finished first.")
+                self._change(number, message="Cancelling.", is_cancelling=True)
                 self._pipe.send(Cancel(number))
 
     def forget_ended(self) -> None:
@@ -186,9 +176,14 @@ class Jobs:
         if self._pipe is pipe:
             self._process = self._pipe = None
         for job in [job for job in self._jobs.values() if job.state == RUNNING]:
-            words = "The computing process ended; the terminal of `separatrix app` may show why. "
-            words += "Finished runs are kept: resume to go on."
-            self._change(job.number, state="failed", message=words, ended=time.monotonic())
+            state, why = (
+                "failed",
+                "The computing process ended; the terminal of `separatrix app` may show why. ",
+            )
+            if job.is_cancelling:  # it ended with work that was left behind
+                state, why = "cancelled", ""
+            words = f"{why}Finished runs are kept: resume to go on."
+            self._change(job.number, state=state, message=words, ended=time.monotonic())
         self._feed()
 
     def _change(self, number: int, **new: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import os
 import signal
 import threading
 import time
@@ -13,9 +14,9 @@ from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from pathlib import Path
 from queue import SimpleQueue
-from types import FrameType
 from typing import TYPE_CHECKING
 
+from separatrix.front.console import LeftBehind, Pace, breakable
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import shown
 
@@ -28,9 +29,6 @@ REPORT = "report"
 
 END = "end"
 """What the page sends when it is closed."""
-
-AGAIN = 0.05
-"""Time after which a cancel that came in the middle of an import is tried again [s]."""
 
 INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
 
@@ -61,26 +59,28 @@ class Cancel:
     number: int
 
 
-class Reporter:
+class Reporter(Pace):
     """Reports how far a long job is."""
 
     def __init__(self, send: Send) -> None:
+        super().__init__()
         self.send, self._last = send, 0.0
 
-    def __call__(self, done: int, total: int) -> None:
-        """Report the points done, now and then and at the end."""
+    def __call__(self, done: float, total: float) -> None:
+        """Report the share that is done and the time left, now and then and at the end."""
+        super().__call__(done, total)
         now = time.monotonic()
         if done == total or now - self._last > EVERY:
             self._last = now
-            self.send(done=done, total=total)
+            self.send(share=self.share or None, left=self.left)
 
 
 def work(pipe: Connection) -> None:
     """Compute tasks from a pipe until it ends; the body of the process.
 
     A cancel interrupts its own task as Ctrl-C would, also before it began: what was finished is kept and
-    answered. It waits for the end of an import, since a module that was cut off may never load again. A
-    fault of ours ends the process with its place in the terminal, and the page begins another one.
+    answered. Work that it leaves behind ends with the process. A fault of ours ends the process with its
+    place in the terminal. The page begins another one.
     """
     waiting: SimpleQueue[Task | None] = SimpleQueue()
     in_hand: list[int] = []
@@ -91,20 +91,13 @@ def work(pipe: Connection) -> None:
         if number in in_hand:
             _thread.interrupt_main()
 
-    def interrupt(_: int, frame: FrameType | None) -> None:
-        if is_importing(frame):
-            for number in in_hand:
-                threading.Timer(AGAIN, break_in, (number,)).start()
-        else:
-            refuse_cancelled()
-
-    def refuse_cancelled() -> None:
+    def refuse_cancelled(*_: object) -> None:
         for number in in_hand:
             if is_ended.is_set() or number in cancelled:
                 cancelled.discard(number)
                 raise KeyboardInterrupt
 
-    signal.signal(signal.SIGINT, interrupt)
+    signal.signal(signal.SIGINT, refuse_cancelled)
 
     def listen() -> None:
         while True:
@@ -140,21 +133,14 @@ def work(pipe: Connection) -> None:
         _compute(task, in_hand, refuse_cancelled, partial(send, task.number))
 
 
-def is_importing(frame: FrameType | None) -> bool:
-    """Whether a module is being imported at a place in the program, or in what called it."""
-    while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
-            return True
-        frame = frame.f_back
-    return False
-
-
 def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None], send: Send) -> None:
     try:
         in_hand.append(task.number)
         refuse_cancelled()  # one that was cancelled before it began
         send(state="running")
-        state, message = _answered(task, send)
+        state, message = breakable(partial(_answered, task, send))
+    except LeftBehind:
+        os._exit(0)
     except KeyboardInterrupt:
         state, message = "cancelled", "Cancelled before anything was finished."
     except SeparatrixError as error:

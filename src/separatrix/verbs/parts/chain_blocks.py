@@ -7,6 +7,7 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import (
     Block,
+    Cell,
     Column,
     Equation,
     Heading,
@@ -17,7 +18,8 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import entry_words, figure_heading
+from separatrix.verbs.parts.answer_page import figure_heading
+from separatrix.verbs.parts.study_facts import bearing_facts
 from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
 RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
@@ -176,36 +178,32 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
     ]
 
 
-def basis_facts(answer: Part) -> list[tuple[str, str]]:
-    """Return what an answer on a cage rests on: bearing, operation, film, and the numbers of the chain."""
+def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
+    """Return the basis of a verdict: bearing, operation, film, and the numbers of the chain."""
     chain = answer.chain
-
-    def stated(section: str, key: str) -> str:
-        return entry_words((answer.values["study"].get(section) or {}).get(key) or {})
 
     def both(name: str) -> str:
         return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
 
-    balls = f"{stated('bearing', 'ball_count')} balls of {stated('bearing', 'ball_diameter')}"
-    point = figure_heading(answer)[1:]
-    summed = "{restitution_factor} with race dampings summed (Eq. 18)"
-    hertz = f"{summed}; {{restitution_factor_free_spin}} if the ball may spin"
-    found = [
-        ("Bearing", f"{balls}, pitch diameter {stated('bearing', 'pitch_diameter')}"),
-        ("Operation", "; ".join(point)),
-        ("Contact angles", both("contact_angle")),
+    over = OVERDAMPED if chain.restitution_factor_free_spin == 0.0 else ""
+    eta = (
+        "{restitution_factor} with race dampings summed (Eq. 18); {restitution_factor_free_spin}"
+        f"{over} if the ball may spin; {{restitution_factor_hertz}} with a Hertzian pocket"
+    )
+    rows: list[tuple[str, str | Cell]] = [
+        *bearing_facts(answer),
+        ("Contact angles under load", both("contact_angle")),
         ("Loads of the ball", both("load")),
         ("Traction slopes", both("slope")),
-        ("Race damping $C_mu$", told(chain, "race_damping")),
-        (
-            "Restitution factor $eta$",
-            said(chain, f"{hertz}; {{restitution_factor_hertz}} with a Hertzian pocket"),
-        ),
-        ("Ball/cage stiffness", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+        fact(chain, "race_damping", named("race_damping")),
+        (named("restitution_factor"), said(chain, eta)),
+        ("Stiffness of ball and pocket", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
     ]
-    found += clearance_facts(chain.clearances) if "clearances" in chain else []
+    rows += [] if chain.clearances is None else clearance_facts(chain.clearances)
     if "orbital_share" in chain:  # of a bearing whose balls do not run alike
-        words = "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
-        words += "{orbital_share} of the variance of their speed"
-        found.append(("Free balls lead and lag", said(chain, words)))
-    return found
+        lead = (
+            "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+            "{orbital_share} of the speed variance"
+        )
+        rows.append(("Free balls lead and lag", said(chain, lead)))
+    return rows

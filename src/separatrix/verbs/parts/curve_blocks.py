@@ -1,4 +1,4 @@
-"""What `stability` and `rank` tell of a stability curve: its picture, its table, and the bearing's own point."""
+"""What `stability` and `rank` tell of a stability curve: picture, table, and the bearing's own point."""
 
 from __future__ import annotations
 
@@ -93,7 +93,8 @@ def _band(curve: Part, top: float) -> list[Mark]:
         points, x = [curve.here] * 2, [max(at - WIDE, 0.0), at + WIDE]
     if not points:
         return []
-    low, high = [], []
+    low: list[float | None] = []
+    high: list[float | None] = []
     for one in points:
         known = any(name in one for name in ("critical_friction", *ENDS))
         least, most = (one.get(name) for name in ENDS)
@@ -108,12 +109,14 @@ def _band(curve: Part, top: float) -> list[Mark]:
     if curve.band:
         look: dict[str, Any] = {"colour": BLUE, "width": 0.7}
         found.append(Trace(x=x, y=low, line=":", **look))
-        found.append(Trace(x=x, y=[None if one > top else one for one in high], line="-.", **look))
+        found.append(
+            Trace(x=x, y=[None if one is None or one > top else one for one in high], line="-.", **look)
+        )
     return found
 
 
 def _each_disturbance(curve: Part) -> list[Mark]:
-    """Return the critical friction from the least and from the largest disturbance, if they have their own."""
+    """Return the critical friction from the least and from the largest disturbance."""
     points, kicks = curve.get("curve") or [], curve.kicks
     if not curve.band or len(kicks) == 1:
         return []
@@ -141,7 +144,7 @@ def linear_limit(curve: Part) -> list[Mark]:
 
 
 def linear_law(scale: float, *, is_upright: bool = False, colour: str = GREY) -> Trace:
-    """Return the friction of the linear law, ``scale`` times the damping ratio, over the restitution factor."""
+    """Return the friction of the linear law, ``scale`` times the damping ratio at a restitution factor."""
     eta = [i / 200.0 for i in range(201)]
     friction = [scale * _damping(one) for one in eta]
     x, y = (friction, eta) if is_upright else (eta, friction)
@@ -355,3 +358,23 @@ def _sheets(curve: Part) -> list[Block]:
         Table("band of the curve", tuple(columns), tuple(points), own, Level.SHEET),
         Table("curve by disturbance", each, rows, own, Level.SHEET),
     ]
+
+
+# The friction of the cage itself.
+
+
+def pocket_friction(answer: Part) -> str:
+    """Return the pocket friction of a cage, and whose it is if not its own; empty if none is known."""
+    stated = (answer.values["study"]["cage"].get("ball_cage_friction") or {}).get("value") is not None
+    if not stated and not answer.cage.ball_cage_friction:
+        return ""
+    return told(answer.cage, "ball_cage_friction") + ("" if stated else f", {_material(answer)}")
+
+
+def _material(answer: Part) -> str:
+    """Return the candidate that the cage has, and its environment."""
+    study = answer.values["study"]
+    ranking = study["ranking"]
+    name = (study["cage"].get("material") or {}).get("name") or ranking["candidates"][0]["name"]
+    place = (ranking.get("environment") or {}).get("value") or ranking["environments"][0]
+    return f"that of {name} in {place}"

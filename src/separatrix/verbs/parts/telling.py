@@ -22,8 +22,15 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told; one that only full tables have, by its name."""
-    return QUANTITIES.get(name) or Quantity(label=name.replace("_", " "))
+    """Return how a quantity of this name is told; one that only full tables have, by its name.
+
+    A key of a study, as ``film.thickness``, is told by its words, with its section where these need it.
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    section, _, key = name.replace("_", " ").rpartition(".")
+    is_known = section in ("", "operation") or section in key or key == "race friction"
+    return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
 
 
 def estimate(part: Part, name: str) -> Number:
@@ -71,6 +78,16 @@ def column(
     )
 
 
+def place_column(part: Part, name: str, *, head: str = "") -> Column:
+    """Return the column of a list of a part, for rows that are places in it."""
+    known, unit = quantity(name), part.unit(name)
+    return Column(
+        head or known.head or known.label,
+        lambda place: Cell(getattr(part, name)[place], known, unit),
+        meaning=known.meaning,
+    )
+
+
 def by_race(
     name: str, inner: Part, outer: Part, *names: str, level: Level = Level.ALWAYS, caption: str = ""
 ) -> Table:
@@ -87,6 +104,11 @@ def by_race(
 def told(part: Part, name: str) -> str:
     """Return a number of a part as it stands in a sentence."""
     return alone(estimate(part, name), quantity(name), part.unit(name))
+
+
+def number_of(part: Part, name: str, value: float | None) -> str:
+    """Return one number of a list of a part, as it stands in a sentence."""
+    return alone(value, quantity(name), part.unit(name))
 
 
 def said(part: Part, template: str) -> str:

@@ -11,7 +11,7 @@ from separatrix.present.blocks import Cell, Facts, Heading, Level, Note, Page, S
 from separatrix.present.text import words
 
 
-def workbook(page: Page) -> bytes:
+def spreadsheet(page: Page) -> bytes:
     """Return a page as a workbook, with every table of any level."""
     book, names = new_workbook(), set[str]()
     blocks = page.at(Level.FULL | Level.REPORT | Level.SHEET).blocks

@@ -1,0 +1,64 @@
+"""What the chain refuses of a study, found in a second: for the verbs that need it, and for `check`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
+    from separatrix.study.study import Study
+
+COARSE = 8
+"""Cells along and across in which an exact contact is put for its refusals."""
+
+Step = Callable[["Solution"], object]
+
+
+def refused(study: Study, *steps: Step) -> Iterator[str]:
+    """Yield why the first of these links of a chain that has no answer is refused.
+
+    A link solved with strips takes milliseconds; of the exact contact only what refuses it is computed.
+    """
+    from separatrix.chain.solution import solve
+    from separatrix.ground.errors import SeparatrixError
+
+    solution = solve(study)
+    try:
+        for step in steps:
+            step(solution)
+    except SeparatrixError as error:
+        yield str(error)
+
+
+def rolling(solution: Solution) -> None:
+    """Refuse what no traction is computed of: a bearing that does not roll, contacts out of their range."""
+    from separatrix.chain.contacts import race_tracks, require_rolling
+    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.race_curve import contact_problem
+    from separatrix.study.study import TractionModel
+
+    asked = solution.study
+    require_rolling(asked)
+    tracks = race_tracks(asked.bearing, asked.film, solution.bearing)
+    if asked.traction.model is TractionModel.STRIPS:
+        _ = solution.slopes
+        return
+    for track in tracks:
+        if not track.is_idle:
+            rolling_contact(contact_problem(track, asked.traction), columns=COARSE, rows=COARSE)
+
+
+def impact(solution: Solution) -> None:
+    """Refuse what no restitution factor is computed of: a pocket without stiffness, no running clearance."""
+    _ = solution.clearances, solution.ball_cage_stiffness, solution.inertia
+
+
+def push(solution: Solution) -> None:
+    """Refuse what no mobility is computed of: by strips, whose slip fields are those of any contact."""
+    from dataclasses import replace
+
+    from separatrix.chain.solution import solve
+    from separatrix.study.study import TractionSettings
+
+    _ = solve(replace(solution.study, traction=TractionSettings())).mobility
