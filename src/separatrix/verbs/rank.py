@@ -41,7 +41,7 @@ from separatrix.present.figure import (
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
-from separatrix.verbs.parts.telling import axis, cell, column, estimate, fact, marks, said, told
+from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     all_numbers,

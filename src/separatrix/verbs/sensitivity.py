@@ -43,6 +43,7 @@ from separatrix.present.figure import (
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
+from separatrix.verbs.parts.refused import refused
 from separatrix.verbs.parts.telling import axis, cell, column, quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
@@ -57,6 +58,7 @@ from separatrix.verbs.parts.verdict_blocks import verdict as verdict_of
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import SensitivityAnswer
     from separatrix.verdict.long_jobs import Runner
@@ -115,6 +117,22 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
         ),
         lambda: uncertain_study(study, samples, runner=runner),
     )
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why no bearing can be drawn."""
+    if study.cage is not None and study.ranking is not None:
+        yield from refused(study, _drawable)
+
+
+def _drawable(solution: Solution) -> None:
+    from separatrix.study.candidates import ranking_question, required_environment
+    from separatrix.verdict.drawn_frictions import frictions_to_draw
+    from separatrix.verdict.draws import uncertain_inputs
+
+    study = solution.study
+    required_environment(study, ranking_question(study))
+    uncertain_inputs(study, frictions_to_draw(study))
 
 
 def page(answer: Part) -> Page:
@@ -674,7 +692,15 @@ def film_figure(answer: Part) -> Figure:
     words = [f"{kind} film here is allowed: {', '.join(names)}" for kind, names in kinds.items() if names]
     panel = Panel(
         title=title,
-        x=axis("film_thickness", unit, thickness, low=thickness[0], high=thickness[-1], is_log=True),
+        x=axis(
+            "film_thickness",
+            unit,
+            thickness,
+            label="film thickness",
+            low=thickness[0],
+            high=thickness[-1],
+            is_log=True,
+        ),
         y=axis("race_friction", "-", friction, low=friction[0], high=friction[-1], is_log=True),
         marks=tuple(lines),
         labels=tuple(labels),
@@ -700,4 +726,5 @@ VERB = Verb(
     moves_a_cage=True,
     has_full=True,
     keeps_runs=True,
+    refusals=refusals,
 )

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
@@ -29,6 +29,7 @@ from separatrix.present.blocks import (
 from separatrix.present.figure import Figure
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
+from separatrix.verbs.parts.refused import refused
 from separatrix.verbs.parts.telling import quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
@@ -133,6 +134,14 @@ def given_factor(options: Options) -> float | None:
     if not 0.0 <= eta <= 1.0:
         raise InputError("--restitution-factor", "must be a number from 0 to 1", printable(text))
     return eta
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why the pocket has no friction."""
+    from separatrix.study.candidates import require_friction
+
+    if study.cage is not None:
+        yield from refused(study, lambda solution: require_friction(solution.study))
 
 
 def page(answer: Part) -> Page:
@@ -290,27 +299,35 @@ def _works(answer: Part) -> str:
     each = (
         f"{name.replace('_', ' ')} {alone(work[last], quantity('work'), answer.work.unit(name))}"
         for name, work in answer.work.values.items()
-        if any(work)
+        if work[last]
     )
     left = alone(answer.kinetic_energy[last], quantity("kinetic_energy"), answer.unit("kinetic_energy"))
     until = "" if last == -1 else f"up to {told(answer, 'followed')}: "
     return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
 
 
-POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impact_rate", "impacts_per_turn")
+POCKET = {
+    "pocket_angle": "place",
+    "half_play": "half the clearance",
+    "pocket_impacts": "impacts",
+    "impact_rate": "impact rate",
+    "impacts_per_turn": "impacts per turn of the cage",
+    "pocket_rubbing_power": "heat of rubbing",
+}
+"""Numbers of each pocket, with what stands above them."""
 
 
 def pockets(answer: Part) -> Table:
     """Return a row for each pocket: its place, its clearance, its impacts and rubbing."""
 
-    def column(name: str) -> Column:
-        known = quantity(name)
-        values: Any = answer.get(name)
-        cell: Callable[[int], Cell] = lambda place: Cell(values[place], known, answer.unit(name))  # noqa: E731
-        return Column(known.head or known.label, cell)
+    def column(name: str, head: str) -> Column:
+        values, known, unit = answer.get(name), quantity(name), answer.unit(name)
+        return Column(head, lambda place: Cell(values[place], known, unit))
 
-    known = [name for name in (*POCKET, "pocket_rubbing_power") if name in answer]
-    columns = (text_column("pocket", lambda place: str(place + 1)), *map(column, known))
+    columns = (
+        text_column("pocket", lambda place: str(place + 1)),
+        *(column(name, head) for name, head in POCKET.items() if name in answer),
+    )
     rows = tuple(range(len(answer.pocket_angle)))
     return Table("pockets", columns, rows, "Each pocket over the whole run.", Level.REPORT | Level.SHEET)
 
@@ -371,4 +388,5 @@ VERB = Verb(
     needs=("cage",),
     moves_a_cage=True,
     files=files,
+    refusals=refusals,
 )

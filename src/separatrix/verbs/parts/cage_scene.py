@@ -163,8 +163,8 @@ def frame_moments(answer: Part, most: int) -> Array:
 def shown_parts(time: Array, moments: Array) -> tuple[tuple[float, float], ...]:
     """Return beginning and end of each part of a run that some frames show [s]."""
     steps = np.diff(moments)
-    far = (steps > GAP * np.median(steps) + 1) & (moments.size > 2)
-    parts = np.split(time[moments], np.flatnonzero(far) + 1)
+    usual = float(np.median(steps)) if steps[1:].size else float(moments[-1])
+    parts = np.split(time[moments], np.flatnonzero(steps > GAP * usual + 1) + 1)
     return tuple((float(part[0]), float(part[-1])) for part in parts)
 
 

@@ -163,7 +163,6 @@ QUANTITIES: dict[str, Quantity] = {
     "left_time": Q(label="time at which a ball reaches the edge of its pocket's wall"),
     "position": Q(label="place of the centre"),
     "axial_place": Q(label="axial place"),
-    "lean": Q(label="lean", unit="mrad"),
     "contact_force": Q(label="force of a pocket"),
     "land_force": Q(label="force of the land"),
     "kinetic_energy": Q(label="kinetic energy"),
@@ -178,7 +177,6 @@ QUANTITIES: dict[str, Quantity] = {
     "orbit_speed": Q(label="orbit of the centre", unit="rad/s", digits=4),
     "cone_speed": Q(label="orbit of the tilt", unit="rad/s", digits=4),
     "cage_slip": Q(label="slip of the cage", unit="%"),
-    "half_play": Q(label="pocket clearance each way", head="clearance", digits=4),
     "axial_half_play": Q(label="pocket clearance along the axis each way", digits=4),
     "pocket_angle": Q(label="place of the pocket", head="place", digits=4),
     "pocket_impacts": Q(label="impacts", form=".0f"),
@@ -259,8 +257,6 @@ QUANTITIES: dict[str, Quantity] = {
     "contact_radius": Q(label="contact radius"),
     #
     # Uncertain studies.
-    "film_thickness": Q(label="film thickness"),
-    "race_friction": Q(label="friction of ball on race", symbol="f_BT"),
     "stopped_risk": Q(label="risk of another verdict of a case that is ended early"),
     "mean": Q(label="mean", digits=4),
     "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),

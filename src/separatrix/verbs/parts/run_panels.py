@@ -93,7 +93,7 @@ def lean(answer: Part, title: str = "Lean of the cage's axis") -> Panel:
     looks = {"land": LAND, "pockets": POCKETS}
     lines = [_ring(one.value, looks[one.name], f"{one.name}, if centred") for one in near]
     most = 1.12 * max([far, *(one.value for one in near)])
-    return _path_panel(answer, "lean", title, ("lean along x", "lean along y"), path, most, lines)
+    return _path_panel(answer, "largest_tilt", title, ("lean along x", "lean along y"), path, most, lines)
 
 
 def _ring(radius: Array | float, look: dict[str, Any], name: str) -> Trace:
@@ -147,7 +147,9 @@ def offset(answer: Part, title: str) -> Panel:
 def tilt(answer: Part, title: str) -> Panel:
     """Return the angle between the axes of cage and bearing against time."""
     found = np.hypot(*array(answer, "lean").T)
-    return _course(answer, title, [Course("lean", found, "", BLUE)], tilt_limits(answer), label="tilt")
+    return _course(
+        answer, title, [Course("largest_tilt", found, "", BLUE)], tilt_limits(answer), label="tilt"
+    )
 
 
 def tilt_limits(answer: Part) -> list[Limit]:
