@@ -7,14 +7,12 @@ Prints whether they agree to the last bit.
 
 import os
 import signal
-import warnings
 from dataclasses import replace
 
 import distributed
 
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.ground.errors import ValidityWarning
 from separatrix.study.reading import read_study
 from separatrix.verdict.cluster import cluster
 from separatrix.verdict.long_jobs import Runner
@@ -23,7 +21,6 @@ from separatrix.verdict.stability_curve import stability_curve
 
 def main() -> None:
     """Run both and compare."""
-    warnings.simplefilter("ignore", ValidityWarning)
     wheel = solve(read_study("momentum-wheel"))
     cage = moving_cage(wheel, 0.0)
     settings = replace(wheel.study.stability, runs=16, duration=0.02, restitution_factors=(0.2, 0.5, 0.8))

@@ -7,7 +7,6 @@ rigid slip, as the program solves it, and with that of the exact contact in its 
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +20,6 @@ from separatrix.chain.equilibrium.problem import problem
 from separatrix.chain.impact_restitution import contact_damping
 from separatrix.chain.race_curve import contact_problem, exact_slope
 from separatrix.chain.solution import solve
-from separatrix.ground.errors import ValidityWarning
 from separatrix.study.reading import read_study
 from separatrix.study.study import Film, Race, Study, TractionModel, TractionSettings
 
@@ -164,7 +162,6 @@ def report(ball: Ball, u: Array, elastic: bool) -> None:
 
 def main() -> None:
     """Solve both for three shipped bearings, the first one also bare and with less friction."""
-    warnings.simplefilter("ignore", ValidityWarning)
     first = read_study("cryogenic-turbopump")
     studies = [first, *(read_study(name) for name in ("lox-turbopump", "momentum-wheel"))]
     studies += [replace(first, film=replace(first.film, race_friction=0.05))]

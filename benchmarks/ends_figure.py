@@ -6,7 +6,6 @@ python benchmarks/ends_figure.py [FILE]
 from __future__ import annotations
 
 import sys
-import warnings
 from itertools import pairwise
 from pathlib import Path
 
@@ -35,7 +34,6 @@ BINS = 31
 
 def main() -> None:
     """Draw the figure."""
-    warnings.simplefilter("ignore")
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
     for label, study, friction, kick, colour, line in RUNS:
         cage = moving_cage(solve(read_study(study)), friction)

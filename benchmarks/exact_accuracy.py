@@ -7,7 +7,6 @@ references are those of the tests.
 import math
 import sys
 import time
-import warnings
 from itertools import chain
 
 import numpy as np
@@ -32,7 +31,6 @@ from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.exact.transient import shift, transient
 from separatrix.chain.film_profile import worn_band
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.ground.errors import ValidityWarning
 
 
 def say(*values):
@@ -189,7 +187,6 @@ def slopes_table():
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore", ValidityWarning)
     tables = kalker_table, partial_slip_table, strips_table, spheres_table, shifts_table
     chosen = sys.argv[1:]
     for table in (*tables, contact_examples, slopes_table):

@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
-import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -51,7 +50,6 @@ def main() -> None:
     for name, value in (("studies", 20), ("runs", 64), ("first", 0)):
         parser.add_argument(f"--{name}", type=int, default=value)
     asked = parser.parse_args()
-    warnings.simplefilter("ignore")
     moved, rows = dict.fromkeys((head for head, _, _ in CASES), 0), 0
     print("study friction " + " ".join(f"{head:>8s}" for head, _, _ in CASES))
     with tempfile.TemporaryDirectory() as folder:

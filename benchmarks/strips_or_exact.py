@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 from separatrix.chain.contacts import race_tracks
 from separatrix.chain.impact_restitution import restitution
 from separatrix.chain.race_curve import exact_slope, strips
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.errors import SeparatrixError, ValidityWarning
+from separatrix.ground.errors import SeparatrixError
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
     ContactPressure,
@@ -72,7 +71,6 @@ def row(*words: str) -> None:
 
 def main() -> None:
     """Print the tables."""
-    warnings.simplefilter("ignore", ValidityWarning)
     study = read_study("cryogenic-turbopump")
     free = solve(study)
     for model in (KinematicModel.FREE, KinematicModel.OUTER_RACE_CONTROL):

@@ -50,7 +50,6 @@ def traction_map(film, threads=2):
         return np.array(list(pool.map(curve, SPINS)))
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize("film", ["bare", "series", "layer"])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_map_of_205_points(benchmark, film, threads):
@@ -60,7 +59,6 @@ def test_map_of_205_points(benchmark, film, threads):
     assert -forces.min() <= MU * ELLIPSE.load * 1.000001
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize("film", ["bare", "layer"])
 def test_slope_of_a_race(benchmark, film):
     """With its error, free rolling included: under 0.5 s."""

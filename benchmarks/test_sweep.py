@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from separatrix.chain.contacts import bearing_state, race_traction
-from separatrix.ground.errors import ValidityWarning
 from separatrix.study.reading import read_study
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import Sweep, sweep
@@ -16,9 +13,7 @@ from separatrix.verdict.swept_cases import Sweep, sweep
 
 def test_sweep_of_the_chain(benchmark: BenchmarkFixture) -> None:
     """Film thickness against contact angle, nothing remembered; aim: 10 000 cases in under 60 s."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
-        study = read_study("cryogenic-turbopump")
+    study = read_study("cryogenic-turbopump")
     thicknesses, angles = np.geomspace(2e-7, 2e-6, 20), np.linspace(0.25, 0.45, 50)
     cases = [{"film.thickness": t, "bearing.contact_angle": a} for t in thicknesses for a in angles]
     sweep(study, cases[:2])  # every kernel compiled before

@@ -13,7 +13,6 @@ import argparse
 import sys
 import tempfile
 import time
-import warnings
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -61,7 +60,6 @@ def main() -> None:
     for name, value in (("studies", 20), ("runs", 50), ("first", 0)):
         parser.add_argument(f"--{name}", type=int, default=value)
     asked = parser.parse_args()
-    warnings.simplefilter("ignore")
     changes: Counter[tuple[str, str]] = Counter()
     total, spent, early = 0, [0.0, 0.0], [0, 0]
     with tempfile.TemporaryDirectory() as folder:

@@ -1,6 +1,5 @@
 """Follow one run of the cage and plot it yourself: orbit of the centre and kinetic energy."""
 
-import warnings
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -9,8 +8,7 @@ import separatrix
 
 study = separatrix.read_study("momentum-wheel")
 study = replace(study, cage=replace(study.cage, ball_cage_friction=0.30))  # dry phenolic
-with warnings.catch_warnings(action="ignore"):  # the notes are printed below
-    answer = separatrix.simulate(study, kick="0.5 m/s")
+answer = separatrix.simulate(study, kick="0.5 m/s")
 history = answer.history
 
 outcome = history.outcome.name

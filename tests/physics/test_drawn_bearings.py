@@ -18,8 +18,6 @@ from separatrix.verdict.judgement import Verdict, judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
-
 PLACE = "liquid nitrogen, 440C"
 CASE = Case("A", PLACE)
 FRICTION = f"ranking.A.{PLACE}"

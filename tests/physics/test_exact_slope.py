@@ -69,7 +69,6 @@ def test_slopes_of_a_bearing(mu, inner, outer):
         assert found.solution.film_strain == 0.0
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize(
     ("film", "spin", "heathcote"),
     [
@@ -99,7 +98,6 @@ def test_lateral_force_of_spin():
     assert lateral == pytest.approx([0.13, -0.24], abs=0.01)
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 def test_slopes_of_thin_films_do_not_depend_on_the_columns():
     """1 um of 0.5 GPa: 14 and 40 columns within 0.5 %; without the rules of the row ends, 5 %."""
     film = Layer(thickness=1e-6, solid=solid(0.5e9, 0.46))
@@ -110,7 +108,6 @@ def test_slopes_of_thin_films_do_not_depend_on_the_columns():
     assert found[0] == pytest.approx(found[1], rel=5e-3)
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
     """3 um of 0.5 GPa: pressure down to 1060 MPa, slope of the outer race from 6.3 to 8.9.
 
@@ -127,7 +124,6 @@ def test_own_pressure_of_a_soft_film_makes_a_steeper_curve():
     assert own.solution.film_strain == film_strain(bodies, own.solution.max_pressure)
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize(
     ("E", "nu", "thickness", "converged"),
     [(0.5, 0.46, 1, 11.989), (0.5, 0.46, 3, 8.877), (4.0, 0.38, 3, 13.957), (4.0, 0.38, 10, 12.642)],

@@ -81,7 +81,6 @@ def field_slopes(race, side):
     return np.stack([(forces(*(at + d)) - forces(*(at - d))) / 2e-5 for d in 1e-5 * np.eye(3)], axis=1)
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize(
     ("study", "error"), [("cryogenic-turbopump", 0.02), ("lox-turbopump", 0.07), ("momentum-wheel", 0.13)]
 )

@@ -281,7 +281,6 @@ def test_one_state_reproduces_an_impact(name):
 # The slip law, and which ball.
 
 
-@pytest.mark.filterwarnings("ignore:the film is compressed:separatrix.ground.errors.ValidityWarning")
 def test_elastic_creep_meets_the_spin_moment_of_the_exact_contact():
     """At the same spin the outer pivoting moment is met within 1 % by elastic creep; rigid, it is 4 % off."""
     asked = study_of("cryo")

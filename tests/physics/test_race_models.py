@@ -33,8 +33,6 @@ from separatrix.study.study import (
     Wear,
 )
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
-
 POINT = Operation(inner_speed=1570.8, axial_load=3000.0)
 PTFE = Material(name="PTFE", elastic_modulus=4e9, poisson_ratio=0.38)
 COATED = Film(race_friction=0.1, material=PTFE, thickness=1e-6)

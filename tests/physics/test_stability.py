@@ -9,8 +9,8 @@ from cages import threshold_points
 
 from separatrix.cage import run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
-from separatrix.present.text.sentences import drift_sentence
 from separatrix.study.study import Guidance, StabilitySettings
+from separatrix.told.sentences import drift_sentence
 from separatrix.verdict.critical_friction import critical_friction, linear_limit
 from separatrix.verdict.judgement import judge, wilson_interval
 from separatrix.verdict.long_jobs import PART, Interrupted, Runner

@@ -18,8 +18,6 @@ from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
 from separatrix.verdict.response import cage_at
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
-
 RUNS, DURATION = 8, 0.1
 KICKS = (0.1, 0.5, 2.0, 4.0)
 

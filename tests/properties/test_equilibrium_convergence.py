@@ -12,8 +12,6 @@ from separatrix.chain.equilibrium import Equilibrium, equilibrium
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
-
 
 def solved(seed: int, folder: Path) -> Equilibrium:
     """A sane study's equilibrium without race control."""

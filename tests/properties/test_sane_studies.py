@@ -6,8 +6,6 @@ from pathlib import Path
 import pytest
 from sane_studies import CLASSES, LOADS, MOST_SPEED, bearing_study, bearing_text, sane_study
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
-
 
 def test_the_same_seed_is_the_same_study_whatever_its_cost(tmp_path: Path) -> None:
     """A failure can be run again by its seed; the caller says duration and runs alone."""

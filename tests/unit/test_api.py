@@ -3,7 +3,6 @@
 import copy
 import html
 import json
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +10,8 @@ import pytest
 
 import separatrix
 from separatrix.front import api, main
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.verdict.long_jobs import Interrupted
-
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 
 SMALL = """
 extends = "momentum-wheel"
@@ -85,16 +82,19 @@ def test_a_figure_by_its_name(small):
         answer.plot("nothing")
 
 
-def test_notes_are_warnings_and_stay_in_the_answer(tmp_path):
-    """MoS2 on the races: eta is 0, and the caller is warned once."""
+def test_notes_are_in_the_answer_and_its_document(tmp_path):
+    """MoS2 on the races: eta is 0; and what the reading of the study notes, if it was read before, too."""
     path = tmp_path / "slippery.toml"
-    path.write_text('extends = "cryogenic-turbopump"\n[film]\nrace_friction = 0.02\n', encoding="utf-8")
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        answer = api.restitution(path)
-    said = [str(one.message) for one in caught if issubclass(one.category, ValidityWarning)]
-    assert any(note.startswith("eta = 0") for note in answer.notes)
-    assert set(answer.notes) <= set(said)
+    text = (
+        'extends = "cryogenic-turbopump"\n[film]\nrace_friction = 0.02\n[operation]\ntemperature = "120 K"\n'
+    )
+    path.write_text(text, encoding="utf-8")
+    answer = api.restitution(separatrix.read_study(path))
+    read, eta = answer.notes
+    assert "not stated at 120 K" in read
+    assert eta.startswith("eta = 0")
+    assert answer.document()["warnings"] == [read, eta]
+    assert eta[:70] in " ".join(answer.summary().split())
 
 
 def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):

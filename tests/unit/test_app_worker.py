@@ -4,7 +4,7 @@ import importlib.util
 import sys
 import time
 
-from test_cli_answers import SMALL
+from commands import SMALL
 
 from separatrix.front.console import is_importing
 from separatrix.front.page.jobs import Jobs

@@ -9,7 +9,6 @@ import json
 import re
 import shutil
 import sys
-import warnings
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
@@ -19,7 +18,7 @@ from commands import document, refused
 from pypdf import PdfReader
 
 from separatrix.front import api, main
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.reporting.content import answers, read_document
 from separatrix.reporting.record import Kept
 from separatrix.study.reading import read_study
@@ -135,11 +134,9 @@ def folder(tmp_path_factory):
     (place / "hostile.toml").write_text(STUDY + CAGE)
     out = place / "answers"
     out.mkdir()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
-        for verb in (api.bearing, api.traction, api.restitution, api.rank):
-            found = verb(place / "hostile.toml")
-            (out / f"{found.verb}.json").write_text(json.dumps(found.document()))
+    for verb in (api.bearing, api.traction, api.restitution, api.rank):
+        found = verb(place / "hostile.toml")
+        (out / f"{found.verb}.json").write_text(json.dumps(found.document()))
     return out
 
 

@@ -43,7 +43,7 @@ friction = { air = "0.3 +- 10 %" }
 """
 KEYS = (
     "bearings failed stopped_risk default_scatter environment inputs environments overall convergence clouds "
-    "drivers shares undecided next_tests allowed_friction allowed_films kicks runs notes complete chain cage "
+    "drivers shares undecided next_tests allowed_friction allowed_films kicks runs complete chain cage "
     "seed study warnings"
 )
 OF_A_ROW = (

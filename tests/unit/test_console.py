@@ -12,8 +12,7 @@ import subprocess
 import sys
 import threading
 import time
-import warnings
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -22,7 +21,7 @@ from separatrix.front import console
 from separatrix.front.console import one_line
 from separatrix.ground.compiled import part
 from separatrix.ground.compiling import COMPILING
-from separatrix.ground.errors import InputError, ValidityWarning, noted_warnings
+from separatrix.ground.errors import InputError
 from separatrix.ground.files import staged, writable_folder
 from separatrix.verdict import long_jobs
 
@@ -390,16 +389,3 @@ def test_errors_and_results_come_out_of_the_other_thread():
     assert console.breakable(lambda: 7) == 7
     with pytest.raises(ZeroDivisionError):
         console.breakable(lambda: 1 // 0)
-
-
-def test_warnings_of_many_threads_are_noted_once_each():
-    """Threads of a pool warn while the filter is in place: nothing is lost and nothing is twice."""
-    sentences = [f"sentence {i}" for i in range(50)]
-
-    def warn(_: int) -> None:
-        for sentence in sentences:
-            warnings.warn(sentence, ValidityWarning, stacklevel=2)
-
-    with noted_warnings() as notes, ThreadPoolExecutor(8) as pool:
-        list(pool.map(warn, range(32)))
-    assert sorted(notes) == sorted(sentences)

@@ -206,7 +206,6 @@ def test_a_sweep_marks_verdicts_and_names_units():
     assert sweep(data).legends
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 @pytest.mark.parametrize(
     ("name", "heavier"), [("momentum-wheel", 1.0), ("lox-turbopump", 1.0), ("cryogenic-turbopump", 100.0)]
 )

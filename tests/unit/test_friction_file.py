@@ -201,7 +201,6 @@ def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket
 
 
 # Not tested as the pocket rubs.
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 @pytest.mark.parametrize("verb", [["stability"], ["simulate"], ["rank"], ["sensitivity", "--samples", "64"]])
 def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsys, monkeypatch, verb):
     """That at 5 m/s, as above, in the cage that stands in its answer."""

@@ -20,7 +20,6 @@ from separatrix.ground.errors import InputError
 from separatrix.study.library.library_file import read_library
 from separatrix.study.reading import read_study
 
-pytestmark = pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 FROZEN = Path(__file__).with_name("reader_mutants.json")
 READERS = {"library": read_library, "friction": read_friction, "study": read_study}
 FILES = {

@@ -60,7 +60,6 @@ def missing(verb, found):
     return {name for name in names_in(found) if "." not in name} - names_of(verb) - COMMON
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 @pytest.mark.parametrize("verb", ASKED)
 def test_every_name_of_a_document_has_a_line(verb):
     """A document of each verb that takes a study, small but complete."""
@@ -69,7 +68,6 @@ def test_every_name_of_a_document_has_a_line(verb):
     assert missing(verb, found) == set()
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 def test_every_name_of_a_run_in_space_has_a_line():
     """A simulation whose axial motion and tilt are not null."""
     assert missing("simulate", separatrix.simulate(IN_SPACE).document()) == set()

@@ -8,13 +8,13 @@ from types import SimpleNamespace
 import pytest
 
 from separatrix.chain.pocket_friction import PocketConditions
-from separatrix.present.text import ranking
-from separatrix.present.text.answer import in_words, whereabouts
-from separatrix.present.text.cage import judgement_facts
-from separatrix.present.text.sensitivity import marks
-from separatrix.present.text.sentences import verdict_sentences
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, MotionModel
+from separatrix.told import ranking
+from separatrix.told.answer import in_words, whereabouts
+from separatrix.told.cage import judgement_facts
+from separatrix.told.sensitivity import marks
+from separatrix.told.sentences import verdict_sentences
 from separatrix.verdict.judgement import Judgement, KickCount, Verdict
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked, RankedEnvironment, Ranking
 from separatrix.verdict.reasons import CageMotion

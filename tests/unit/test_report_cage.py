@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from separatrix.cage import moving_cage
 from separatrix.chain.solution import solve
-from separatrix.present.text.cage import clearance_fact
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
+from separatrix.told.cage import clearance_fact
 
 
 def test_the_offset_is_compared_with_land_and_pockets():

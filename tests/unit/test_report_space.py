@@ -21,7 +21,6 @@ def ranked(motion: MotionModel) -> separatrix.Answer:
     )
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 @pytest.mark.parametrize("motion", MotionModel)
 def test_tilt_and_axial_travel_are_in_the_evidence_of_a_cage_in_space(motion):
     """A table with a row for each candidate; a cage in the plane has neither."""

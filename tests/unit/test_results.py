@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import Enum, IntEnum
 from typing import Annotated
 
@@ -13,7 +13,7 @@ import pytest
 from separatrix.chain.solution import solve
 from separatrix.ground.plain_data import NotFiniteError, field_units, plain
 from separatrix.ground.units import Newton, Ratio, Rows
-from separatrix.present.dataset_arrays import dataset
+from separatrix.present.dataset import dataset
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
 from separatrix.verbs import answer_records as answers
@@ -123,7 +123,7 @@ def test_a_number_that_is_not_finite_is_a_fault_with_its_place(bad):
 def test_a_document_leaves_out_a_number_that_is_not_finite_with_a_warning(bad):
     """Null and a reason, not a traceback after a long computation; missing in the dataset, too."""
     record = Outer(Inner(bad), np.array([[bad, 1.0]]))
-    found = document("bearing", record, STUDY, ["A note."])
+    found = document("bearing", record, replace(STUDY, notes=("A note.",)))
     assert (found["inner"]["load"], found["values"]) == (None, [[None, 1.0]])
     note, reason = found["warnings"]
     assert note == "A note."
@@ -155,7 +155,7 @@ ROWS = (Row("A", 0.1, ("too fast", "too hot"), (0.25, 0.75)), Row("B", None))
 def test_materials_are_aligned_by_name(rows):
     """In a dataset a material has one place whatever its rank; what a row lacks is missing, texts are one."""
     answer = Places(0.3, (Place("x", rows), Place("y", rows[::-1])))
-    data = dataset(document("rank", answer, STUDY, ["one"]))
+    data = dataset(document("rank", answer, replace(STUDY, notes=("one",))))
     assert data["material"].values.tolist() == ["A", "B"]
     np.testing.assert_array_equal(data["material_friction"], [[0.1, np.nan]] * 2)
     assert data["material_extrapolation"].values.tolist() == [["too fast; too hot", ""]] * 2

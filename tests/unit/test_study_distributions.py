@@ -10,11 +10,11 @@ import pytest
 from scipy.stats import lognorm
 
 from separatrix.ground.errors import InputError
-from separatrix.present.text.answer import in_words
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
+from separatrix.told.answer import in_words
 from separatrix.verbs.answer_records import CheckAnswer
 from separatrix.verdict.draws import sample, uncertain_inputs
 from separatrix.verdict.map_records import varied

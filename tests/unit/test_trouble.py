@@ -15,9 +15,9 @@ from commands import refused
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.impact_restitution import damping_for
 from separatrix.front import main
-from separatrix.present.text.answer import in_words
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
+from separatrix.told.answer import in_words
 from separatrix.verbs import simulate
 from separatrix.verbs.answer_files import document
 from separatrix.verdict.judgement import Verdict, judge
@@ -138,15 +138,13 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
     assert np.isfinite(found.growth_rate)
 
 
-# Of friction beyond its tests.
-@pytest.mark.filterwarnings("ignore::separatrix.ground.errors.ValidityWarning")
 def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))
     answer = simulate.compute(asked)
     lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.FALLING)
     answer = replace(answer, history=lost)
-    found = document("simulate", answer, asked, [])
+    found = document("simulate", answer, asked)
     said = " ".join(in_words("simulate", answer, asked, []).split())
     assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "FALLING")
     assert "UNRESOLVED" in said

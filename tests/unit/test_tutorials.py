@@ -95,7 +95,6 @@ def test_every_tutorial_is_followed():
     assert {path.stem for path in FOLDER.glob("*.md")} == {*SHOWN, "python"}
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 def test_the_tutorial_of_python_prints_what_the_page_says(capsys):
     """Its blocks run in one session, but for the ranking; the numbers are those of the text between them."""
     text = (FOLDER / "python.md").read_text(encoding="utf-8")
@@ -109,7 +108,6 @@ def test_the_tutorial_of_python_prints_what_the_page_says(capsys):
     assert printed[-1] == outcome
 
 
-@pytest.mark.filterwarnings("ignore::separatrix.ValidityWarning")
 def test_what_the_tutorials_say_of_a_run_without_output(capsys):
     """The clearances of the cage to design, and its runs that settle."""
     words = (FOLDER / "design.md").read_text(encoding="utf-8")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -12,7 +11,7 @@ import numpy as np
 from separatrix.cage.disturbance import free_leads
 from separatrix.chain.ball_traction import BallTraction, FreeBall
 from separatrix.chain.impact_restitution import hertz_coefficient_for
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -180,6 +179,18 @@ class MovingCage:
         return float(np.abs(free_leads(self, np.linspace(0.0, 2.0 * math.pi, 361))).max())
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence where free balls would lead and lag by more than their clearance."""
+        if not self.lead_amplitude > self.half_play:
+            return ()
+        lead, clearance = (format_quantity(x, "m", 3) for x in (self.lead_amplitude, self.half_play))
+        return (
+            f"Unconstrained, the balls would lead and lag by up to {lead} under this load, more than half "
+            f"their clearance in a pocket, {clearance}: the cage has to drive them, which adds load and "
+            "wear.",
+        )
+
+    @property
     def land_gap(self) -> Metre:
         """Offset of the cage centre at which it touches its land [m]; infinite without a land."""
         if self.guidance is Guidance.BALL or self.land_clearance is None:
@@ -329,11 +340,6 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
     ------
     InputError
         The study has no cage, or its running clearances cannot be.
-
-    Warns
-    -----
-    ValidityWarning
-        The balls lead and lag by more than half their clearance, so that the pockets drive them.
     """
     study, design, body = solution.study, solution.design, solution.inertia
     level, waves = ball or design.ball, solution.orbital_waves
@@ -392,7 +398,6 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
         if key not in ("pocket_clearance", "pocket_axial_clearance"):
             raise
         raise error.at(f"[cage] {key}", cure=f"It is that of the running cage. {error.cure}") from None
-    _warn_if_balls_are_driven(cage)
     return cage
 
 
@@ -402,16 +407,3 @@ _OF_THE_CHAIN = {
 _OWN = {one.name for one in fields(MovingCage)} - _OF_THE_CHAIN
 _AS_DESIGNED = _OWN & {one.name for one in fields(CageDesign)}
 """Fields that the moving cage has as its design states them."""
-
-
-def _warn_if_balls_are_driven(cage: MovingCage) -> None:
-    """Warn where free balls would lead and lag by more than their clearance."""
-    if cage.lead_amplitude > cage.half_play:
-        lead, clearance = (format_quantity(x, "m", 3) for x in (cage.lead_amplitude, cage.half_play))
-        warnings.warn(
-            f"Unconstrained, the balls would lead and lag by up to {lead} under this load, more than half "
-            f"their clearance in a pocket, {clearance}: the cage has to drive them, which adds load and "
-            "wear.",
-            ValidityWarning,
-            stacklevel=3,
-        )

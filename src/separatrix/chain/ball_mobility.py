@@ -101,6 +101,7 @@ class Mobility:
     force_forward: Annotated[Array, "N", ("push",)]
     force_backward: Annotated[Array, "N", ("push",)]
     force_law: Annotated[Array, "N", ("push",)]
+    notes: tuple[str, ...] = ()  # where the slip fields leave the range of their model, a sentence each
 
 
 SETTLED = 1e-10
@@ -125,6 +126,7 @@ class HeldBall(NamedTuple):
     cells: int
     nodes: Array
     capacity: Newton
+    notes: tuple[str, ...] = ()
 
     @property
     def orbit_radius(self) -> float:
@@ -429,9 +431,9 @@ def held_ball(
         for f, at in ((p.inner_conformity, state.inner), (p.outer_conformity, state.outer))
     )
     orbit = (state.equilibrium.orbital_speed[ball] - p.outer_speed) / p.speed
-    slips = (RIGID * 0.25 * p.pitch_diameter,) * 2
+    slips, notes = (RIGID * 0.25 * p.pitch_diameter,) * 2, tuple[str, ...]()
     if slip_law is SlipLaw.ELASTIC:
-        inner_slip, outer_slip = elastic_slip_speeds(bearing, film, settings, state)
+        inner_slip, outer_slip, notes = elastic_slip_speeds(bearing, film, settings, state)
         slips = inner_slip / abs(p.speed), outer_slip / abs(p.speed)
     cells = CELLS[slip_law]
     return settle(
@@ -443,23 +445,24 @@ def held_ball(
             cells=cells,
             nodes=chebyshev_nodes(cells // 2),
             capacity=film.race_friction * (state.inner.load + state.outer.load),
+            notes=notes,
         )
     )
 
 
 def elastic_slip_speeds(
     bearing: BallBearing, film: Film, settings: TractionSettings, state: BearingState
-) -> tuple[MetrePerSecond, MetrePerSecond]:
+) -> tuple[MetrePerSecond, MetrePerSecond, tuple[str, ...]]:
     r"""Slip at which the elastic creep of the inner and of the outer race would transmit all friction [m/s].
 
     :math:`v_e = f_{BT} V/\alpha_0` with the slope :math:`\alpha_0` of contact and film without spin and
-    Heathcote's slip, by the traction model of the settings.
+    Heathcote's slip, by the traction model of the settings; with the notes of that.
     """
     tracks = [replace(one, creep=Creep(spin=0.0, curvature=0.0)) for one in race_tracks(bearing, film, state)]
     found = of_both_races(lambda track: race_slope(track, settings), (tracks[0], tracks[1]))
     speeds = state.inner.rolling_speed, state.outer.rolling_speed
     inner, outer = (film.race_friction * abs(v) / one.slope for v, one in zip(speeds, found, strict=True))
-    return inner, outer
+    return inner, outer, (*found[0].notes, *found[1].notes)
 
 
 def free_ball(
@@ -542,6 +545,7 @@ def mobility(
         force_forward=forward,
         force_backward=backward,
         force_law=law.force(speed),
+        notes=ball.notes,
     )
 
 

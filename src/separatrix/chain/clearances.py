@@ -5,12 +5,11 @@ Every part is isotropic, free of stress before it turns, and at one temperature 
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from separatrix.ground.errors import InputError, ValidityWarning, together
+from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import (
     Kelvin,
     Kilogram,
@@ -79,6 +78,12 @@ class Clearances:
     cage_land_growth: Metre | None
     ring_land_growth: Metre | None
     guesses: tuple[str, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence where they rest on guesses."""
+        at = format_quantity(self.temperature, "K")
+        return (f"Clearances at {at} rest on guesses: {'; '.join(self.guesses)}.",) if self.guesses else ()
 
 
 def mean_expansion(material: Material, temperature: Kelvin) -> tuple[PerKelvin, str] | None:
@@ -156,11 +161,6 @@ def running_clearances(
     ------
     InputError
         The temperature or the expansion of a part is not known, or a clearance closes.
-
-    Warns
-    -----
-    ValidityWarning
-        They rest on guesses.
     """
     T, guesses = operation.temperature, list[str]()
     if T is None:
@@ -204,10 +204,6 @@ def running_clearances(
     )
     if closed := list(_closed(found, material.name)):
         raise together(closed)
-    if guesses:
-        at = format_quantity(T, "K")
-        sentence = f"Clearances at {at} rest on guesses: {'; '.join(guesses)}."
-        warnings.warn(sentence, ValidityWarning, stacklevel=3)
     return found
 
 

@@ -101,6 +101,11 @@ class RaceTraction:
     inner: TractionCurve
     outer: TractionCurve
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the contacts leave the range of their model, a sentence each."""
+        return (*self.inner.notes, *self.outer.notes)
+
 
 @lru_cache(maxsize=REMEMBERED)
 def bearing_state(
@@ -139,6 +144,11 @@ class RaceSlopes:
 
     inner: TractionCurve | RaceSlope
     outer: TractionCurve | RaceSlope
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the contacts leave the range of their model, a sentence each."""
+        return (*self.inner.notes, *self.outer.notes)
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -223,7 +233,7 @@ SHOULDER: Ratio = 0.2
 def beyond_contacts(
     bearing: BallBearing, found: Equilibrium, ellipses: dict[Race, ContactEllipse], *, turns: bool
 ) -> Iterator[str]:
-    """Sentences to warn with, from the equilibrium and the ellipses of the most loaded ball."""
+    """Sentences, from the equilibrium and the ellipses of the most loaded ball."""
     race, most = max(((r, e.max_pressure) for r, e in ellipses.items()), key=lambda pair: pair[1])
     if most > STATIC_PRESSURE:
         yield (

@@ -188,6 +188,7 @@ def exact_curve(track: RaceTrack, settings: TractionSettings, plain: TractionCur
         slope_error=found.slope_error,
         free_rolling_offset=found.free_rolling_offset,
         nodes=COLUMNS[1],
+        notes=found.notes,
     )
 
 

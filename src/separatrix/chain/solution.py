@@ -6,7 +6,6 @@ unfavourable ball.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -36,7 +35,7 @@ from separatrix.chain.pocket_friction import (
     pocket_conditions,
     pocket_speed,
 )
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
@@ -83,22 +82,17 @@ class Solution:
     study: Study
     candidate: Candidate | None = None
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the links that were solved leave the range of their model, a sentence each."""
+        links = (vars(self).get(name) for name in ("bearing", "clearances", "traction", "slopes", "mobility"))
+        return tuple(dict.fromkeys(note for one in links if one is not None for note in one.notes))
+
     @cached_property
     def bearing(self) -> BearingState:
-        """Equilibrium, and the contacts of the most loaded ball.
-
-        Warns
-        -----
-        ValidityWarning
-            A contact leaves what races bear or what the model holds.
-        """
+        """Equilibrium, and the contacts of the most loaded ball."""
         asked = self.study
-        state = bearing_state(
-            asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction
-        )
-        for sentence in state.notes:
-            warnings.warn(sentence, ValidityWarning, stacklevel=2)
-        return state
+        return bearing_state(asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction)
 
     @cached_property
     def traction(self) -> RaceTraction:
@@ -111,7 +105,7 @@ class Solution:
         """
         asked = self.study
         require_rolling(asked)
-        _ = self.bearing  # its warnings
+        _ = self.bearing  # its notes
         return race_traction(
             asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction
         )
@@ -121,7 +115,7 @@ class Solution:
         """Slopes of both traction curves at free rolling; refused as `traction` is."""
         asked = self.study
         require_rolling(asked)
-        _ = self.bearing  # its warnings
+        _ = self.bearing  # its notes
         return race_slopes(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @property
@@ -207,19 +201,13 @@ class Solution:
 
     @cached_property
     def mobility(self) -> Mobility:
-        """How the races let the most loaded ball be pushed along its orbit; refused as `traction` is.
-
-        Warns
-        -----
-        ValidityWarning
-            The film is worn: the slip fields have one friction throughout.
-        """
+        """How the races let the most loaded ball be pushed along its orbit; refused as `traction` is."""
         asked = self.study
         require_rolling(asked)
-        _ = self.bearing  # its warnings
-        if asked.film.wear is not None:
-            warnings.warn(WORN_MOBILITY, ValidityWarning, stacklevel=2)
-        return mobility(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
+        _ = self.bearing  # its notes
+        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
+        found = mobility(*records)
+        return found if asked.film.wear is None else replace(found, notes=(WORN_MOBILITY, *found.notes))
 
     @cached_property
     def free_ball(self) -> tuple[FreeBall, tuple[float, float, float]]:

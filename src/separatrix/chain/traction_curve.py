@@ -6,7 +6,6 @@ A contact is solved in units of its saturation creep.
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -29,7 +28,7 @@ from separatrix.chain.traction_ellipse import (
     resultant,
 )
 from separatrix.ground.compiled import kernel
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Metre, Ratio, format_quantity
 
 NODES = (200, 400, 800)  # elements a strip of the coarser of two solutions; the finer one has twice as many
@@ -177,6 +176,7 @@ class TractionCurve:
     free_rolling_offset: Ratio
     spin_roll_ratio: Ratio
     nodes: int
+    notes: tuple[str, ...] = ()  # where the film leaves the range of its model, a sentence each
 
 
 def traction_curve(
@@ -207,7 +207,7 @@ def traction_curve(
     creep_increments : array or None
         Where to compute, shape (case,) [-]; None takes 41 points that span saturation both ways.
     film_thickness : float
-        Total thickness of the film [m]; only to warn where the film in series is out of its range.
+        Total thickness of the film [m]; only to note where the film in series is out of its range.
     tolerance : float
         Relative error of the slope above which strips are refined, from 400 to at most 1600 elements [-].
 
@@ -221,17 +221,13 @@ def traction_curve(
     InputError
         A negative or non-finite number.
 
-    Warns
-    -----
-    ValidityWarning
-        The film in series is thicker than 0.03 of the semi-minor axis.
-
     Notes
     -----
     Paper, Eqs 2, 12-15 and Fig. 7, with the rolling entry condition (docs/theory/traction.md). Odd in the
     increment if the creep is pure spin or none, and the track symmetric; bounded by race_friction.
     """
-    case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness)
+    check_film(race_friction=race_friction, film_compliance=film_compliance, film_thickness=film_thickness)
+    case = scaled_contact(ellipse, creep, race_friction, film_compliance)
     slope, error, nodes = (0.0, 0.0, 200) if case.idle else case.refined_slope(tolerance)
     table = film_tables(nodes)[0]
     offset = case.offset(table)
@@ -251,6 +247,7 @@ def traction_curve(
         free_rolling_offset=offset * case.saturation,
         spin_roll_ratio=creep.spin / ellipse.curvature_rolling,
         nodes=2 * nodes,
+        notes=_not_thin(film_thickness, ellipse.semi_minor),
     )
 
 
@@ -260,31 +257,22 @@ def traction_slope(
     *,
     race_friction: Ratio | Profile,
     film_compliance: float | Profile,
-    film_thickness: Metre = 0.0,
     tolerance: Ratio = TOLERANCE,
 ) -> tuple[Ratio, Ratio]:
     """Slope alpha of the curve at the origin and a bound of its numerical error [-]; see `traction_curve`."""
-    case = _checked_case(ellipse, creep, race_friction, film_compliance, film_thickness)
+    check_film(race_friction=race_friction, film_compliance=film_compliance)
+    case = scaled_contact(ellipse, creep, race_friction, film_compliance)
     return (0.0, 0.0) if case.idle else case.refined_slope(tolerance)[:2]
 
 
-def _checked_case(
-    ellipse: ContactEllipse,
-    creep: Creep,
-    friction: Ratio | Profile,
-    compliance: float | Profile,
-    thickness: Metre,
-) -> ScaledContact:
-    check_film(race_friction=friction, film_compliance=compliance, film_thickness=thickness)
-    if thickness > THIN * ellipse.semi_minor > 0.0:
-        warnings.warn(
-            f"film of {format_quantity(thickness, 'm', 3)} is {thickness / ellipse.semi_minor:.3g} of the "
-            f"semi-minor axis: a film in series with the half-planes is valid up to {THIN:g} "
-            "(docs/theory/traction.md).",
-            ValidityWarning,
-            stacklevel=3,
-        )
-    return scaled_contact(ellipse, creep, friction, compliance)
+def _not_thin(thickness: Metre, semi_minor: Metre) -> tuple[str, ...]:
+    """A sentence where a film is too thick to be in series."""
+    if not thickness > THIN * semi_minor > 0.0:
+        return ()
+    return (
+        f"film of {format_quantity(thickness, 'm', 3)} is {thickness / semi_minor:.3g} of the semi-minor "
+        f"axis: a film in series with the half-planes is valid up to {THIN:g} (docs/theory/traction.md).",
+    )
 
 
 def check_film(**values: float | Profile) -> None:

@@ -40,7 +40,7 @@ NOT_RESULTS = frozenset(
         "units",
     }
     | {"complete", "reason", "static_reason", "outcome_sentence", "paper_statement"}
-    | {"words", "ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"}
+    | {"words", "ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race"}
 )
 """Inputs, sentences that follow from numbers, and single drawn bearings."""
 

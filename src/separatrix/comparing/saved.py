@@ -116,7 +116,7 @@ def arrays(found: Document, where: str) -> xr.Dataset | None:
     """
     if found.get("complete") is False or "units" not in found:
         return None
-    from separatrix.present.dataset_arrays import dataset
+    from separatrix.present.dataset import dataset
 
     try:
         return dataset(found)

@@ -13,7 +13,7 @@ from separatrix.comparing.saved import Saved, arrays
 from separatrix.ground.errors import InputError, harmless, json_text
 from separatrix.ground.plain_data import plain
 from separatrix.ground.units import printable
-from separatrix.present.text.tables import (
+from separatrix.told.tables import (
     ABSENT,
     facts,
     heading,

@@ -31,8 +31,8 @@ from separatrix.figures.style import (
     with_ends,
 )
 from separatrix.ground.units import Array, format_quantity
-from separatrix.present.text.sentences import deciding
-from separatrix.present.text.tables import interval, number, significant
+from separatrix.told.sentences import deciding
+from separatrix.told.tables import interval, number, significant
 
 FACTOR, PROBABILITY, FREQUENCY, TIME = r"$\eta$ [-]", "P(stable) [-]", "frequency [Hz]", "time [%]"
 HEIGHTS = {FACTOR: 1.5, PROBABILITY: 1.1, FREQUENCY: 1.9, TIME: 0.8}

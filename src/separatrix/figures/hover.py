@@ -23,8 +23,8 @@ from separatrix.figures.stability import (
     own_point,
 )
 from separatrix.figures.style import BLACK, BLUE, CYCLE, GREY, VERDICT_COLOURS, VERMILION, Json, with_ends
-from separatrix.present.text.sentences import pocket_force
-from separatrix.present.text.tables import ABSENT, interval, number, significant
+from separatrix.told.sentences import pocket_force
+from separatrix.told.tables import ABSENT, interval, number, significant
 
 Floats = tuple[float | None, ...]
 """Numbers along a series; None where there is none."""

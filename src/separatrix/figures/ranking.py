@@ -37,7 +37,7 @@ from separatrix.figures.style import (
     study_of,
     with_ends,
 )
-from separatrix.present.text.sentences import rank_texts
+from separatrix.told.sentences import rank_texts
 
 VERDICT_AT, RIGHT = 1.05, 1.24
 """Column of the verdicts in the overview, beyond the axis, and the end of the picture."""

@@ -26,7 +26,7 @@ from separatrix.figures.style import (
     legend_above,
 )
 from separatrix.ground.units import Array
-from separatrix.present.text.sentences import pocket_force
+from separatrix.told.sentences import pocket_force
 
 MICRO = "\N{MICRO SIGN}"
 UNITS = ((1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, f"{MICRO}J"))

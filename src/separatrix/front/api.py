@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from separatrix.chain.contacts import BearingState
-from separatrix.ground.errors import ValidityWarning, grouped, noted_warnings
+from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.reading import read_study, require
 from separatrix.study.study import Study
-from separatrix.verbs import computed, verb_named
+from separatrix.verbs import Computed, computed, verb_named
 from separatrix.verbs.answer_records import (
     CheckAnswer,
     MapAnswer,
@@ -25,7 +25,6 @@ from separatrix.verbs.answer_records import (
     StabilityAnswer,
     TractionAnswer,
 )
-from separatrix.verbs.sensitivity import SAMPLES
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
 from separatrix.verdict.swept_cases import Sweep
@@ -35,9 +34,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from separatrix.comparing.records import Comparison
-    from separatrix.ground.plain_data import Document
-    from separatrix.reporting.record import Report
+    from separatrix.present.blocks import Page
+    from separatrix.verbs.report import Report
 
 Record = TypeVar("Record")
 
@@ -55,8 +53,7 @@ class Answer(Generic[Record]):
     verb: str
     record: Record
     study: Study
-    notes: tuple[str, ...]
-    question: Mapping[str, object] = field(default_factory=dict)
+    computed: Computed = field(repr=False)
 
     def __getattr__(self, name: str) -> Any:
         """Name of the record."""
@@ -68,21 +65,45 @@ class Answer(Generic[Record]):
         """Verb and study; `summary` has the answer."""
         return f"<{self.verb} of {self.study.name}: summary(), to_dataframe(), to_xarray(), plot()>"
 
-    def document(self) -> Document:
-        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+    def _repr_html_(self) -> str:
+        """The page of the answer, as a notebook shows it."""
+        from separatrix.present.html import html
+
+        return html(self.page())
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where a model leaves its range, a sentence each."""
+        from separatrix.verbs.answer_files import notes_of
+
+        return notes_of(self.record, self.study)
+
+    @cached_property
+    def _document(self) -> Document:
         from separatrix.verbs.answer_files import document
 
-        return document(self.verb, self.record, self.study, list(self.notes), self.question)
+        return document(verb_named(self.verb), self.computed)
+
+    def document(self) -> Document:
+        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+        return self._document
+
+    def page(self) -> Page:
+        """Page of blocks: what text, report, workbook and local page show."""
+        from separatrix.verbs.answer_files import page_of_document
+
+        return page_of_document(verb_named(self.verb), self.document())
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.present.text.answer import in_words
+        from separatrix.present.blocks import Level
+        from separatrix.present.text import text
 
-        return in_words(self.verb, self.record, self.study, list(self.notes), full=full)
+        return text(self.page(), Level.FULL if full else Level.BRIEF)
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
-        from separatrix.present.dataset_arrays import dataset
+        from separatrix.present.dataset import dataset
 
         return dataset(self.document())
 
@@ -94,24 +115,19 @@ class Answer(Generic[Record]):
 
     def plot(self, name: str | None = None) -> Figure:
         """Return the first figure of the answer, or the one whose file has this name."""
-        from separatrix.figures import plot
+        from separatrix.present.draw import plot
 
-        return plot(self.verb, self.to_xarray(), name)
+        return plot(self.page(), name)
 
 
-def _answer(verb: str, study: Asked, question: Mapping[str, object] | None = None, **how: Any) -> Answer[Any]:
-    """Answer of a verb with its notes, which are warnings for the caller, too; `how` is as for `computed`."""
-    with noted_warnings() as notes:
-        asked = study if isinstance(study, Study) else read_study(study)
-        require(asked, verb, *verb_named(verb).needs)
-        found = computed(verb_named(verb), asked, question or {}, **how)
-    answer = Answer(
-        verb=verb, record=found.record, study=asked, notes=tuple(grouped(notes)), question=found.question
-    )
+def _answer(verb: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
+    """Answer of a verb; `how` is as for `computed`."""
+    asked, known = study if isinstance(study, Study) else read_study(study), verb_named(verb)
+    require(asked, verb, *known.needs)
+    found = computed(known, asked, known.options(**(options or {})), **how)
+    answer = Answer(verb=verb, record=found.record, study=asked, computed=found)
     if not found.is_complete:
         raise Interrupted(answer)
-    for note in answer.notes:
-        warnings.warn(note, ValidityWarning, stacklevel=3)
     return answer
 
 
@@ -147,7 +163,7 @@ def simulate(
     run: int = 0,
     restitution_factor: str | Ratio | None = None,
 ) -> Answer[SimulationAnswer]:
-    """One run of the cage, from an initial disturbance in text with a unit or [m/s]: see `verbs.simulate`."""
+    """One run of the cage, from an initial disturbance in text with a unit or [m/s]."""
     question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
     return _answer("simulate", study, question)
 
@@ -199,7 +215,7 @@ def map(
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Answer[MapAnswer]:
-    """Where the cage is stable in the plane of two parameters: see `verbs.map`, `stability` for the rest."""
+    """Where the cage is stable in the plane of two parameters: see `stability` for the rest."""
     question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
     return _answer("map", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
@@ -219,7 +235,7 @@ def rank(
 def sensitivity(
     study: Asked,
     *,
-    samples: int = SAMPLES,
+    samples: int = 512,
     jobs: int | None = None,
     folder: str | Path | None = None,
     cluster: str | None = None,
@@ -244,13 +260,13 @@ def sweep(
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Answer[Sweep]:
-    """Chain and verdict of many cases: see `verbs.sweep`, and `stability` for the other parameters."""
+    """Chain and verdict of many cases: see `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
     question = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
     return _answer("sweep", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 
-def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Comparison:
+def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Document:
     """Two answers of one verb: what differs, and whether by more than counting noise.
 
     Parameters
@@ -263,15 +279,15 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     InputError
         One of them is not an answer, or they are of different verbs.
     """
-    from separatrix.comparing.pair import compared, pair_of
-    from separatrix.comparing.saved import Saved, read_answers
+    from separatrix.verbs.compare import compared
+    from separatrix.verbs.saved_answers import read_answers
 
-    def saved(one: Answer[Any] | str | Path) -> dict[str, Saved]:
-        if not isinstance(one, Answer):
-            return read_answers(Path(one))
-        return {one.verb: Saved(path=one.study.name, verb=one.verb, document=one.document())}
-
-    return compared(*pair_of(saved(first), saved(second)))
+    sides = [
+        {one.verb: one.document()} if isinstance(one, Answer) else read_answers(Path(one))
+        for one in (first, second)
+    ]
+    names = [one.study.name if isinstance(one, Answer) else str(one) for one in (first, second)]
+    return compared(*sides, names=(names[0], names[1]))
 
 
 def report(
@@ -286,14 +302,14 @@ def report(
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.reporting.content import answers_of, report_of
-    from separatrix.reporting.record import Kept
+    from separatrix.verbs.report import add_missing, report_of, wanted
 
     asked = study if isinstance(study, Study) else read_study(study)
+    found: dict[str, Document] = {}
 
-    def compute(verb: str) -> Kept:
+    def compute(verb: str) -> Document:
         answer = _answer(verb, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
-        return Kept(answer.document())
+        return answer.document()
 
-    kept, missing, _ = answers_of(asked, None, compute)
-    return report_of(kept, missing)
+    missing = add_missing(found, wanted(asked), compute)
+    return report_of(found, missing)

@@ -1,29 +1,56 @@
-"""The command line: its commands with their help, `new` and `app` among them, and the form of a refusal."""
+"""The command line: its commands with their help, those on files among them, and the form of a refusal."""
 
 from __future__ import annotations
 
 import contextlib
 import json as plain_json
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from separatrix.front import (
-    commands_without_bearing as without_bearing,
+from separatrix.front.commands import (
+    ANSWERED,
+    Jobs,
+    Json,
+    Quiet,
+    command_of,
+    compute_tool,
+    computed_with_progress,
+    deliver_tool,
+    folder,
+    named,
+    options_of,
+    save_tool,
+    signature,
+    threads,
+    tool_command,
+    whole_number,
 )
-from separatrix.front import report_command as reporting
-from separatrix.front import (
-    saved_answer_commands as saved_answers,
+from separatrix.front.console import (
+    answer,
+    answer_json,
+    breakable,
+    complain,
+    interrupted,
+    interruptible,
+    progress_bar,
 )
-from separatrix.front.console import answer, complain
-from separatrix.front.verb_commands import ANSWERED, Json, command_of, whole_number
-from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.files import refuse_existing, write_new
-from separatrix.verbs import VERBS
+from separatrix.ground.errors import InputError, SeparatrixError, harmless
+from separatrix.ground.files import refuse_existing, staged, writable_folder, write_new
+from separatrix.ground.units import printable, shown
+from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
+
+if TYPE_CHECKING:
+    from separatrix.friction.log_series import ReducedLogs
+    from separatrix.ground.document import Document
+    from separatrix.study.study import Study
+    from separatrix.verbs.report import Report
+    from separatrix.verbs.verb import Tool
 
 FAULT, WRONG_INPUT = 1, 2
 
@@ -35,13 +62,22 @@ separatrix rank cryogenic-turbopump
 """
 PAGE = "Open the page: edit, run and look at the studies of a folder in a browser."
 PAGE_EPILOG = (
-    "It is served on 127.0.0.1 only, to who has the link that is printed; nothing leaves this machine. Jobs "
-    "keep their finished runs: a page that is ended in the middle of one goes on when it is asked again. "
-    'Needs the extra app: pip install "separatrix[app]".'
+    "Only this computer can open the page, by the printed link. If you stop the page during a job, start the "
+    'job again to resume it. Needs the extra app: pip install "separatrix[app]".'
 )
 FOLDER_HELP = "Where the studies are [default: here]."
-NEEDED = ("fastapi", "uvicorn", "plotly", "tomlkit")
+NEEDED = ("starlette", "uvicorn", "plotly")
 MOST_PORT = 65535
+
+REPORT = "Everything on one study as a document: HTML, and PDF with --pdf."
+REPORT_EPILOG = (
+    "Of a folder: from the answers in it; nothing long is computed. Of a study: bearing, traction, "
+    "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
+    "same inputs that are there already are taken. The HTML needs no other file and no network."
+)
+ASKED_HELP = "A study, or a folder of answers."
+REPORT_OUT = "Folder of the report [default: that of the answers; none with --json]."
+PDF_HELP = "Also write report.pdf; needs the extra pdf."
 
 
 def _new(
@@ -76,14 +112,14 @@ def _new(
 
 
 def _page(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help=FOLDER_HELP, show_default=False)] = Path(
+    place: Annotated[Path, typer.Argument(metavar="FOLDER", help=FOLDER_HELP, show_default=False)] = Path(
         "."
     ),
     port: Annotated[int | None, whole_number("Port to listen on [default: any that is free].")] = None,
     open_it: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
 ) -> int:
-    if not folder.is_dir():
-        raise InputError(str(folder), "is not a folder", cure="Name the folder of your studies.")
+    if not place.is_dir():
+        raise InputError(str(place), "is not a folder", cure="Name the folder of your studies.")
     if port is not None and not 1 <= port <= MOST_PORT:
         raise InputError("--port", f"must lie between 1 and {MOST_PORT}", got=str(port))
     if lacking := [name for name in NEEDED if find_spec(name) is None]:
@@ -91,8 +127,8 @@ def _page(
         raise InputError("separatrix app", f"needs {', '.join(lacking)}", cure=cure)
     from separatrix.front.page.server import Server
 
-    server = Server(folder.resolve(), port=port or 0)
-    answer(f"The page of {folder.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
+    server = Server(place.resolve(), port=port or 0)
+    answer(f"The page of {place.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
     if open_it:
         webbrowser.open(server.link)
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
@@ -100,27 +136,258 @@ def _page(
     return ANSWERED
 
 
+# The report.
+
+
+@interruptible("no report was written.")
+def _report(
+    asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=ASKED_HELP)],
+    pdf: Annotated[bool, typer.Option("--pdf", help=PDF_HELP)] = False,
+    json: Json = False,
+    out: Annotated[str | None, typer.Option(metavar="DIR", help=REPORT_OUT)] = None,
+    quiet: Quiet = False,
+    jobs: Jobs = None,
+) -> int:
+    """Write the report of a study or of a folder, and return the exit status."""
+    to, compute = folder(out), partial(computed_with_progress, options=None, quiet=quiet, jobs=threads(jobs))
+    if pdf:
+        from separatrix.present.pdf import typesetter
+
+        if json and to is None:
+            raise InputError("--pdf", "needs a folder with --json", cure="Give --out DIR.")
+        typesetter()
+    from separatrix.study.reading import read_study
+    from separatrix.study.study import shipped_studies
+
+    writes = to is not None or not json
+    with contextlib.ExitStack() as stack:
+        is_folder = Path(asked).is_dir() and asked not in shipped_studies()
+        study = None if is_folder else read_study(asked)
+        usual = Path(asked) if study is None else Path(study.name)
+        place = stack.enter_context(writable_folder(to or usual)) if writes else None
+        place = (to or usual) if writes else None
+        made = _of_folder(usual, compute) if study is None else _of_study(study, place, compute)
+        if made is None:
+            return interrupted("no report was written. Run the same command to resume.")
+        files = [] if place is None else made.write(place, with_pdf=pdf)
+        if json:
+            answer_json(made.document(files))
+        else:
+            lines = [harmless(made.summary())]
+            if files and not quiet:
+                lines += ["", f"The report is {' and '.join(map(str, files))}"]
+            answer("\n".join(lines) + "\n")
+    return ANSWERED
+
+
+def _kept(compute: Callable[..., Any], study: Study, place: Path | None, verb: str) -> Document:
+    """Compute an answer; its files are written if there is a folder, without figures."""
+    from separatrix.study.reading import require
+    from separatrix.verbs.answer_files import document, save_answer
+
+    asked = verb_named(verb)
+    require(study, verb, *asked.needs)
+    found = document(asked, compute(asked, study, folder=place))
+    if place is not None:
+        save_answer(place, asked, found, pictures=False)
+    return found
+
+
+def _of_study(study: Study, place: Path | None, compute: Callable[..., Any]) -> Report | None:
+    """Return the report of a study; None if that was interrupted."""
+    from separatrix.verbs.report import add_missing, is_answer_to, report_of, wanted
+    from separatrix.verbs.saved_answers import VERBS as SAVED
+    from separatrix.verbs.saved_answers import read_answer
+
+    kept = {verb: place / f"{verb}.json" for verb in SAVED} if place is not None else {}
+    known = {verb: read_answer(path) for verb, path in kept.items() if path.exists()}
+    found = {verb: one for verb, one in known.items() if is_answer_to(one, study)}
+    missing = add_missing(found, wanted(study), partial(_kept, compute, study, place))
+    if any(one.get("complete") is False for one in found.values()):
+        return None
+    return report_of(found, missing, str(place or study.name))
+
+
+def _of_folder(place: Path, compute: Callable[..., Any]) -> Report:
+    """Return the report of a folder, with what its chain lacks if its study can be read back."""
+    from separatrix.verbs.report import CHAIN, add_missing, report_of, wanted
+    from separatrix.verbs.saved_answers import read_folder
+
+    found, missing = read_folder(place), list[str]()
+    study = _read_back(next(iter(found.values())))
+    if study is not None:
+        lacking = [verb for verb in wanted(study) if verb in CHAIN]
+        missing = add_missing(found, lacking, partial(_kept, compute, study, None))
+    return report_of(found, missing, str(place))
+
+
+def _read_back(found: Document) -> Study | None:
+    """Return the study of an answer, from what it keeps; None where that has another one."""
+    from separatrix.ground.plain_data import plain
+    from separatrix.study.reading import study_again
+    from separatrix.study.sources import resolved
+
+    try:
+        study = study_again(found["provenance"]["study"])
+    except (InputError, KeyError, TypeError):  # it keeps no study, or that of another version
+        return None
+    return study if plain(resolved(study), "study") == found["study"] else None
+
+
+# Tools that write files.
+
+
+def _comparing(tool: Tool) -> Callable[..., int]:
+    """Return the command that compares two answers, and writes document, text and pictures."""
+
+    @interruptible("nothing was compared.")
+    def command(**given: Any) -> int:
+        to = folder(given["out"]) or (None if given["json"] else Path("compare"))
+        with contextlib.nullcontext() if to is None else writable_folder(to):
+            found = compute_tool(tool, given)
+            if to is not None:
+                save_tool(to, tool, found)
+        deliver_tool(tool, found, given)
+        if to is not None and not given["json"] and not given["quiet"]:
+            answer(f"\nText, data and figures are in {to}/\n")
+        return ANSWERED
+
+    command.__signature__ = signature(tool.shown_options(), "full", "json", "out", "quiet")  # type: ignore[attr-defined]
+    return command
+
+
+FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
+PLOTS_HELP = "Folder of a picture for each test [default: beside the friction file]."
+WRITTEN: dict[str, tuple[Any, Any]] = {
+    "out": (Annotated[str | None, typer.Option(metavar="FILE", help=FRICTION_HELP)], None),
+    "plots": (Annotated[str | None, typer.Option(metavar="DIR", help=PLOTS_HELP)], None),
+}
+
+
+def _reducing(tool: Tool) -> Callable[..., int]:
+    """Return the command that reduces logs, and writes a friction file and pictures of the tests."""
+
+    @interruptible("no friction file was written.")
+    def command(**given: Any) -> int:
+        to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
+        if to is not None:
+            _refuse_out(to)
+            pages = pages or to.with_name(f"{to.stem}-plots")
+        with contextlib.ExitStack() as folders:
+            for one in (to and to.parent, pages):
+                if one is not None:
+                    folders.enter_context(writable_folder(one))
+            found = _reduced(tool, given, to)
+            if pages is not None:
+                save_tool(pages, tool, found, pictures_only=True)
+            deliver_tool(tool, found, given)
+            if pages is not None and not given["json"] and not given["quiet"]:
+                answer(f"\nPictures of the tests are in {pages}/\n")
+        return ANSWERED
+
+    beside = ("full", "json", "quiet", "jobs")
+    command.__signature__ = signature(tool.shown_options(), *beside, more=WRITTEN)  # type: ignore[attr-defined]
+    return command
+
+
+def _reduced(tool: Tool, given: Mapping[str, Any], to: Path | None) -> Document:
+    """Compute the document of logs, and write their friction file; a draft of a map if one is needed."""
+    from separatrix.friction.logs import UnmappedError
+    from separatrix.verbs.tribometer import document, reduced
+
+    try:
+        if to is None:
+            return compute_tool(tool, given)
+        options, count = options_of(tool, given), threads(given["jobs"])
+        with progress_bar(tool.name, quiet=given["quiet"]) as progress:
+            found: ReducedLogs = breakable(partial(reduced, options, count, progress, complete=True))
+    except UnmappedError as error:
+        raise error.with_draft_written() from None
+    if found.friction_tests is not None:
+        from separatrix.friction.friction_file import friction_text
+
+        with staged(to.parent) as stage:
+            (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
+            refuse_existing(to)  # it may have been made since the first check
+    return document(found, str(to))
+
+
+def _refuse_out(out: Path) -> None:
+    try:
+        is_folder = out.is_dir()
+    except OSError as error:
+        where = f"--out {printable(str(out), 200)}"
+        raise InputError(where, "cannot be written", error.strerror or type(error).__name__) from None
+    if out.suffix != ".toml" or is_folder:
+        cure = 'Name a file like "friction.toml".'
+        raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
+    refuse_existing(out)
+
+
+OWN: dict[str, Callable[[Tool], Callable[..., int]]] = {"compare": _comparing, "tribometer": _reducing}
+"""Tools whose command writes files."""
+
+
+def _new_application() -> typer.Typer:
+    return typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+def _command(name: str) -> Any:
+    """Return a command; only its own module is loaded."""
+    app = _new_application()
+    if name == "materials":
+        from separatrix.verbs.materials import LIST, SHOW
+
+        app.callback(help=OTHERS[name])(lambda: None)
+        for tool in (LIST, SHOW):
+            app.command(tool.name.split()[-1], help=tool.help, epilog=tool.epilog)(tool_command(tool))
+    elif name in VERBS:
+        verb = verb_named(name)
+        app.command(name, help=VERBS[name], epilog=verb.epilog)(command_of(verb))
+    elif name in TOOLS:
+        tool = tool_named(name)
+        app.command(name, help=TOOLS[name], epilog=tool.epilog)(OWN.get(name, tool_command)(tool))
+    else:
+        own: dict[str, tuple[Callable[..., int], str | None]] = {
+            "new": (_new, None),
+            "report": (_report, REPORT_EPILOG),
+            "app": (_page, PAGE_EPILOG),
+        }
+        command, epilog = own[name]
+        app.command(name, help=OTHERS[name], epilog=epilog)(command)
+    return typer.main.get_command(app)
+
+
+OTHERS = {
+    "new": "Write a commented study file to fill in.",
+    "report": REPORT,
+    "app": PAGE,
+    "materials": "The library of materials.",
+}
+COMMANDS = {"new": OTHERS["new"], **VERBS, **TOOLS, **OTHERS}
+"""Command -> its line of help, in the order of the chain."""
+
+
+class _Commands(typer.core.TyperGroup):
+    """The commands by name, each made when it is asked for: the list of them loads none."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return [*COMMANDS]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        return _command(cmd_name) if cmd_name in COMMANDS else None
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([*COMMANDS.items()])
+
+
 def _application() -> typer.Typer:
-    """Return the command line, with the verbs in the order of the chain."""
-    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    """Return the command line."""
+    app = typer.Typer(
+        cls=_Commands, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
+    )
     app.callback(invoke_without_command=True, help=HELP)(_start)
-    app.command("new", help="Write a commented study file to fill in.")(_new)
-    for verb in VERBS:
-        app.command(verb.name, help=verb.help, epilog=verb.epilog)(command_of(verb))
-    for name, command, text, epilog in (
-        (
-            "tribometer",
-            without_bearing.tribometer,
-            without_bearing.TRIBOMETER,
-            without_bearing.TRIBOMETER_EPILOG,
-        ),
-        ("compare", saved_answers.compare, saved_answers.COMPARE, saved_answers.COMPARE_EPILOG),
-        ("reproduce", saved_answers.reproduce, saved_answers.REPRODUCE, saved_answers.REPRODUCE_EPILOG),
-        ("report", reporting.report, reporting.HELP, reporting.EPILOG),
-        ("app", _page, PAGE, PAGE_EPILOG),
-    ):
-        app.command(name, help=text, epilog=epilog)(command)
-    app.add_typer(without_bearing.materials_application(), name="materials", help=without_bearing.MATERIALS)
     return app
 
 
@@ -134,9 +401,9 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        others = ("tribometer", "compare", "reproduce", "report", "app", "materials")
-        verbs = ", ".join(["new", *(verb.name for verb in VERBS), *others])
-        raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
+        raise InputError(
+            "The command", f"is missing; choose one of {', '.join(COMMANDS)}", cure='Try "separatrix --help".'
+        )
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-import threading
 import unicodedata
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TextIO
 
 
 class SeparatrixError(Exception):
@@ -85,10 +82,6 @@ class DataError(SeparatrixError, LookupError):
         return str(self.args[0]) if self.args else ""
 
 
-class ValidityWarning(UserWarning):
-    """A model is used outside the range its source gives; the numbers are returned."""
-
-
 _SUSPECT = re.compile(r"[^\n\x20-\x7e]")
 
 
@@ -129,34 +122,6 @@ def json_text(value: object, line: str = "\n") -> str:
 def grouped(notes: Iterable[str]) -> list[str]:
     """Return the first of the sentences that differ in numbers only, and how many more there are."""
     alike: dict[str, list[str]] = {}
-    for note in notes:
+    for note in dict.fromkeys(notes):
         alike.setdefault(re.sub(r"[0-9][0-9.e+-]*", "0", note), []).append(note)
     return [f"{n[0]} (And {len(n) - 1} more with other numbers.)" if n[1:] else n[0] for n in alike.values()]
-
-
-@contextmanager
-def noted_warnings() -> Iterator[list[str]]:
-    """Collect warnings of validity, each sentence once; other warnings take their usual way."""
-    notes: list[str] = []
-    one_at_a_time = threading.Lock()  # threads of a pool warn too
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", ValidityWarning)
-        usual = warnings.showwarning
-
-        def note(
-            message: Warning | str,
-            category: type[Warning],
-            filename: str,
-            lineno: int,
-            file: TextIO | None = None,
-            line: str | None = None,
-        ) -> None:
-            if not issubclass(category, ValidityWarning):
-                usual(message, category, filename, lineno, file, line)
-                return
-            with one_at_a_time:
-                if str(message) not in notes:
-                    notes.append(str(message))
-
-        warnings.showwarning = note  # put back by catch_warnings
-        yield notes

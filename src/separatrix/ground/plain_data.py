@@ -11,9 +11,13 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
+from separatrix.ground.document import Document as Document
 from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Rows
+
+NOTES = "notes"
+"""Field of a record that its node leaves out: an answer gathers them as its warnings."""
 
 
 class Leaf(NamedTuple):
@@ -143,7 +147,7 @@ def _item(value: object, kind: _Kind) -> Item:
 @functools.cache
 def _kinds(record: type) -> dict[str, _Kind]:
     hints = get_type_hints(record, include_extras=True)
-    return {field.name: _kind(hints[field.name]) for field in fields(record)}
+    return {one.name: _kind(hints[one.name]) for one in fields(record) if one.name != NOTES}
 
 
 def _kind(hint: object) -> _Kind:
@@ -157,10 +161,6 @@ def _kind(hint: object) -> _Kind:
         unit = unit or next((one.unit for one in inside if one.unit is not None), None)
         axes = axes or next((one.axes for one in inside if one.axes is not None), None)
     return _Kind(unit, axes, rows)
-
-
-Document = dict[str, Any]
-"""Plain data of an answer, of a study, or of a part of one: text, numbers, None, lists and dictionaries."""
 
 
 class NotFiniteError(SeparatrixError, ArithmeticError):

@@ -42,6 +42,7 @@ Second = Annotated[float, "s"]
 Hertz = Annotated[float, "Hz"]
 Radian = Annotated[float, "rad"]
 RadianPerSecond = Annotated[float, "rad/s"]
+MetreRadianPerSecond = Annotated[float, "m rad/s"]
 Kilogram = Annotated[float, "kg"]
 KilogramMetre = Annotated[float, "kg m"]
 KilogramMetre2 = Annotated[float, "kg m2"]
@@ -346,6 +347,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "s": ((1e-6, "us"), (1e-3, "ms"), (1.0, "s")),
     "rad": ((math.pi / 180, "deg"),),
     "rad/s": ((math.pi / 30, "rpm"),),
+    "m rad/s": ((1e3 * math.pi / 30, "million mm rpm"),),
     "Hz": ((1.0, "Hz"), (1e3, "kHz")),
     "kg": ((1e-6, "mg"), (1e-3, "g"), (1.0, "kg")),
     "N": ((1e-6, "uN"), (1e-3, "mN"), (1.0, "N"), (1e4, "kN")),
@@ -375,7 +377,7 @@ def format_quantity(value: float | None, unit: str, digits: int = 4) -> str:
         return "none"
     if unit == "-":
         return format_number(value, digits)
-    size, symbol = _readable(abs(value), unit)
+    size, symbol = readable(abs(value), unit)
     return f"{format_number(value / size, digits)} {symbol}"
 
 
@@ -389,7 +391,10 @@ def format_number(value: float, digits: int = 4) -> str:
     return f"{rounded:.{digits}g}"
 
 
-def _readable(size: float, unit: str) -> tuple[float, str]:
+def readable(size: float, unit: str, wanted: str = "") -> tuple[float, str]:
+    """Return the unit that suits a number of this size [SI], or the wanted one: its size and its symbol."""
+    if wanted:
+        return parse(f"1 {wanted}", unit), wanted
     choices = _READABLE.get(unit, ((1.0, unit),))
     if size == 0.0:
         return next((c for c in choices if c[1] == HABITS.get(unit)), choices[0])

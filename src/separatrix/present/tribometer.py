@@ -18,8 +18,8 @@ from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.reduction import Reduction, TestFriction
 from separatrix.ground.plain_data import Document, Leaf, plain
 from separatrix.ground.units import Array
-from separatrix.present.dataset_arrays import variable
-from separatrix.present.text.tables import ABSENT, heading, paragraph, quantity, section, table
+from separatrix.present.dataset import variable
+from separatrix.told.tables import ABSENT, heading, paragraph, quantity, section, table
 
 Node = dict[str, Leaf]
 

@@ -20,13 +20,13 @@ from separatrix.comparing.shown import (
     result_words,
     shown_rows,
 )
-from separatrix.ground.errors import InputError, grouped, noted_warnings
-from separatrix.present.text.sentences import deciding, margin, probability, time_shares, verdict
+from separatrix.ground.errors import InputError
 from separatrix.reporting.evidence import evidence, inputs, outside, provenance, uncertainty
 from separatrix.reporting.first_page import first_page
 from separatrix.reporting.pictures import picture, picture_of
 from separatrix.reporting.record import Block, Facts, Kept, Paragraph, Report, Row, Section, Table, quantity
 from separatrix.reporting.stages import bearing_and_cage, stages
+from separatrix.told.sentences import deciding, margin, probability, time_shares, verdict
 from separatrix.verbs import Computed, Verb, verb_named
 
 if TYPE_CHECKING:
@@ -282,16 +282,13 @@ def answers(kept: Kept, study: Study) -> bool:
     return all(found[key] == value for key, value in asked.items()) and found.get("complete", True) is True
 
 
-def keeping(
-    compute: Callable[[Verb], Computed], notes: list[str], folder: Path | None
-) -> Callable[[str], Kept]:
+def keeping(compute: Callable[[Verb], Computed], folder: Path | None) -> Callable[[str], Kept]:
     """Return what computes an answer; its files are written if there is a folder, without figures."""
     from separatrix.verbs.answer_files import document, save_answer
 
     def kept(verb: str) -> Kept:
-        with noted_warnings() as own:
-            made = compute(verb_named(verb))
-        found = document(verb, made.record, made.study, [*notes, *grouped(own)], made.question)
+        made = compute(verb_named(verb))
+        found = document(verb, made.record, made.study, made.question)
         if folder is not None:
             save_answer(folder, made.record, made.study, found, pictures=False)
         return Kept(found)

@@ -5,16 +5,6 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping
 
-from separatrix.present.text.sentences import (
-    margin,
-    next_test,
-    probability,
-    rank_texts,
-    threshold,
-    verdict,
-    with_interval,
-)
-from separatrix.present.text.tables import ABSENT, grouped, number, rate
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import (
     Block,
@@ -29,6 +19,16 @@ from separatrix.reporting.record import (
     quantity,
 )
 from separatrix.study.sources import inputs_of
+from separatrix.told.sentences import (
+    margin,
+    next_test,
+    probability,
+    rank_texts,
+    threshold,
+    verdict,
+    with_interval,
+)
+from separatrix.told.tables import ABSENT, grouped, number, rate
 
 MOST_DRIVERS, MOST_TESTS = 5, 6
 PROPERTIES = {

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from separatrix.present.text.sentences import (
+from separatrix.reporting.pictures import own_candidates, picture
+from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, own_rows, quantity
+from separatrix.told.sentences import (
     drift,
     drift_sentence,
     margin,
@@ -14,9 +16,7 @@ from separatrix.present.text.sentences import (
     verdict,
     verdict_sentences,
 )
-from separatrix.present.text.tables import ABSENT, number, significant
-from separatrix.reporting.pictures import own_candidates, picture
-from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, own_rows, quantity
+from separatrix.told.tables import ABSENT, number, significant
 
 MOST_CAVEATS = 5
 HEAD = (

@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 from separatrix.comparing.saved import arrays
-from separatrix.present.text import tables
-from separatrix.present.text.sentences import Row as Row
-from separatrix.present.text.tables import ABSENT
+from separatrix.told import tables
+from separatrix.told.sentences import Row as Row
+from separatrix.told.tables import ABSENT
 
 if TYPE_CHECKING:
     import xarray as xr

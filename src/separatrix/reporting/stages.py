@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import degrees
 
-from separatrix.present.text.sentences import strain_facts
-from separatrix.present.text.tables import ABSENT, interval, kick_list, number
 from separatrix.reporting.pictures import drawing, equation, picture
 from separatrix.reporting.record import Block, Kept, Paragraph, Row, Section, Table, entry, facts, quantity
+from separatrix.told.sentences import strain_facts
+from separatrix.told.tables import ABSENT, interval, kick_list, number
 
 CONTACT = {
     "load": ("Load Q", "N"),

@@ -5,7 +5,6 @@ Keys and rules are those of the records (`study.Study` is the schema); docs/refe
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import fields
 from difflib import get_close_matches
@@ -13,7 +12,7 @@ from os.path import exists, isfile
 from pathlib import Path
 from typing import Any
 
-from separatrix.ground.errors import InputError, ValidityWarning, together
+from separatrix.ground.errors import InputError, together
 from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
 from separatrix.ground.schema import built
 from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
@@ -57,11 +56,6 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
     InputError
         Everything that is wrong with the file, a line each: place, rule, value, cure. Or a model is not
         known, or there is no cage to have it.
-
-    Warns
-    -----
-    ValidityWarning
-        It leaves the range of the model, or its cage is left out; what, and what to do.
     """
     path = find(study)
     document = document_of(Study, path)
@@ -74,9 +68,8 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
     if models:
         require(built_study, f"--{next(iter(models))}", "cage")
         built_study = with_models(built_study, models)
-    for sentence in (*notes, *cautions(built_study)):
-        warnings.warn(sentence, ValidityWarning, stacklevel=2)
-    return built_study
+    noted: Study = built_with(built_study, notes=(*notes, *cautions(built_study)))
+    return noted
 
 
 def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:

@@ -282,6 +282,9 @@ class Study:
     left_out: InputError | None = field(default=None, compare=False, repr=False)
     """Why the cage of the file is not in the study, for the verbs that need it."""
 
+    notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    """Where it leaves the range of the models, and what of its file has no effect or is left out."""
+
     content: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
     """What the study was read from: its name, its merged keys, and the texts of the files that they name."""
 

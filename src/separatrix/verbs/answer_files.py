@@ -1,47 +1,39 @@
-"""The files of an answer: its document, text, dataset, figures and tables."""
+"""The document of an answer, and its files: the same page as text, HTML and workbook, pictures, arrays."""
 
 from __future__ import annotations
 
-import csv
 import logging
-import math
-from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from separatrix.ground.errors import harmless, json_text
+from separatrix.ground.document import Document, part_of
+from separatrix.ground.errors import grouped, harmless, json_text
 from separatrix.ground.files import staged
-from separatrix.ground.plain_data import Group, plain, shape, units_of
-from separatrix.present.text.answer import in_words
 
 if TYPE_CHECKING:
-    import xarray as xr
-
-    from separatrix.ground.plain_data import Document
+    from separatrix.present.blocks import Page, Picture
     from separatrix.study.study import Study
+    from separatrix.verbs import Computed
+    from separatrix.verbs.verb import Verb
     from separatrix.verdict.long_jobs import Progress
 
 
-def document(
-    verb: str,
-    answer: object,
-    asked: Study,
-    notes: Sequence[str],
-    question: Mapping[str, object] | None = None,
-) -> Document:
+def document(verb: Verb, found: Computed) -> Document:
     """Return an answer as plain data: SI units, no NaN, None where something is absent.
 
-    The resolved inputs of the study go into it with their sources; the notes and those of the answer are its
+    The resolved inputs of the study go into it with their sources; the notes of study and answer are its
     warnings.
     """
     from separatrix import __version__
+    from separatrix.ground.plain_data import Group, plain, units_of
     from separatrix.study.sources import provenance_of, resolved
-    from separatrix.verbs.shapes import all_notes
+    from separatrix.verbs.shapes import shape
 
     left_out: list[str] = []
-    node = Group(shape(answer))
-    body = plain(node, verb, left_out)
-    warnings = all_notes(answer, notes)
+    study = found.study
+    node = Group(shape(found.record))
+    body = plain(node, verb.name, left_out)
+    warnings = [*notes_of(found.record, study)]
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
         warnings.append(
@@ -50,30 +42,41 @@ def document(
         )
     return {
         "separatrix_version": __version__,
-        "verb": verb,
-        "name": asked.name,
-        "title": asked.title,
-        "study": plain(resolved(asked), "study"),
-        "seed": asked.stability.seed,
+        "verb": verb.name,
+        "name": study.name,
+        "title": study.title,
+        "study": plain(resolved(study), "study"),
+        "seed": study.stability.seed,
         **body,
         "units": units_of(node),
         "warnings": warnings,
-        "provenance": plain(provenance_of(asked, verb, question or {}), "provenance"),
+        "provenance": plain(provenance_of(study, verb.name, found.question), "provenance"),
     }
 
 
-WITHOUT_DATA = ("check",)
-"""Verbs whose answer is its document and text alone."""
+def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
+    """Return what the reading of a study and its answer note; of those alike but for numbers the first."""
+    from separatrix.ground.plain_data import NOTES
+
+    own: tuple[str, ...] = getattr(answer, NOTES, ())
+    return tuple(grouped([*asked.notes, *own]))
+
+
+def page_of_document(verb: Verb, found: Document, where: str = "The answer") -> Page:
+    """Return the page of a document; one that is not what its page takes is refused under `where`."""
+    from separatrix.verbs.saved_answers import refusing_damage
+
+    with refusing_damage(where):
+        return verb.page(part_of(found, where))
 
 
 def save_answer(
     folder: Path,
-    record: object,
-    study: Study,
+    verb: Verb,
     found: Document,
     *,
+    options: Any = None,
     pictures: bool = True,
-    animation: bool = False,
     progress: Progress | None = None,
 ) -> None:
     """Write the files of an answer into a folder, all or none; of an interrupted one its document and text.
@@ -82,131 +85,80 @@ def save_answer(
     ----------
     folder : Path
         It exists.
-    record, study : object, Study
-        The answer and what was asked.
-    found : dict
-        The answer as `present.document` makes it.
+    verb, found : Verb, dict
+        The verb, and the answer as `document` makes it.
+    options : optional
+        With which the verb was asked: its own files may depend on them.
     pictures : bool
-        Whether the figures are written, too.
-    animation : bool
-        Whether a GIF of a simulation is written, too; `progress` receives how far it is.
+        Whether figures, and the page with them, are written, too.
+    progress : callable, optional
+        Called with (done, total) of what takes long.
 
     Raises
     ------
     InputError
         The folder cannot be written.
     """
-    verb = str(found["verb"])
-    asked = (verb, record, study, list(found["warnings"]))
+    page = page_of_document(verb, found)
     with staged(folder) as stage:
-        for suffix, content in ((".json", json_text(found) + "\n"), (".txt", in_words(*asked, full=True))):
-            (stage / f"{verb}{suffix}").write_text(harmless(content), encoding="utf-8")
-        if verb in WITHOUT_DATA or not found.get("complete", True):
-            return
-        # what follows takes seconds to load
-        from separatrix import figures
-        from separatrix.figures.animation import animate
-        from separatrix.figures.view import write_page
-        from separatrix.present.dataset_arrays import dataset, save
+        is_whole = verb.writes_data and found.get("complete") is not False
+        _write(stage, verb.name, page, found, with_pictures=pictures and is_whole, is_whole=is_whole)
+        if is_whole:
+            from separatrix.present.dataset import dataset, save
 
-        logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
-        data = dataset(found)
-        save(data, stage / f"{verb}.nc")
-        if pictures:
-            figures.save_all(figures.draw(verb, data), stage)
-        if verb == "rank":
-            write_ranking(found, data, stage / "rank.xlsx")
-        if verb == "sweep":
-            _write_sweep(data, stage)
-        if verb == "simulate":
-            write_page(data, stage / "simulation.html")
-        if animation:
-            animate(data, stage / "simulation.gif", progress=progress)
+            save(dataset(found), stage / f"{verb.name}.nc")
+        if is_whole and verb.files is not None:
+            for name, content in verb.files(part_of(found), options, progress):
+                (stage / name).write_bytes(content)
 
 
-def write_ranking(found: Document, data: xr.Dataset, path: Path) -> None:
-    """Write the tables of a ranking as sheets: its document's rows and values, its dataset's units."""
-    from separatrix.ground.sheet import add_table, new_workbook, workbook_bytes
-
-    stability = found["stability"] or {}
-    places = [{"environment": one["name"]} | row for one in found["environments"] for row in one["materials"]]
-    tables = (
-        ("candidates", "material_", places),
-        ("overall", "overall_", found["overall"]),
-        ("stability curve", "", stability.get("curve") or ()),
-        ("linear limit", "", stability.get("linear_limit") or ()),
-    )
-    book = new_workbook()
-    for title, prefix, rows in tables:
-        cells = [{name: _cell(value) for name, value in row.items()} for row in rows]
-        names = [name for name in (cells or [{}])[0] if any(row[name] is not None for row in cells)]
-        names.sort(key=[*LEADING, *names].index)
-        heads = [_heading(name, _unit(data, prefix + name)) for name in names]
-        if heads:
-            add_table(book, title, heads, [[row[name] for name in names] for row in cells], keep_columns=2)
-    rest = {key: value for key, value in found.items() if key not in ELSEWHERE}
-    single = [(name, value, _unit(data, name.replace(".", "_"))) for name, value, *_ in _values(rest)]
-    add_table(book, "answer", ("name", "value", "unit"), single)
-    add_table(book, "inputs", ("name", "value", "unit", "origin"), _values(found["study"]))
-    path.write_bytes(workbook_bytes(book))
+def save_page(folder: Path, name: str, page: Page, found: Document | None) -> None:
+    """Write a page of another answer and its document; without that its pictures alone."""
+    with staged(folder) as stage:
+        if found is None:
+            _draw(page, stage, "")
+        else:
+            _write(stage, name, page, found)
 
 
-LEADING = ("environment", "name", "rank", "verdict", "friction", "margin")
-"""Columns of a table that come first."""
+def _write(
+    stage: Path, name: str, page: Page, found: Document, *, with_pictures: bool = True, is_whole: bool = True
+) -> None:
+    """Write document and text; of a whole answer the workbook, the pictures, and the page with them."""
+    from separatrix.present.blocks import Level
+    from separatrix.present.text import text
 
-ELSEWHERE = (
-    *("study", "environments", "overall", "stability", "own_curves", "chain", "cage", "provenance", "units"),
-)
-"""Keys of a ranking that are not on the sheet of its single values."""
+    (stage / f"{name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
+    (stage / f"{name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
+    if is_whole:
+        from separatrix.present.spreadsheet import spreadsheet
 
-WHOLE_RECORDS = ("record", "table")
-"""Keys of a study under which records of the library are whole."""
-
-
-def _values(item: object, name: str = "") -> Iterator[tuple[str, object, str | None, str | None]]:
-    """Yield the dotted name of each value of a document, the value, its unit and its origin."""
-    if isinstance(item, dict):
-        rest = {key: one for key, one in item.items() if key not in WHOLE_RECORDS}
-        if "value" in rest:
-            yield name, _cell(rest.pop("value")), rest.pop("unit", None), rest.pop("origin", None)
-        for key, one in rest.items():
-            yield from _values(one, f"{name}.{key}" if name else key)
-    elif isinstance(item, list) and any(isinstance(one, dict) for one in item):
-        for number, one in enumerate(item, 1):
-            yield from _values(one, f"{name}[{number}]")
-    else:
-        yield name, _cell(item), None, None
+        (stage / f"{name}.xlsx").write_bytes(spreadsheet(page))
+    if with_pictures:
+        _draw(page, stage, name)
 
 
-def _cell(value: object) -> object:
-    """Return a value as one cell has it: several texts or numbers as one text, nothing of whole records."""
-    if isinstance(value, list):
-        return "; ".join(str(one) for one in value if not isinstance(one, dict | None)) or None
-    return None if isinstance(value, dict) else value
+def _draw(page: Page, stage: Path, name: str) -> None:
+    """Write each picture, drawn once, and with a name the page with them."""
+    from separatrix.present import draw
+    from separatrix.present.blocks import Level, Picture, View
+    from separatrix.present.html import html, picture_html
 
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its remarks on fonts
+    drawn: dict[str, str] = {}
 
-def _unit(data: xr.Dataset, name: str) -> str | None:
-    return data[name].attrs.get("units") if name in data.variables else None
+    def picture(one: Picture) -> str:
+        if one.name not in drawn:
+            spec = one.figure()
+            drawing = draw.save(spec, stage / f"{one.name}.png", stage / f"{one.name}.svg")
+            drawn[one.name] = picture_html(one, drawing, spec.alt)
+        return drawn[one.name]
 
-
-def _heading(name: str, unit: str | None) -> str:
-    return f"{name} [{unit}]" if unit else name
-
-
-def _write_sweep(data: xr.Dataset, folder: Path) -> None:
-    """Write the table of a sweep for spreadsheets and other programs: sweep.csv and sweep.xlsx."""
-    from separatrix.ground.sheet import add_table, new_workbook, text_for_cell, workbook_bytes
-
-    names = [str(name) for name in data.variables if data[name].dims == ("case",)]
-    heads = [_heading(name, _unit(data, name)) for name in names]
-    rows = [
-        [None if v == "" or (isinstance(v, float) and math.isnan(v)) else v for v in row]
-        for row in zip(*(data[name].values.tolist() for name in names), strict=True)
-    ]
-    with (folder / "sweep.csv").open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(heads)
-        writer.writerows([text_for_cell(v) if isinstance(v, str) else v for v in row] for row in rows)
-    book = new_workbook()
-    add_table(book, "Sweep", heads, rows, keep_columns=1)
-    (folder / "sweep.xlsx").write_bytes(workbook_bytes(book))
+    for one in page.blocks:
+        if isinstance(one, View):
+            (stage / f"{one.name}.html").write_text(one.html(), encoding="utf-8")
+        elif isinstance(one, Picture):
+            picture(one)
+    if name:
+        level = Level.REPORT | Level.FULL
+        (stage / f"{name}.html").write_text(html(page, level=level, picture=picture), encoding="utf-8")

@@ -1,15 +1,144 @@
-"""`bearing`: ball equilibrium and the contacts of the most loaded ball."""
+"""`bearing`: ball equilibrium, and the contacts of the most loaded ball."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
-from separatrix.chain.contacts import BearingState
-from separatrix.chain.solution import solve
-from separatrix.study.study import Study
+from separatrix.ground.document import Part
+from separatrix.present.blocks import (
+    Equation,
+    Heading,
+    Page,
+    Picture,
+    Table,
+    facts,
+    text_column,
+)
+from separatrix.present.figure import Figure, Label, Panel, Trace
+from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.chain_blocks import RACES, clearance_blocks, contact_blocks
+from separatrix.verbs.parts.telling import axis, cell, column, fact, told
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.chain.contacts import BearingState
+    from separatrix.study.study import Study
 
 
-def compute(study: Study) -> BearingState:
+def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
     """Ball equilibrium and the contacts of the most loaded ball."""
+    from separatrix.chain.solution import solve
+
     solution = solve(study)
-    return replace(solution.bearing, clearances=solution.clearances)
+    found, clearances = solution.bearing, solution.clearances
+    return replace(found, clearances=clearances, notes=solution.notes)
+
+
+def page(answer: Part) -> Page:
+    """Return the page of `bearing`."""
+    held = "the rings are held parallel" if answer.tilt == 0.0 else "the rings are held at this angle"
+    tilt = held if answer.is_tilt_held else "free: the inner ring tilts until the balls balance the moment"
+    return page_of(
+        answer,
+        Heading("Inner ring"),
+        Equation(
+            r"\sum_j \left(Q_{ij}\,\sin\,\alpha_{ij} + T_{ij}\,\cos\,\alpha_{ij}\right) = F_a",
+            "Balance of the inner ring along the axis: ball loads $Q$ at the contact angles, tractions $T$.",
+        ),
+        Equation(
+            r"Q_o\,\cos\,\alpha_o - T_o\,\sin\,\alpha_o = Q_i\,\cos\,\alpha_i - T_i\,\sin\,\alpha_i + F_c, "
+            r"\qquad T_i + T_o = \dfrac{2 M_g}{D}",
+            "Balance of a ball: centrifugal force $F_c$ and gyroscopic moment $M_g$.",
+        ),
+        facts(
+            ("Kinematics", answer.model),
+            fact(answer, "axial_displacement"),
+            fact(answer, "radial_displacement"),
+            ("Tilt", f"{told(answer, 'tilt')} ({tilt})"),
+            fact(answer, "moment"),
+        ),
+        Heading("Balls"),
+        balls(answer),
+        *([] if are_alike(answer) else [balls_picture(answer)]),
+        *contact_blocks(answer, answer.contacts),
+        *clearance_blocks(answer.clearances),
+    )
+
+
+def balls(answer: Part) -> Table:
+    """Return a row for each ball, numbered from 1, or one where all are alike.
+
+    A contact angle is absent where the ball does not touch this race.
+    """
+
+    def touching(race: str) -> Callable[[Part], Part | None]:
+        return lambda ball: ball if getattr(ball, f"{race}_contact") else None
+
+    alike = are_alike(answer)
+    number = text_column("ball", lambda ball: f"all {len(answer.balls)}" if alike else str(ball.ball + 1))
+    angles = [column(f"contact_angle_{race}", of=touching(race)) for race in ("inner", "outer")]
+    names = (
+        "load_inner",
+        "load_outer",
+        "orbital_speed",
+        "pitch_angle",
+        "spin_roll_ratio_inner",
+        "spin_roll_ratio_outer",
+    )
+    place = [] if alike else [column("azimuth")]
+    columns = (number, *place, *angles, *map(column, names))
+    return Table("balls", columns, tuple(answer.balls[:1] if alike else answer.balls))
+
+
+def are_alike(answer: Part) -> bool:
+    """Whether every ball carries the same to the digits shown."""
+    names = ("load_inner", "load_outer", "contact_angle_inner", "contact_angle_outer", "orbital_speed")
+    return len({tuple(told(ball, name) for name in names) for ball in answer.balls}) == 1
+
+
+def balls_picture(answer: Part) -> Picture:
+    """Return load and contact angle around the bearing."""
+    return Picture(
+        "bearing-balls", lambda: _balls_figure(answer), "Ball loads and contact angles around the bearing."
+    )
+
+
+def _balls_figure(answer: Part) -> Figure:
+    return Figure(
+        rows=(
+            (_around(answer, "load", "a  Ball load"), _around(answer, "contact_angle", "b  Contact angle")),
+        ),
+        heading=figure_heading(answer),
+        alt="Two panels against the azimuth of the ball: load and contact angle; the table has the numbers.",
+    )
+
+
+def _around(answer: Part, name: str, title: str) -> Panel:
+    """Return a quantity of each ball against its azimuth; a contact without a load has no angle."""
+    balls = answer.balls
+    azimuth = [ball.azimuth for ball in balls]
+    marks, labels, every = [], [], []
+    for race, colour, marker, _ in RACES:
+        known = [
+            getattr(ball, f"{name}_{race}") if name == "load" or getattr(ball, f"{race}_contact") else None
+            for ball in balls
+        ]
+        every += [one for one in known if one is not None]
+        hover = tuple(
+            f"ball {ball.ball + 1}, {race} race: {cell(ball, f'{name}_{race}').text}" for ball in balls
+        )
+        look: dict[str, Any] = {"colour": colour, "marker": marker, "width": 0.8}
+        marks.append(Trace(x=azimuth, y=known, hover=hover, **look))
+        if known[-1] is not None:
+            labels.append(Label(y=known[-1], text=race, colour=colour))
+    room = 0.15 * (max([*every, 0.0]) - min([*every, 0.0]) or 1.0)
+    y = axis(
+        name, balls[0].unit(f"{name}_inner"), every, low=min([*every, 0.0]), high=max([*every, 0.0]) + room
+    )
+    x = axis("azimuth", "rad", azimuth)
+    return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
+
+
+VERB = Verb(name="bearing", compute=compute, page=page)

@@ -1,22 +1,526 @@
-"""`rank`: verdict, margin, rank and reason of each candidate material."""
+"""`rank`: verdict, margin, rank and reason of each candidate material, and what they rest on."""
 
 from __future__ import annotations
 
-from separatrix.study.study import Study
-from separatrix.verbs import answer_records as answers
-from separatrix.verbs.parts.cage_of_study import (
-    reference,
-    warn_if_overdamped,
+from collections import Counter
+from collections.abc import Callable, Sequence
+from itertools import cycle
+from typing import TYPE_CHECKING, Any
+
+from separatrix.ground.document import Part
+from separatrix.present.blocks import (
+    Block,
+    Column,
+    Equation,
+    Heading,
+    Level,
+    Note,
+    Page,
+    Picture,
+    Table,
+    explained,
+    facts,
+    grouped,
+    text_column,
 )
-from separatrix.verdict.long_jobs import Runner, made_into
-from separatrix.verdict.ranking import rank as rank_materials
+from separatrix.present.figure import (
+    CYCLE,
+    GREY,
+    MARKERS,
+    VERDICT_COLOURS,
+    VERDICT_MARKERS,
+    Across,
+    Axis,
+    Figure,
+    Label,
+    Mark,
+    Panel,
+    Trace,
+    sign,
+)
+from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
+from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
+from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
+from separatrix.verbs.parts.verdict_blocks import (
+    MARK,
+    all_numbers,
+    by_verdict,
+    evidence_column,
+    is_judged,
+    motion_column,
+    rank_texts,
+    verdict,
+    verdict_facts,
+    verdict_sentences,
+)
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.answer_records import RankingAnswer
+    from separatrix.verdict.long_jobs import Runner
+    from separatrix.verdict.ranking_records import Ranking
+
+BRIEF, FULL, REPORT, LONG = Level.BRIEF, Level.FULL, Level.REPORT, Level.LONG
+SHORT = (
+    "largest_offset",
+    "largest_tilt",
+    "drift_rate",
+    "largest_contact_force",
+    "largest_land_force",
+    "rubbing_power",
+)
+MOTION = (
+    "growth_rate",
+    "whirl_frequency",
+    "whirl_ratio",
+    "mean_offset",
+    "end_energy",
+    "cone_ratio",
+    "axial_travel",
+)
 
 
-def compute(study: Study, runner: Runner) -> answers.RankingAnswer:
+def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
     """Verdict, margin, rank and reason of each candidate material."""
+    from separatrix.verbs.answer_records import RankingAnswer
+    from separatrix.verbs.parts.cage_of_study import overdamped_notes, reference
+    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verdict.ranking import rank
+
     solution, cage = reference(study)
-    warn_if_overdamped(solution.restitution)
-    return made_into(
-        lambda found: answers.RankingAnswer(solution=solution, cage=cage, ranking=found),
-        lambda: rank_materials(study, runner=runner),
+    notes = (*solution.notes, *cage.notes, *overdamped_notes(solution.restitution))
+
+    def made(found: Ranking) -> RankingAnswer:
+        every = (*notes, *free_balls_decided(found), *found.notes)
+        return RankingAnswer(solution=solution, cage=cage, ranking=found, notes=every)
+
+    return made_into(made, lambda: rank(study, runner=runner))
+
+
+def free_balls_decided(found: Ranking) -> list[str]:
+    """Return for which candidates free balls decided in the bearing's own environment; empty if for none."""
+    rows = next(one.materials for one in found.environments if one.name == found.environment)
+    judged = ((row.name, getattr(row, "judgement", None)) for row in rows)
+    free = [name for name, one in judged if one is not None and one.ball == "free" and one.ball_reason]
+    if not free:
+        return []
+    return [f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."]
+
+
+def page(answer: Part) -> Page:
+    """Return the page of `rank`: the bearing's own environment, what it rests on, then the others."""
+    own = next(one for one in answer.environments if one.name == answer.environment)
+    others = [one for one in answer.environments if one.name != answer.environment]
+    rows = own.materials
+    known = [row for row in rows if is_judged(row)]
+    return page_of(
+        answer,
+        Note(verdict_sentences(rows, own.name), "lead"),
+        Heading(_title(own.name)),
+        verdicts(own.name, rows, legend=True),
+        *footnotes(rows),
+        *over_inputs(answer, rows),
+        *pictures(answer),
+        Heading(said(answer, f"Evidence: {answer.runs} runs of {{duration}} from each initial disturbance")),
+        evidence(own.name, known, answer.kicks),
+        *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
+        motion(own.name, known),
+        reasons(rows, LONG),
+        elsewhere(others),
+        *in_detail(known),
+        Heading("Basis of the verdicts", LONG),
+        facts(*basis_facts(answer), *ensemble_facts(answer), *holds_for(answer), level=LONG),
+        *restitution_blocks(answer.chain, REPORT),
+        *pocket(answer.pocket),
+        *(curve_blocks(answer.stability, REPORT) if "stability" in answer else []),
+        *(block for one in others for block in environment(one.name, one.materials)),
+        *(
+            environment("Overall: mean friction over the measured environments", answer.overall)
+            if others
+            else []
+        ),
+        *gaps(answer),
+        all_numbers(answer),
+        draws=True,
     )
+
+
+def _title(name: str) -> str:
+    return name[:1].upper() + name[1:]
+
+
+# Tables.
+
+
+def verdicts(name: str, rows: Sequence[Part], *, legend: bool = False, level: Level = Level.ALWAYS) -> Table:
+    """Return rank, friction, threshold, margin and verdict of each candidate."""
+    ranks = dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
+    columns = (
+        text_column("rank", lambda row: ranks[row.name], "by margin, = a tie within the scatter"),
+        text_column("material", lambda row: row.name),
+        column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
+        column("restitution_threshold"),
+        column("margin"),
+        column("probability_stable"),
+        text_column("verdict", verdict),
+    )
+    return Table(name, columns, tuple(rows), explained(columns) if legend else "", level)
+
+
+def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:
+    """Return motion, stable runs from each initial disturbance, largest offset, drift, forces and rubbing."""
+    rolls = any(count.rolls for row in rows for count in row.by_kick)
+    of_them = [_runs("of them roll", "rolls")] if rolls else []
+    known = [one for one in SHORT if any(one in row for row in rows)]
+    speeds = " ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in kicks)
+    caption = (
+        f"stable runs: that settle, or roll in their pockets, from each initial disturbance, {speeds}; the "
+        "worst one decides. Offset and forces: largest of any run; > what the races hold: there none has a "
+        "meaning."
+    )
+    columns = (
+        _name(),
+        motion_column(),
+        _runs("stable runs", "settles", "rolls"),
+        *of_them,
+        *map(evidence_column, known),
+    )
+    return Table(f"{name}, evidence", columns, tuple(rows), caption)
+
+
+def _name() -> Column:
+    return text_column("material", lambda row: row.name)
+
+
+def _runs(head: str, *keys: str) -> Column:
+    """Return the column of runs that end in one of some ways, from each initial disturbance."""
+
+    def counts(row: Part) -> str:
+        return " ".join(str(sum(getattr(count, key) for key in keys)) for count in row.by_kick)
+
+    return text_column(head, counts)
+
+
+def motion(name: str, rows: Sequence[Part], level: Level = LONG) -> Table:
+    """Return how the cage moves; the bearing's own restitution factor only where candidates differ in it."""
+    differ = len({told(row, "restitution_factor") for row in rows}) > 1
+    known = [one for one in MOTION if any(one in row for row in rows)]
+    eta = [column("restitution_factor")] if differ else []
+    columns = (_name(), motion_column(), *eta, *map(evidence_column, known))
+    return Table(f"{name}, motion", columns, tuple(rows), explained(columns), level)
+
+
+def reasons(rows: Sequence[Part], level: Level) -> Block:
+    """Return the reasons; candidates of the same friction share theirs."""
+    each = grouped((row.reason, row.name) for row in rows)
+    return facts(*((", ".join(who), reason) for reason, who in each.items()), level=level)
+
+
+def environment(name: str, rows: Sequence[Part]) -> list[Block]:
+    """Return verdicts, evidence and reasons in another environment."""
+    known = [row for row in rows if is_judged(row)]
+    notes = [Note(note.text, note.kind, FULL) for note in footnotes(rows)]
+    return [
+        Heading(_title(name), LONG),
+        verdicts(name, rows, level=LONG),
+        *notes,
+        motion(name, known, FULL),
+        reasons(rows, FULL),
+    ]
+
+
+# Words.
+
+
+def footnotes(rows: Sequence[Part]) -> list[Note]:
+    """Return in what respect frictions are extrapolated, and which is most likely the lowest."""
+    measured = [row for row in rows if "friction" in row]
+    who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
+    alike = grouped((tuple(names), sentence) for sentence, names in who.items())
+    each = [
+        " ".join(f"{sentence}." for sentence in sentences)
+        + ("" if len(names) == len(measured) else f" ({', '.join(names)})")
+        for names, sentences in alike.items()
+    ]
+    likely = sorted(
+        ((row.probability_lowest_friction or 0.0, row) for row in measured), key=lambda one: -one[0]
+    )
+    names = [
+        f"{row.name} {told(row, 'probability_lowest_friction')}" for share, row in likely if share >= 0.005
+    ]
+    found = [Note(f"{MARK} extrapolated beyond the tests: {' '.join(each)}", "legend")] if each else []
+    if measured:
+        lowest = ", ".join(names) or f"none, for only {measured[0].name} was measured here"
+        found.append(Note(f"Probability of the lowest mean friction: {lowest}.", "legend"))
+    return found
+
+
+def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
+    """Return the verdicts with the uncertain inputs drawn; none if the study states none."""
+    known = [row for row in rows if row.get("uncertain_verdict") is not None]
+    if not known:
+        return []
+    each = grouped(
+        (row.uncertain_verdict, f"{row.name} {told(row, 'uncertain_probability_stable')}") for row in known
+    )
+    names = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
+    words = f"with a bearing drawn for each of {known[0].uncertain_runs} runs from each initial disturbance"
+    return [
+        Note(
+            f"Uncertain inputs ({names}) are at their means above; {words}, P(stable) is: {by_verdict(each)}."
+        )
+    ]
+
+
+def elsewhere(others: Sequence[Part]) -> Note:
+    """Return who is first in the other environments, for a screen."""
+    each = ((one.name, [row.name for row in one.materials if row.get("rank") == 1]) for one in others)
+    leads = "; ".join(f"{name}: {', '.join(who) or 'none'}" for name, who in each)
+    first = f"First elsewhere: {leads}. " if leads else ""
+    return Note(f"{first}`--full` prints all evidence, for every environment.", level=BRIEF)
+
+
+def in_detail(rows: Sequence[Part]) -> list[Block]:
+    """Return the evidence of the first candidate."""
+    return (
+        [Heading(f"{rows[0].name} in detail", FULL), facts(*verdict_facts(rows[0]), level=FULL)]
+        if rows
+        else []
+    )
+
+
+def ensemble_facts(answer: Part) -> list[tuple[str, str]]:
+    """Return the ensemble in a few words."""
+    kicks = ", ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in answer.kicks)
+    return [
+        ("Initial disturbances", kicks),
+        ("Runs", said(answer, f"{answer.runs} from each, of {{duration}}")),
+    ]
+
+
+def holds_for(answer: Part) -> list[tuple[str, Any]]:
+    """Return what the ranking rests on besides the chain."""
+    rows = [row for one in answer.environments for row in one.materials if "friction" in row]
+    scatter = "none: every friction has its measured scatter"
+    if any(row.friction_scatter_assumed for row in rows):
+        scatter = said(answer, "assumed to scatter by {friction_scatter} of their mean: a guess")
+    film = []
+    if answer.restitution_factor < answer.solid_lubrication_limit:
+        words = "The contact model predicts {restitution_factor} for this film, below this bound"
+        film = [("This film", said(answer, f"{words} of {{solid_lubrication_limit}}. Both are shown."))]
+    return [
+        ("Unrepeated tests", scatter),
+        *_differing(answer.overall, "Mass of the cage", "cage_mass"),
+        *_differing(answer.overall, "Pocket as it runs", "pocket_clearance"),
+        *_differing(answer.overall, "Land as it runs", "land_clearance"),
+        ("The paper's bound", answer.paper_statement),
+        *film,
+    ]
+
+
+def _differing(rows: Sequence[Part], label: str, name: str) -> list[tuple[str, str]]:
+    """Return a quantity of each candidate where they differ in it."""
+    each = [f"{row.name} {told(row, name)}" for row in rows if name in row]
+    return [(label, "; ".join(each))] if len({getattr(row, name) for row in rows}) > 1 else []
+
+
+def pocket(found: Part) -> list[Block]:
+    """Return where ball and pocket rub."""
+    names = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
+    return [
+        Heading("Ball on pocket", LONG, 3),
+        Equation(
+            r"\bar p = \dfrac{F}{\pi\,r^2}", "Mean pressure of ball on pocket in an impact of force $F$."
+        ),
+        facts(*(fact(found, name) for name in names), level=LONG),
+    ]
+
+
+def gaps(answer: Part) -> list[Block]:
+    """Return in how many environments a candidate was measured, if not in all."""
+    total = len(answer.environments)
+    counts = Counter(row.name for one in answer.environments for row in one.materials if "friction" in row)
+    few = [f"{row.name} in {counts[row.name]}" for row in answer.overall if counts[row.name] < total]
+    return (
+        [Note(f"Measured in fewer than {total} environments: {', '.join(few)}.", level=LONG)] if few else []
+    )
+
+
+# Pictures.
+
+
+def pictures(answer: Part) -> list[Block]:
+    """Return the overview, and the candidates of each environment on the stability curve."""
+    if answer.get("complete") is False or not any("restitution_threshold" in row for row in answer.overall):
+        return []
+    found: list[Block] = [
+        Picture(
+            "rank-overview",
+            lambda: overview(answer),
+            "Restitution thresholds of the candidates: larger is better; the upright line is this bearing.",
+        )
+    ]
+    if "stability" not in answer:
+        return found
+    order = sorted(answer.environments, key=lambda one: bool(one.name != answer.environment))
+    for place, one in enumerate(order):
+        caption = f"The candidates in {one.name} on the stability curve: below it the cage is stable."
+        level = REPORT if place == 0 else FULL
+        found.append(Picture(f"rank-{_slug(one.name)}", _on_the_curve(answer, one), caption, level))
+    return found
+
+
+def _slug(text: str) -> str:
+    """Return a text as the part of a file's name."""
+    plain = "".join(c if c.isascii() and c.isalnum() else "-" for c in text.lower())
+    return "-".join(part for part in plain.split("-") if part)[:60] or "environment"
+
+
+def _on_the_curve(answer: Part, place: Part) -> Callable[[], Figure]:
+    return lambda: on_the_curve(answer, place)
+
+
+def on_the_curve(answer: Part, place: Part) -> Figure:
+    """Return the stability curve with the candidates of one environment on it."""
+    rows = [row for row in place.materials if "friction" in row]
+    ranks = dict(
+        zip(
+            (row.name for row in place.materials),
+            rank_texts(row.get("rank") for row in place.materials),
+            strict=True,
+        )
+    )
+    found: list[Mark] = []
+    for row in rows:
+        colour, eta = _colour(row), row.restitution_factor
+        found.append(Trace(x=(0.0, 1.0), y=(row.friction, row.friction), colour=colour, width=0.4))
+        if "restitution_threshold" in row:
+            look: dict[str, Any] = {"colour": colour, "marker": "o", "is_open": True, "size": 4.5}
+            found.append(marks([row], "restitution_threshold", "friction", **look))
+        look = {"colour": colour, "marker": VERDICT_MARKERS.get(verdict(row), "."), "size": 5.0}
+        found.append(Trace(x=(eta,), y=(row.friction,), line="", hover=(hover(row),), **look))
+    labels = tuple(
+        Label(
+            y=row.friction,
+            text=f"{ranks[row.name]}  {row.name}  {told(row, 'friction')}{MARK * bool(row.extrapolation)}",
+        )
+        for row in rows
+    )
+    signs = [
+        sign(marker, VERDICT_COLOURS[word], f"{word}, at the candidate's own $eta$")
+        for word, marker in VERDICT_MARKERS.items()
+    ]
+    signs.append(sign("o", GREY, "threshold with its 95 % interval", is_open=True))
+    panel = curve_panel(
+        answer,
+        answer.stability,
+        title=_title(place.name),
+        more=found,
+        frictions=[row.friction for row in rows],
+        labels=labels,
+        head="rank  candidate  friction",
+    )
+    return Figure(
+        rows=((panel,),),
+        heading=figure_heading(answer, f"seed {answer.seed}"),
+        alt="Critical friction against restitution factor, with the friction of each candidate at the "
+        "bearing's own restitution factor; the table has the numbers.",
+        height=4.3,
+        legend=tuple(signs),
+    )
+
+
+def _colour(row: Part) -> str:
+    return VERDICT_COLOURS.get(verdict(row), GREY)
+
+
+def hover(row: Part) -> str:
+    """Return what a candidate's mark says under the pointer."""
+    parts = [f"{row.name}: {verdict(row)}", f"friction {told(row, 'friction')}"]
+    for words, name in (
+        ("threshold", "restitution_threshold"),
+        ("margin", "margin"),
+        ("P(stable)", "probability_stable"),
+    ):
+        parts += [f"{words} {told(row, name)}"] if name in row else []
+    return "; ".join(parts)
+
+
+def overview(answer: Part) -> Figure:
+    """Return the restitution threshold of every candidate, overall and by environment; best at the top."""
+    own = next(one for one in answer.environments if one.name == answer.environment)
+    names = [row.name for row in own.materials][::-1]
+    place = {name: float(at) for at, name in enumerate(names)}
+    found: list[Mark] = [Across(at=answer.restitution_factor, name="this bearing with this film (Eq. 18)")]
+    for at, one, marker, colour in zip(
+        range(99), answer.environments, cycle(MARKERS), cycle(CYCLE), strict=False
+    ):
+        rows = [row for row in one.materials if "restitution_threshold" in row]
+        found.append(
+            Trace(
+                x=[row.restitution_threshold for row in rows],
+                y=[place[row.name] + 0.26 - 0.52 * (at + 0.5) / len(answer.environments) for row in rows],
+                hover=tuple(f"{one.name}; {hover(row)}" for row in rows),
+                name=one.name,
+                line="",
+                marker=marker,
+                colour=colour,
+                size=3.6,
+            )
+        )
+    rows = [row for row in answer.overall if "restitution_threshold" in row]
+    known = [estimate(row, "restitution_threshold") for row in rows]
+    found.append(
+        Trace(
+            x=[row.restitution_threshold for row in rows],
+            y=[place[row.name] for row in rows],
+            low=[getattr(one, "low", None) for one in known],
+            high=[getattr(one, "high", None) for one in known],
+            ends_along="x",
+            hover=tuple(f"overall; {hover(row)}" for row in rows),
+            name="overall, with its 95 % interval",
+            line="",
+            marker="D",
+            size=4.5,
+        )
+    )
+    verdicts_here = tuple(
+        Label(
+            y=place[row.name],
+            text=verdict(row),
+            colour=_colour(row),
+            marker=VERDICT_MARKERS.get(verdict(row), "x"),
+        )
+        for row in own.materials
+    )
+    ranks = dict(
+        zip(
+            (row.name for row in own.materials),
+            rank_texts(row.get("rank") for row in own.materials),
+            strict=True,
+        )
+    )
+    ticks = tuple(f"{name}  {ranks[name]}" for name in names)
+    x = axis("restitution_threshold", "-", [], low=-0.012, high=1.0)
+    y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=ticks)
+    title = f"Restitution thresholds, larger is better; after each name its rank in {own.name}"
+    return Figure(
+        rows=((Panel(title=title, x=x, y=y, marks=tuple(found), labels=verdicts_here, head="verdict"),),),
+        heading=figure_heading(answer, f"seed {answer.seed}"),
+        alt="Restitution threshold of each candidate in each environment, and overall with its interval; the "
+        "table has the numbers.",
+        height=0.9 + 0.32 * len(names),
+    )
+
+
+VERB = Verb(
+    name="rank",
+    compute=compute,
+    page=page,
+    needs=("cage", "ranking"),
+    moves_a_cage=True,
+    has_full=True,
+    keeps_runs=True,
+)

@@ -2,23 +2,121 @@
 
 from __future__ import annotations
 
-from separatrix.chain.solution import solve
-from separatrix.study.study import Study
-from separatrix.verbs import answer_records as answers
-from separatrix.verbs.parts.cage_of_study import (
-    cage_of,
-    warn_of_extrapolation,
+from typing import TYPE_CHECKING, Any
+
+from separatrix.ground.document import Part
+from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
+from separatrix.present.figure import Figure, Mark, Trace
+from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.chain_blocks import basis_facts
+from separatrix.verbs.parts.curve_blocks import (
+    curve_blocks,
+    curve_panel,
+    drift_words,
+    own_lead,
+    own_point,
+    pocket_friction,
 )
-from separatrix.verdict.long_jobs import Runner, made_into
-from separatrix.verdict.stability_curve import stability_curve
+from separatrix.verbs.parts.telling import said
+from separatrix.verbs.verb import NoOptions, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.answer_records import StabilityAnswer
+    from separatrix.verdict.long_jobs import Runner
 
 
-def compute(study: Study, runner: Runner) -> answers.StabilityAnswer:
+def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
+    from separatrix.chain.solution import solve
+    from separatrix.verbs.answer_records import StabilityAnswer
+    from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
+    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verdict.stability_curve import stability_curve
+
     solution = solve(study)
-    warn_of_extrapolation(solution)
     cage, settings = cage_of(solution), study.stability
+    notes = (*solution.notes, *extrapolation_notes(solution), *cage.notes)
     return made_into(
-        lambda curve: answers.StabilityAnswer(solution=solution, cage=cage, curve=curve),
+        lambda curve: StabilityAnswer(
+            solution=solution, cage=cage, curve=curve, notes=(*notes, *curve.notes)
+        ),
         lambda: stability_curve(cage, settings, runner=runner),
     )
+
+
+def page(answer: Part) -> Page:
+    """Return the page of `stability`."""
+    drift = drift_words(answer)
+    leads = [own_lead(answer), *friction_lead(answer), *([drift] if drift else [])]
+    return page_of(
+        answer,
+        Note(" ".join(leads), "lead"),
+        *([curve_picture(answer)] if answer.curve else []),
+        *own_point(answer),
+        Heading("Stability curve"),
+        *curve_blocks(answer),
+        Heading("Basis of this answer", Level.LONG),
+        facts(
+            *basis_facts(answer),
+            ("Pocket friction", pocket_friction(answer) or "not stated"),
+            level=Level.LONG,
+        ),
+    )
+
+
+def friction_lead(answer: Part) -> list[str]:
+    """Return on which side of the band the cage's own friction is, if both are known."""
+    here, friction = answer.get("here"), answer.cage.ball_cage_friction
+    words = pocket_friction(answer)
+    if not words or here is None or "critical_friction" not in here:
+        return []
+    low, high = here.get("critical_friction_low"), here.get("critical_friction_high")
+    side, then = "within the band in which the disturbance decides", "it is undecided"
+    if low is not None and friction < low:
+        side, then = "below the band", "the cage is stable"
+        if answer.drifts:
+            then = "disturbances decay, but the cage drifts and is not stable"
+    elif high is not None and friction > high:
+        side, then = "above the band", "the cage is unstable"
+    return [f"The cage's friction, {words}, is {side}: {then}."]
+
+
+def curve_picture(answer: Part) -> Picture:
+    """Return the curve with the bearing's own point."""
+    below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
+    return Picture(
+        "stability-curve",
+        lambda: curve_figure(answer),
+        f"Critical friction against restitution factor: below the band {below}, above it unstable.",
+    )
+
+
+def curve_figure(answer: Part) -> Figure:
+    """Return the curve with the bearing's own point, and the friction of its cage."""
+    friction, words = answer.cage.ball_cage_friction, pocket_friction(answer)
+    own: list[Mark] = []
+    if words:
+        name = said(answer.cage, "the cage's friction, {ball_cage_friction}")
+        look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
+        hover = (f"the cage's friction: {words}",)
+        own = [Trace(x=[answer.chain.restitution_factor], y=[friction], hover=hover, **look)]
+    panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])
+    return Figure(
+        rows=((panel,),),
+        heading=figure_heading(answer),
+        alt="Stability curve with its band and limits, and the bearing's own restitution factor.",
+        height=3.6,
+    )
+
+
+VERB = Verb(
+    name="stability",
+    compute=compute,
+    page=page,
+    needs=("cage",),
+    moves_a_cage=True,
+    epilog="Beside the curve: its sub-critical band, the curve of each initial disturbance, the linear "
+    "limit, and the critical friction at the bearing's own restitution factor.",
+    keeps_runs=True,
+)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.friction.reduction import Reduction
     from separatrix.ground.plain_data import Document
-    from separatrix.present.text.materials import Shown
+    from separatrix.told.materials import Shown
     from separatrix.verdict.long_jobs import Progress
 
 # Path of a library file or of a folder of them.
@@ -136,7 +136,7 @@ class Materials:
 
     def summary(self) -> str:
         """Text, as ``materials list`` prints it."""
-        from separatrix.present.text.materials import listed
+        from separatrix.told.materials import listed
 
         return listed(self.records)
 
@@ -178,7 +178,7 @@ class Materials:
         InputError
             No record has this name.
         """
-        from separatrix.present.text.materials import Shown
+        from separatrix.told.materials import Shown
 
         views = []
         for record in self.find(name):

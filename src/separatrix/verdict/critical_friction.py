@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from separatrix.cage.closed_forms import linear_critical_friction
@@ -74,6 +74,7 @@ class CriticalFriction:
     kick_high: Annotated[tuple[Ratio | None, ...], ("kick",)] = ()  # at which nine tenths do
     side: Side | None = None  # of one half on which P(whirl) lies throughout, if `critical_friction` is None
     reason: str | None = None  # why one of the first three frictions is None
+    notes: tuple[str, ...] = ()  # on runs that do not show where their motion ends, a sentence each
 
 
 def critical_friction(
@@ -111,14 +112,18 @@ def critical_friction(
     most = max(1, round((MIDDLE_RUNS if band else END_RUNS) * settings.runs))
     found = responses[reference].crossing(0.5, most, start)
     if not band:
-        return _point(eta, settings, found, {}, {}, {})
+        return replace(_point(eta, settings, found, {}, {}, {}), notes=_notes(responses))
     start = found.value if isinstance(found, Crossing) else start
     few, more = (max(1, round(part * settings.runs)) for part in (FIRST_RUNS, END_RUNS))
     each = {kick: _crossings(responses[kick], few, start) for kick in kicks}
     middles = {kick: three[1] for kick, three in each.items()} | {reference: found}
     lows = _first_settled(responses, BAND_FEW, more, {kick: three[0] for kick, three in each.items()}, 1)
     highs = _first_settled(responses, BAND_MOST, more, {kick: three[2] for kick, three in each.items()}, -1)
-    return _point(eta, settings, found, lows, middles, highs)
+    return replace(_point(eta, settings, found, lows, middles, highs), notes=_notes(responses))
+
+
+def _notes(responses: Mapping[MetrePerSecond, Response]) -> tuple[str, ...]:
+    return tuple(note for _, response in sorted(responses.items()) for note in response.notes)
 
 
 def expected_runs(settings: StabilitySettings, *, band: bool) -> float:

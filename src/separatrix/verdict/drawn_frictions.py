@@ -6,7 +6,6 @@ kind, made and loaded with the stated uncertainties, runs stably.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -18,7 +17,7 @@ from separatrix.cage.ensemble import Ensemble, Runs
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution, solve
 from separatrix.friction.friction_fit import TestedFriction
-from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.keys import study_numbers
 from separatrix.study.study import BallModel, Friction, Study
@@ -116,26 +115,24 @@ def drawn_bearings(study: Study, runs: int) -> DrawnBearings:
     """
     made: list[tuple[int, Study, Solutions]] = []
     failures = []
-    with warnings.catch_warnings():  # each draw would repeat those of the central values
-        warnings.simplefilter("ignore", ValidityWarning)
-        central = _solutions(study)
-        stated = frictions_to_draw(study, central)
-        draws, numbers = sample(study, runs, frictions=stated), study_numbers(study)
-        put = draws.setter()
-        alike = all(numbers[key].is_friction for key in draws.names if key in numbers)
-        for run, row in enumerate(draws.values.tolist()):
-            try:
-                drawn = put(row)
-                own = central if alike else _solutions(drawn)
-                for one in own.values():
-                    moving_cage(one, 0.0)  # refused here, not in a thread
-                made.append((run, drawn, own))
-            except SeparatrixError as error:
-                failures.append(str(error))
-        if not made:
-            rule = "makes no bearing in any draw of its uncertain inputs"
-            raise InputError(study.name, rule, failures[0])
-        friction = _frictions(stated, central, made)
+    central = _solutions(study)
+    stated = frictions_to_draw(study, central)
+    draws, numbers = sample(study, runs, frictions=stated), study_numbers(study)
+    put = draws.setter()
+    alike = all(numbers[key].is_friction for key in draws.names if key in numbers)
+    for run, row in enumerate(draws.values.tolist()):
+        try:
+            drawn = put(row)
+            own = central if alike else _solutions(drawn)
+            for one in own.values():
+                moving_cage(one, 0.0)  # refused here, not in a thread
+            made.append((run, drawn, own))
+        except SeparatrixError as error:
+            failures.append(str(error))
+    if not made:
+        rule = "makes no bearing in any draw of its uncertain inputs"
+        raise InputError(study.name, rule, failures[0])
+    friction = _frictions(stated, central, made)
     return DrawnBearings(
         study=study,
         stated=stated,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -13,7 +12,7 @@ import numpy as np
 from separatrix.cage.ensemble import Ensemble
 from separatrix.chain.pocket_friction import with_scatter
 from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, Ratio
 from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
 from separatrix.study.distribution import described
@@ -114,6 +113,7 @@ def _answer(
     notes = (
         [f"{failed} of {asked} draws make no bearing and are left out: {drawn.failures[0]}"] if failed else []
     )
+    chain = (note for one in drawn.central.values() for note in one.notes)
     return UncertainStudy(
         bearings=asked,
         failed=failed,
@@ -136,7 +136,7 @@ def _answer(
         allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
-        notes=(*notes, *beyond_motion(central, moved)),
+        notes=(*chain, *notes, *beyond_motion(central, moved)),
         complete=True,
     )
 
@@ -318,9 +318,7 @@ def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothS
             rows.append((found.restitution_factor, found.race_damping))
         return np.array(rows)
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ValidityWarning)
-        found = sobol_shares(model, [one.key for one in inputs], seed=study.stability.seed)
+    found = sobol_shares(model, [one.key for one in inputs], seed=study.stability.seed)
     return tuple(
         SmoothShares(quantity=quantity, name=own.name, first=first, total=total)
         for quantity, (first, total) in zip(("restitution_factor", "race_damping"), found, strict=True)

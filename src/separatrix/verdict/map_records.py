@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 from typing import Annotated
 
 from separatrix.ground.errors import InputError
@@ -83,6 +84,17 @@ def value_in(study: Study, name: str) -> float | None:
 
 
 NOT_RUN = "not run"
+
+
+class State(Enum):
+    """What became of a point of a map."""
+
+    RUN = "run"
+    REFUSED = "refused"
+    INFERRED = "inferred: the points around it agree"
+    NOT_RUN = "not run, for an interrupt"
+
+
 SETTLES, WHIRLS, EITHER = -1, 1, 0  # side of one half on which P(whirl) lies
 
 
@@ -109,6 +121,7 @@ class MapPoint:
 
     x: float  # value of the parameter x, SI
     y: float  # value of the parameter y, SI
+    state: State = State.NOT_RUN
     decision: Verdict | None = None  # by the rule of `cage.judge`, from the runs that were made
     probability_whirl: Ratio | None = None  # share of the runs that whirl
     probability_low: Ratio | None = None  # lower end of its 95 % Wilson interval
@@ -125,6 +138,7 @@ class MapPoint:
     it whirls, 0 in the band; null in a column that does not change."""
     inferred_decision: Verdict | None = None  # of the points around it, which an adaptive map did not run
     reason: str = NOT_RUN  # of the decision, or why there is none
+    notes: tuple[str, ...] = ()  # where its chain leaves the range of a model, a sentence each
 
     @property
     def side(self) -> int:
@@ -140,6 +154,8 @@ class MapChange:
     y_low: float  # last point below the change
     y_high: float  # first point above the change
     whirls_above: bool  # whether the cage whirls above the band, or below it
+    margin: float | None = None
+    """Distance of the study's own y to this band, negative where it whirls; null if the study has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -183,7 +199,7 @@ class StabilityMap:
 
     x: MapAxis  # horizontal axis
     y: MapAxis  # vertical axis
-    points: tuple[MapPoint, ...]  # column after column of x
+    points: Annotated[tuple[MapPoint, ...], Rows("point", "point_")]  # column after column of x
     changes: Annotated[tuple[MapChange, ...], Rows("change", "change_")]
     """Bands between motion that settles and a whirl."""
     counts: Annotated[Mapping[str, int], Rows(prefix="points_")]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -77,6 +78,7 @@ class _Question:
     """Solutions by pocket, and what is to be computed with them."""
 
     settings: StabilitySettings
+    solved: Sequence[Solution]  # of each candidate
     cages: Mapping[Pocket, Solution]
     tracers: Mapping[Pocket, Tracer]
     pockets: Mapping[str, Pocket]
@@ -150,16 +152,22 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             ball_model=reference.design.ball,
             motion_model=reference.design.motion,
             capacity=transmitted_force(reference),
-            notes=_notes(study, asked, question, ranked[environment]),
+            notes=_notes(study, asked, question, found, ranked[environment]),
             complete=found.complete,
         )
 
     return _compute(question, ranking)
 
 
-def _notes(study: Study, asked: RankingQuestion, question: _Question, rows: Sequence[Row]) -> tuple[str, ...]:
-    """Sentences for under the table: whose curve it is, and where the motion leaves its model."""
-    notes = [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
+def _notes(
+    study: Study, asked: RankingQuestion, question: _Question, found: _Findings, rows: Sequence[Row]
+) -> tuple[str, ...]:
+    """Sentences for under the table: whose curve it is, and where chain and motion leave their models."""
+    points = [*chain.from_iterable(found.points.values()), *([found.here] if found.here else [])]
+    notes = [note for one in question.solved for note in one.notes]
+    notes += [note for tracer in question.tracers.values() for note in tracer.counter.cage.notes]
+    notes += [note for point in points for note in point.notes]
+    notes += [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
     if question.drawn and (failures := question.drawn.failures):
         share = f"{len(failures)} of {study.stability.runs}"
         notes.append(f"{share} draws of the uncertain inputs make no bearing: {failures[0]}")
@@ -197,6 +205,7 @@ def _question(
     }
     return _Question(
         settings=settings_for(study.stability, empty[reference]),
+        solved=[*solved.values()],
         cages=cages,
         tracers=tracers,
         pockets=pockets,

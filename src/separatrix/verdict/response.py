@@ -8,7 +8,6 @@ first run on, and the next runs are counted where the target most likely is.
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -22,7 +21,6 @@ from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import LANES
 from separatrix.chain.ball_traction import FreeBall, SlipField
 from separatrix.chain.impact_restitution import damping_for
-from separatrix.ground.errors import ValidityWarning
 from separatrix.ground.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import wilson_interval
@@ -39,10 +37,11 @@ tenth."""
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """Number of whirling runs among the runs made."""
+    """Number of whirling runs among the runs made, and sentences on those that do not show where they end."""
 
     whirling: int
     runs: int
+    notes: tuple[str, ...] = ()
 
     @property
     def share(self) -> Ratio:
@@ -59,7 +58,7 @@ class Count:
         return agree and max(target, 1.0 - target) ** self.runs < ALIKE
 
     def __add__(self, other: Count) -> Count:
-        return Count(self.whirling + other.whirling, self.runs + other.runs)
+        return Count(self.whirling + other.whirling, self.runs + other.runs, self.notes + other.notes)
 
 
 def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> MovingCage:
@@ -134,10 +133,9 @@ class GrowthCounter:
         left = found.cause == Cause.LEFT_POCKET
         unresolved = (found.outcome == RunOutcome.UNRESOLVED) & ~left
         open_ends = int(np.count_nonzero(unresolved & (found.cause != Cause.FALLING)))
-        if open_ends:  # a motion that still falls does not whirl
-            note = UNRESOLVED.format(open_ends, runs, kick, friction)
-            warnings.warn(note, ValidityWarning, stacklevel=2)
-        return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs)
+        # a motion that still falls does not whirl
+        notes = (UNRESOLVED.format(open_ends, runs, kick, friction),) if open_ends else ()
+        return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs, notes)
 
 
 SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
@@ -195,6 +193,11 @@ class Response:
     def __init__(self, look: Look, runs: int) -> None:
         self.counts: dict[int, Count] = {}
         self._look, self._runs, self._next = look, runs, 0
+
+    @property
+    def notes(self) -> list[str]:
+        """Those of its counts, rising frictions first."""
+        return [note for _, count in sorted(self.counts.items()) for note in count.notes]
 
     def add(self, cell: int, runs: int) -> Count:
         """Count more runs at a place of the ladder."""

@@ -89,6 +89,12 @@ class StabilityCurve:
     adaptive: bool  # whether the restitution factors were chosen here
     complete: bool  # false if an interrupt left points out
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Those of its points."""
+        points = self.curve if self.here is None else (*self.curve, self.here)
+        return tuple(note for point in points for note in point.notes)
+
 
 def stability_curve(
     cage: MovingCage, settings: StabilitySettings, *, runner: Runner | None = None

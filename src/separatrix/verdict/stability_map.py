@@ -44,6 +44,7 @@ from separatrix.verdict.map_records import (
     MapPoint,
     MapQuestion,
     StabilityMap,
+    State,
     Stopping,
     value_in,
     varied,
@@ -54,6 +55,7 @@ MOST_LINKS = 1024  # links of the chain that are remembered
 OF_THE_CAGE = (RESTITUTION, FRICTION, KICK)  # parameters that change nothing before the cage itself
 INTERRUPTED = f"{NOT_RUN}: interrupted"
 AGREED = f"{NOT_RUN}: the points around it agree"
+ROUNDING = 1e-9  # share of a value below which its distance to a band is the rounding of its unit
 Values = tuple[tuple[str, float], ...]  # of parameters, by their names
 
 
@@ -99,7 +101,7 @@ class PointFinder:
         try:
             return self._run(x, y)
         except (InputError, ConvergenceError) as error:
-            return MapPoint(x=x, y=y, reason=str(error))
+            return MapPoint(x=x, y=y, state=State.REFUSED, reason=str(error))
 
     def _run(self, x: float, y: float) -> MapPoint:
         values = dict(zip(self._names, (x, y), strict=True))
@@ -115,7 +117,7 @@ class PointFinder:
         kick = values.get(KICK, self.question.kick)
         settings = solution.study.stability
         ensemble = _decided_ensemble(cage, settings, kick, self.question.runs, self.runner)
-        return _judged(x, y, cage, eta, ensemble)
+        return replace(_judged(x, y, cage, eta, ensemble), notes=(*solution.notes, *cage.notes))
 
     def _find_state(self, values: Values) -> tuple[Solution, MovingCage] | str:
         """Chain and cage of a study, or why there is none: a refusal is worth remembering too.
@@ -161,6 +163,7 @@ def _judged(x: float, y: float, cage: MovingCage, eta: Ratio, ensemble: Ensemble
     return MapPoint(
         x=x,
         y=y,
+        state=State.RUN,
         decision=decision,
         probability_whirl=now.whirls / now.runs,
         probability_low=low,
@@ -191,10 +194,11 @@ def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
         sides = [point.side for point in column]
         along = zip(column, margins(heights, sides), strict=True)
         points += [replace(point, margin=margin if point.runs else None) for point, margin in along]
-        bands += [
+        found = (
             MapChange(x=x, y_low=heights[a], y_high=heights[b], whirls_above=sides[b] > 0)
             for a, b in changes(sides)
-        ]
+        )
+        bands += [replace(one, margin=_margin(one, question.y.here)) for one in found]
     settings = question.study.stability
     return StabilityMap(
         x=question.x,
@@ -212,9 +216,20 @@ def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
     )
 
 
+def _margin(change: MapChange, here: float | None) -> float | None:
+    """Distance of a value of y to a band; what the rounding of its unit makes is none."""
+    if here is None:
+        return None
+    distance = max(change.y_low - here, here - change.y_high, 0.0)
+    distance *= distance > ROUNDING * abs(here)
+    whirls = (here > change.y_high) == change.whirls_above and distance > 0.0
+    return -distance if whirls else distance
+
+
 def _not_run(filled: Filled, place: Place, x: float, y: float) -> MapPoint:
     if place in filled.inferred:
-        return MapPoint(x=x, y=y, inferred_decision=filled.inferred[place], reason=AGREED)
+        near = filled.inferred[place]
+        return MapPoint(x=x, y=y, state=State.INFERRED, inferred_decision=near, reason=AGREED)
     return MapPoint(x=x, y=y, reason=INTERRUPTED)
 
 
@@ -239,11 +254,7 @@ def counts(points: Iterable[MapPoint]) -> dict[str, int]:
 
 
 def _kind(point: MapPoint) -> str:
-    if point.decision is not None:
-        return point.decision.name
-    if point.reason == AGREED:
-        return "inferred"
-    return "not_run" if point.reason.startswith(NOT_RUN) else "refused"
+    return point.state.name.lower() if point.decision is None else point.decision.name
 
 
 def stopping(runs: int) -> Stopping:

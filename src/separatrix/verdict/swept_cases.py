@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -11,7 +10,7 @@ from functools import partial
 from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.errors import InputError, SeparatrixError, ValidityWarning
+from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import (
     Hertz,
     Metre,
@@ -193,6 +192,7 @@ class Sweep:
     worst: WorstCase | None  # least margin, P(stable), or largest eta; null without an answer
     duty: Duty | None  # time in each verdict; null without shares of time
     complete: bool  # false if an interrupt left cases out
+    notes: tuple[str, ...] = ()  # on the study itself, whose cases would repeat them, a sentence each
 
 
 def sweep(
@@ -240,9 +240,7 @@ def sweep(
             complete=len(found) == len(cases),
         )
 
-    with warnings.catch_warnings():  # thousands of cases would repeat the same
-        warnings.simplefilter("ignore", ValidityWarning)
-        return runner.work_out(run, scattered(range(len(cases))), into=table)
+    return runner.work_out(run, scattered(range(len(cases))), into=table)
 
 
 def _names(cases: Sequence[Case]) -> list[str]:

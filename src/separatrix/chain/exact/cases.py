@@ -6,7 +6,6 @@ longitudinal creep (Kalker's spin is phi = -s), and a body 1 that is the faster 
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -35,7 +34,7 @@ from separatrix.chain.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.exact.transient import shift, transient
 from separatrix.chain.exact.two_way import solve_two_way
 from separatrix.chain.film_profile import Profile
-from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio, unit_of
 
 MOST_CELLS = 5_000_000  # of all cases: their fields take 60 bytes a cell
@@ -106,13 +105,16 @@ class ContactSetup:
         if not ellipse.max_pressure < ellipse.contact_modulus:
             rule = f"must be below the modulus of the pair, {ellipse.contact_modulus:.3g} Pa"
             raise InputError("ContactProblem.ellipse.max_pressure", rule, f"{ellipse.max_pressure:.3g} Pa")
-        steepest = max(
-            ellipse.semi_minor * ellipse.curvature_rolling, ellipse.semi_major * ellipse.curvature_transverse
-        )
-        if steepest > LARGEST_STEEPNESS:
-            said = f"a half axis of the contact is {steepest:.2g} of the radius of the gap there; "
-            limit = f"half-spaces describe the bodies to about {LARGEST_STEEPNESS:g}."
-            warnings.warn(said + limit, ValidityWarning, stacklevel=3)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence where the bodies are too steep at the edge of the contact."""
+        one = self.problem.ellipse
+        steepest = max(one.semi_minor * one.curvature_rolling, one.semi_major * one.curvature_transverse)
+        if self.gap is not None or not steepest > LARGEST_STEEPNESS:
+            return ()
+        said = f"a half axis of the contact is {steepest:.2g} of the radius of the gap there; "
+        return (f"{said}half-spaces describe the bodies to about {LARGEST_STEEPNESS:g}.",)
 
     @property
     def cell_count(self) -> int:
@@ -259,6 +261,13 @@ class ContactAnswer:
     slope: RaceSlope | None = None
     slope_reason: str = ""
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the contacts leave the range of their model, a sentence each."""
+        notes = [note for one in self.cases for note in one.case.setup.notes]
+        notes += [note for one in self.cases if one.solution for note in one.solution.notes]
+        return tuple(dict.fromkeys([*notes, *(self.slope.notes if self.slope else ())]))
+
 
 def rolling_cases(
     problem: ContactProblem,
@@ -329,11 +338,6 @@ def exact_contact(
     ------
     InputError
         A contact that cannot be set up, see `rolling_contact`, or a start from other cells.
-
-    Warns
-    -----
-    ValidityWarning
-        A film is compressed beyond the range of linear elasticity.
     """
     state, solved = _State(), list[SolvedCase]()
     for number, case in enumerate(question.cases, 1):

@@ -12,7 +12,6 @@ xi being the longitudinal creep ratio, eta the lateral one, s the spin and q Hea
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Annotated
@@ -28,7 +27,7 @@ from separatrix.chain.exact.pressure import film_strain, press, pressed_contact,
 from separatrix.chain.exact.slip import TOLERANCE, FrictionLaw, Settled, over_cells, rough_compliance, settle
 from separatrix.chain.film_profile import Profile
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.ground.errors import ConvergenceError, InputError, ValidityWarning
+from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
 
 LARGEST_TOLERANCE = 0.1
@@ -89,6 +88,11 @@ class RollingContact:
     film_strain: Ratio
     operator: Operator = field(repr=False)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the contact leaves the range of its model, a sentence each."""
+        return _compressed(self.film_strain)
+
 
 Field = Annotated[Array, "Pa", ("row", "column")]
 Vectors = Annotated[Array, "Pa", ("direction", "row", "column")]
@@ -128,6 +132,11 @@ class ContactSolution:
         """Force of the ball on the race along rolling over the load; positive where the ball is faster."""
         return -self.force / self.load
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the contact leaves the range of its model, a sentence each."""
+        return _compressed(self.film_strain)
+
 
 def rolling_contact(
     problem: ContactProblem, *, columns: int | None = None, rows: int | None = None
@@ -141,11 +150,6 @@ def rolling_contact(
     InputError
         A film that the pressure would compress by more than itself, layers thicker than 100 semi-major axes,
         or a grid that is too coarse or too fine.
-
-    Warns
-    -----
-    ValidityWarning
-        The film is compressed by more than a tenth: it is not linearly elastic there.
     """
     ellipse, bodies = problem.ellipse, problem.bodies
     b, a, p0 = ellipse.semi_minor, ellipse.semi_major, ellipse.max_pressure
@@ -240,14 +244,15 @@ def _checked_strain(bodies: tuple[Body, Body], max_pressure: Pascal) -> Ratio:
         raise InputError(
             "rolling_contact: film strain p0/M_c", "must not exceed 1 [-]", f"{strain:.2g}", cure
         )
-    if strain > DOUBTFUL_STRAIN:
-        warnings.warn(
-            f"the film is compressed by {strain:.2g} of its thickness; linear elasticity holds to about "
-            f"{DOUBTFUL_STRAIN:g}.",
-            ValidityWarning,
-            stacklevel=4,
-        )
     return strain
+
+
+def _compressed(strain: Ratio) -> tuple[str, ...]:
+    """A sentence where the film is compressed so much that it is not linearly elastic."""
+    if not strain > DOUBTFUL_STRAIN:
+        return ()
+    holds = f"linear elasticity holds to about {DOUBTFUL_STRAIN:g}."
+    return (f"the film is compressed by {strain:.2g} of its thickness; {holds}",)
 
 
 def rigid_slip(

@@ -58,6 +58,11 @@ class RaceSlope:
     free_rolling_offset: Ratio
     solution: ContactSolution
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the contact leaves the range of its model, a sentence each."""
+        return self.solution.notes
+
 
 def traction_slope(
     problem: ContactProblem, creep: Creep, *, columns: tuple[int, int] = COLUMNS, rows: int = ROWS

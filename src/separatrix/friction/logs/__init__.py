@@ -39,6 +39,21 @@ class UnmappedError(InputError):
     place: Path = Path()
     """Where the draft is to be written."""
 
+    def with_draft_written(self) -> InputError:
+        """The refusal, its draft written beside the log and named in its cure; a file there is kept."""
+        name = printable(self.place.name, 150)
+        others = self.cure.partition("beside the log.")[2]
+        cure = f"Look at the draft {name} beside the log, and add: --map {name}."
+        try:
+            with self.place.open("x", encoding="utf-8") as file:
+                file.write(self.draft)
+        except FileExistsError:
+            look = f"There is a file {name}: look at it, and add: --map {name}."
+            cure = f"{look} Without it, a new draft is written."
+        except OSError as fault:
+            cure = f"A draft of a column map could not be written beside the log: {fault.strerror}."
+        return self.at(self.path, cure=f"{cure}{others}")
+
 
 def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:
     """Logs of one file: one for each table, sheet, channel group or step in it.

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import warnings
-
 from separatrix.cage import MovingCage, moving_cage
 from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.errors import InputError, ValidityWarning
+from separatrix.ground.errors import InputError
 from separatrix.ground.units import MetrePerSecond, format_quantity, parse
 from separatrix.study.candidates import (
     cage_candidate,
@@ -43,28 +41,26 @@ def kick_speed(kick: str | MetrePerSecond) -> MetrePerSecond:
     return speed
 
 
-def warn_of_extrapolation(solution: Solution) -> None:
-    """Warn where the friction of the cage comes from tests at other conditions."""
+def extrapolation_notes(solution: Solution) -> tuple[str, ...]:
+    """A sentence where the friction of the cage comes from tests at other conditions."""
     friction, own = solution.friction, cage_candidate(solution.study)
     if friction is not None and own is not None and friction.law is not None and friction.extrapolation:
         place = environment_of(solution.study.ranking) if solution.study.ranking else ""
-        warnings.warn(
+        return (
             f"Pocket friction {friction.mean:.3g} of {own.name} in {place}, extrapolated beyond the "
             f"tests: {'; '.join(friction.extrapolation)}. [cage] ball_cage_friction overrides it.",
-            ValidityWarning,
-            stacklevel=3,
         )
+    return ()
 
 
-def warn_if_overdamped(found: Restitution) -> None:
-    """Warn where the races brake a ball so much that an impact returns nothing."""
-    if found.restitution_factor == 0.0:
-        damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
-        warnings.warn(
-            f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
-            f"= {least}; every material whose cage has this k_BC and M_C has its full threshold as margin. "
-            "C_mu falls as race friction falls and as speed rises. Test experience may differ: "
-            "docs/theory/restitution.md.",
-            ValidityWarning,
-            stacklevel=2,
-        )
+def overdamped_notes(found: Restitution) -> tuple[str, ...]:
+    """A sentence where the races brake a ball so much that an impact returns nothing."""
+    if found.restitution_factor != 0.0:
+        return ()
+    damping, least = (format_quantity(c, "N s/m", 3) for c in (found.race_damping, found.least_damping))
+    return (
+        f"eta = 0: impacts are overdamped, because C_mu = {damping} is below the limit sqrt(k_BC M_C)/2 "
+        f"= {least}; every material whose cage has this k_BC and M_C has its full threshold as margin. "
+        "C_mu falls as race friction falls and as speed rises. Test experience may differ: "
+        "docs/theory/restitution.md.",
+    )

@@ -1,0 +1,199 @@
+"""What every page begins and ends with: of what it is, its notes, its inputs with sources, its provenance."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
+from typing import Any
+
+from separatrix.ground.document import Part
+from separatrix.ground.units import format_quantity
+from separatrix.present.blocks import Block, Heading, Level, Note, Page, Table, facts, text_column
+
+NAMED = 4
+"""Uncertain inputs that are named in a sentence."""
+
+INTERRUPTED = "Interrupted: only what was finished is here."
+
+PROPERTIES = {
+    "elastic_modulus": "elastic modulus",
+    "poisson_ratio": "Poisson's ratio",
+    "density": "density",
+    "expansion": "thermal expansion",
+}
+
+Json = Mapping[str, Any]
+
+
+APPENDIX = Level.REPORT | Level.SHEET
+
+
+def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level = APPENDIX) -> Page:
+    """Return the page of an answer: what is asked, its blocks, its notes, inputs and provenance.
+
+    `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
+    `appendix` is where inputs and provenance are shown.
+    """
+    missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED, "caveat")]
+    uncertain = [one["name"] for one in answer.values["study"]["uncertain_inputs"]]
+    notes = [] if draws or not uncertain else [at_their_means(uncertain)]
+    caveats = [Note(text, "caveat") for text in [*notes, *answer.warnings]]
+    return Page(
+        answer.title,
+        f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",
+        (*missing, *blocks, *caveats),
+        tuple(sources(answer, appendix)),
+    )
+
+
+def at_their_means(names: Sequence[str]) -> str:
+    """Return the sentence of a verb that takes one value of each uncertain input."""
+    listed = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
+    several = f"{len(names)} uncertain inputs are at their means"
+    return f"{several if len(names) > 1 else 'An uncertain input is at its mean'}: {listed}."
+
+
+def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
+    """Return inputs, materials and frictions with where each is from, and how to compute the answer again."""
+    from separatrix.study.sources import inputs_of
+
+    study = answer.values["study"]
+    known = answer.values.get("provenance") or {}
+    entries = tuple(inputs_of(study))
+    found = [
+        text_column("input", lambda row: f"{row[0]}: {row[1].replace('_', ' ')}"),
+        text_column("value", lambda row: entry_words(row[2])),
+        text_column("given in", lambda row: row[2]["origin"]),
+    ]
+    files = {str(name): str(one.get("sha256") or "") for name, one in (known.get("files") or {}).items()}
+    return [
+        Heading("Inputs and their sources", level),
+        Table("inputs", tuple(found), entries, "Inputs of the study.", level),
+        *_materials(study, level),
+        *(_frictions(study["ranking"], level) if study.get("ranking") else []),
+        Heading("Provenance", level),
+        facts(
+            ("Command", f"`{command(answer)}`"),
+            ("Version of separatrix", answer.separatrix_version),
+            ("Seed", str(answer.seed)),
+            *((str(name), str(one)) for name, one in (known.get("versions") or {}).items()),
+            *((f"SHA-256 of {name}", one) for name, one in files.items()),
+            level=level,
+        ),
+    ]
+
+
+def entry_words(entry: Json) -> str:
+    """Return the value of an input, a material's name, or a list, with its distribution."""
+    words = str(entry["name"]) if entry.get("name") else _value(entry.get("value"), entry.get("unit") or "")
+    return words + (f" ({entry['distribution']['words']})" if "distribution" in entry else "")
+
+
+def _value(value: Any, unit: str) -> str:
+    if isinstance(value, list):
+        if len(value) > 4:
+            return f"{_value(value[0], unit)} ... {_value(value[-1], unit)} ({len(value)})"
+        return ", ".join(_value(one, unit) for one in value) or "-"
+    if value is None or isinstance(value, bool) or not isinstance(value, int | float):
+        return "-" if value is None else str(value)
+    return format_quantity(value, unit, 7) if unit not in ("", "-") else f"{value:g}"
+
+
+def _materials(study: Json, level: Level) -> list[Block]:
+    rows = tuple(dict.fromkeys(_properties(study)))
+    heads = ("material", "property", "value", "confidence", "source")
+    columns = tuple(text_column(head, itemgetter(at)) for at, head in enumerate(heads))
+    return [Table("materials", columns, rows, "Materials, at the temperature of the study.", level)]
+
+
+def _properties(study: Json) -> Iterator[tuple[str, ...]]:
+    parts = [study.get(name) or {} for name in ("bearing", "film", "cage")]
+    found = [one.get(key) for one in parts for key in ("ball_material", "ring_material", "material")]
+    found += [one.get("material") for one in (study.get("ranking") or {}).get("candidates", [])]
+    for one in found:
+        if not isinstance(one, dict) or not one.get("name"):
+            continue
+        record = one.get("record") or {}
+        for key, words in PROPERTIES.items():
+            value = one.get(key) or {}
+            if value.get("value") is None:
+                continue
+            place = (record.get("taken") or {}).get(key)
+            taken = record["data"][key][place] if place is not None else {}
+            known = (taken.get(each) or one.get(each) or "-" for each in ("confidence", "source"))
+            yield str(one["name"]), words, _value(value["value"], value.get("unit") or ""), *map(str, known)
+
+
+def _frictions(ranking: Json, level: Level) -> list[Block]:
+    def friction(place: str) -> Any:
+        def words(row: Any) -> str:
+            found = row["friction"].get(place)
+            if found is None:
+                return "not measured"
+            spread = found.get("standard_deviation")
+            return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
+
+        return text_column(place, words)
+
+    columns = (text_column("candidate", lambda row: row["name"]), *map(friction, ranking["environments"]))
+    caption = f"Friction of the candidates as measured, with standard deviation. From {ranking['origin']}."
+    known = [one for row in ranking["candidates"] for one in row["friction"].values() if one is not None]
+    origins = dict.fromkeys(f"{one['source']} ({one['confidence']})" for one in known)
+    table = Table("frictions", columns, tuple(ranking["candidates"]), caption, level)
+    return [table, *(Note(f"Source of the frictions: {one}.", "legend", level) for one in origins)]
+
+
+def command(answer: Part) -> str:
+    """Return the command line that computes an answer again."""
+    kept = answer.values.get("provenance") or {}
+    asked, entry = kept.get("command") or {}, str(kept.get("entry") or "")
+    study = answer.name if entry.startswith("shipped:") or not entry else entry
+    options: list[str] = []
+    for key, value in {**(asked.get("question") or {}), **(asked.get("models") or {})}.items():
+        flag = f"--{key.replace('_', '-')}"
+        for one in value if isinstance(value, list) else [value]:
+            if one not in (None, False):
+                options += [flag] if one is True else [flag, shlex.quote(str(one))]
+    return " ".join(["separatrix", answer.verb, shlex.quote(str(study)), *options])
+
+
+def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return what stands above a figure: the title, and the operating point but for the inputs `varied`."""
+    around = [
+        ", ".join(
+            filter(
+                None,
+                [
+                    _stated(answer, "operation", "fluid", varied),
+                    _stated(answer, "operation", "temperature", varied),
+                ],
+            )
+        )
+    ]
+    for race in ("inner", "outer"):
+        speed = _stated(answer, "operation", f"{race}_speed", varied)
+        around += [f"{race} ring {speed}"] if speed else []
+    for way in ("axial", "radial"):
+        load = _stated(answer, "operation", f"{way}_load", varied)
+        around += [f"{load} {way}"] if load else []
+    film = answer.values["study"].get("film") or {}
+    if film and not film.get("is_bare"):
+        name = (film.get("material") or {}).get("name")
+        around += [", ".join(filter(None, [name, _stated(answer, "film", "thickness", varied)]))]
+    elif film:
+        around += ["bare races"]
+    return tuple(filter(None, [answer.title, "; ".join(filter(None, [*around, *more]))]))
+
+
+def _stated(answer: Part, section: str, key: str, varied: Sequence[str]) -> str:
+    """Return an input of the study as text; empty if there is none, if it is 0, or if it is varied."""
+    entry = (answer.values["study"].get(section) or {}).get(key) or {}
+    value = entry.get("value")
+    if not value or key in varied:
+        return ""
+    return (
+        format_quantity(value, entry["unit"]).replace(" um", " \N{MICRO SIGN}m")
+        if entry.get("unit")
+        else str(value)
+    )

@@ -1,0 +1,209 @@
+"""What several verbs tell of the chain before the cage: contacts, creep, running clearances."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from separatrix.ground.document import Part
+from separatrix.present.blocks import (
+    Block,
+    Cell,
+    Column,
+    Equation,
+    Heading,
+    Level,
+    Picture,
+    Table,
+    facts,
+    text_column,
+)
+from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
+from separatrix.verbs.parts.answer_page import figure_heading
+from separatrix.verbs.parts.study_facts import bearing_facts
+from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
+
+RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
+ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
+CREEP = ("spin_roll_ratio", "creep_spin", "creep_curvature")
+
+
+def contact_blocks(answer: Part, at: Part) -> list[Block]:
+    """Return both contacts of the most loaded ball: ellipse, pressure and creep."""
+    return [
+        Heading("Contacts of the most loaded ball"),
+        Equation(
+            r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
+            "Hertz: maximum pressure $p_0$ of the ellipse with semi-axes $a$ and $b$.",
+        ),
+        by_race("contacts", at.inner, at.outer, *ELLIPSE),
+        Picture(
+            "bearing-contacts",
+            lambda: contacts_figure(answer, at),
+            "The contacts of the most loaded ball: ellipses to scale, pressure and creep across the groove.",
+        ),
+        Equation(
+            r"\xi(y) = \delta + s\,y + q\,y^2 + \delta\xi",
+            "Creep across the groove [14, 16]: free-rolling offset, spin $s$, curvature $q$ (Heathcote), and "
+            "the increment $dxi$ that an impact of the cage adds.",
+        ),
+        by_race("creep", at.inner, at.outer, *CREEP, level=Level.LONG, caption="Creep in these contacts."),
+    ]
+
+
+def contacts_figure(answer: Part, at: Part) -> Figure:
+    """Return the contacts of the most loaded ball: ellipses to scale, pressure, creep across the groove."""
+    import numpy as np
+
+    plan: list[Mark] = []
+    pressure: list[Mark] = []
+    creep: list[Mark] = []
+    wide = 1.12 * max(at.inner.semi_major, at.outer.semi_major)
+    across = axis("groove_place", "m", [wide], low=-wide, high=wide)
+    for (race, colour, _, line), side in zip(RACES, (1, -1), strict=True):
+        found = getattr(at, race)
+        look: dict[str, Any] = {"colour": colour, "line": line}
+        a, b = found.semi_major, found.semi_minor
+        angle, y = np.linspace(0.0, 2.0 * np.pi, 181), np.linspace(-a, a, 121)
+        x = b * (np.sin(angle) + 2.2 * side)
+        plan.append(Trace(x=(a * np.cos(angle)).tolist(), y=x.tolist(), fill=0.25, width=1.0, **look))
+        plan.append(Words(x=0.0, y=2.2 * side * b, text=race, colour=colour, side="on"))
+        p = found.max_pressure * np.sqrt(np.maximum(0.0, 1.0 - (y / a) ** 2))
+        hover = tuple(
+            f"{race} race: y {1e3 * u:.3g} mm, pressure {1e-9 * v:.3g} GPa" for u, v in zip(y, p, strict=True)
+        )
+        pressure.append(Trace(x=y.tolist(), y=p.tolist(), name=f"{race} race", hover=hover, **look))
+        xi = found.creep_spin * y + found.creep_curvature * y * y
+        creep.append(Trace(x=y.tolist(), y=xi.tolist(), **look))
+    p0 = axis("pressure", "Pa", [at.inner.max_pressure], low=0.0)
+    along = Axis(label="x along rolling, same scale", size=across.size, has_ticks=False)
+    return Figure(
+        rows=(
+            (
+                Panel(title="a  Ellipses, to scale", x=across, y=along, marks=tuple(plan), is_to_scale=True),
+                Panel(title="b  Pressure on the axis x = 0", x=across, y=p0, marks=tuple(pressure)),
+                Panel(
+                    title="c  Creep by spin and curvature",
+                    x=across,
+                    y=axis("creep_ratio", "-", []),
+                    marks=tuple(creep),
+                ),
+            ),
+        ),
+        heading=figure_heading(answer),
+        alt="Three panels: both contact ellipses to scale, pressure and creep across the groove.",
+    )
+
+
+def clearance_blocks(found: Part | None) -> list[Block]:
+    """Return each clearance of the cage at rest and as it runs, with its strains; none if they are stated."""
+    return [] if found is None else [Heading("Clearances of the cage"), facts(*clearance_facts(found))]
+
+
+def clearance_facts(found: Part) -> list[tuple[str, str]]:
+    """Return each clearance of the cage at rest and as it runs, with its strains."""
+    rows = []
+    for words, rest, runs in (
+        ("Running pocket clearance", "pocket_at_rest", "pocket"),
+        ("Along the axis", "pocket_axial_at_rest", "pocket_axial"),
+        ("Running land clearance", "land_at_rest", "land"),
+    ):
+        if rest in found and runs in found:
+            text = f"{{{runs}}} at {{temperature}} and a cage speed of {{cage_speed}}, "
+            rows.append((words, said(found, f"{text}{{{rest}}} at 293 K at rest")))
+    strains = (("cage", "cage_strain"), ("balls", "ball_strain"), ("rings", "ring_strain"))
+    known = [said(found, f"{part} {{{key}}}") for part, key in strains if key in found]
+    grown = [said(found, "cage {hoop_strain} at its pitch radius")]
+    lands = (("its land", "cage_land_growth"), ("the ring's land", "ring_land_growth"))
+    grown += [said(found, f"{part} {{{key}}} in radius") for part, key in lands if found.get(key)]
+    return [*rows, ("Thermal strain", ", ".join(known)), ("Growth by rotation", ", ".join(grown))]
+
+
+FACTORS = ("race_damping", "damping_ratio", "restitution_factor")
+DAMPING = ("load", "slope", "rolling_speed")
+OVERDAMPED = " (overdamped)"
+
+
+def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
+    """Return both restitution factors, and what they are made of, with the equations."""
+
+    def factor(end: str) -> Column:
+        head = "if the ball may spin" if end else "dampings summed (Eq. 18)"
+        is_over = chain.get(f"restitution_factor{end}") == 0.0
+        return Column(
+            head,
+            lambda name: cell(
+                chain, name + end, OVERDAMPED if is_over and name == "restitution_factor" else ""
+            ),
+        )
+
+    hertz = "{restitution_factor_hertz} in an impact at the impact speed, less in a harder one"
+    return [
+        Heading("Restitution", level),
+        Equation(
+            r"C_\mu = \dfrac{\alpha_i\,Q_i}{V_i} + \dfrac{\alpha_o\,Q_o}{V_o}",
+            "Race damping $C_mu$ [18]: slopes $alpha$, loads $Q$ and rolling speeds $V$ of both contacts.",
+            level & Level.REPORT,
+        ),
+        Equation(
+            r"\zeta = \dfrac{\sqrt{k_{BC}\,M_C}}{2\,C_\mu}, \qquad "
+            r"\eta = \exp\left(-\dfrac{\pi\,\zeta}{\sqrt{1-\zeta^2}}\right)",
+            "Restitution factor $eta$ of an impact [17, derived anew]: pocket stiffness $k_BC$, cage mass "
+            "$M_C$.",
+            level & Level.REPORT,
+        ),
+        Table(
+            "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
+        ),
+        by_race(
+            "dampings",
+            chain.inner,
+            chain.outer,
+            *DAMPING,
+            level=level,
+            caption=said(
+                chain,
+                "Contacts of the most loaded ball. The damping of its inner race is {inner_damping}, that of "
+                "its outer race {outer_damping}.",
+            ),
+        ),
+        facts(
+            (
+                named("ball_cage_stiffness"),
+                f"{told(chain, 'ball_cage_stiffness')} ({chain.stiffness_source})",
+            ),
+            fact(chain, "cage_mass", named("cage_mass")),
+            ("$eta$ of a Hertzian pocket", said(chain, hertz)),
+            level=level,
+        ),
+    ]
+
+
+def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
+    """Return the basis of a verdict: bearing, operation, film, and the numbers of the chain."""
+    chain = answer.chain
+
+    def both(name: str) -> str:
+        return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
+
+    over = OVERDAMPED if chain.restitution_factor_free_spin == 0.0 else ""
+    eta = (
+        "{restitution_factor} with race dampings summed (Eq. 18); {restitution_factor_free_spin}"
+        f"{over} if the ball may spin; {{restitution_factor_hertz}} with a Hertzian pocket"
+    )
+    rows: list[tuple[str, str | Cell]] = [
+        *bearing_facts(answer),
+        ("Contact angles under load", both("contact_angle")),
+        ("Loads of the ball", both("load")),
+        ("Traction slopes", both("slope")),
+        fact(chain, "race_damping", named("race_damping")),
+        (named("restitution_factor"), said(chain, eta)),
+        ("Stiffness of ball and pocket", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+    ]
+    rows += [] if chain.clearances is None else clearance_facts(chain.clearances)
+    if "orbital_share" in chain:  # of a bearing whose balls do not run alike
+        lead = (
+            "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
+            "{orbital_share} of the speed variance"
+        )
+        rows.append(("Free balls lead and lag", said(chain, lead)))
+    return rows

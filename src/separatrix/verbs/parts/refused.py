@@ -1,0 +1,103 @@
+"""What the chain refuses of a study, found in a second: for the verbs that need it, and for `check`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
+    from separatrix.study.study import Study
+
+COARSE = 8
+"""Cells along and across in which an exact contact is put for its refusals."""
+
+Step = Callable[["Solution"], object]
+
+
+def refused(study: Study, *steps: Step) -> Iterator[str]:
+    """Yield why the first of these links of a chain that has no answer is refused.
+
+    A link solved with strips takes milliseconds; of the exact contact only what refuses it is computed.
+    """
+    from separatrix.chain.solution import solve
+    from separatrix.ground.errors import SeparatrixError
+
+    solution = solve(study)
+    try:
+        for step in steps:
+            step(solution)
+    except SeparatrixError as error:
+        yield str(error)
+
+
+def rolling(solution: Solution) -> None:
+    """Refuse what no traction is computed of: a bearing that does not roll, contacts out of their range."""
+    from separatrix.chain.contacts import race_tracks, require_rolling
+    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.race_curve import contact_problem
+    from separatrix.study.study import TractionModel
+
+    asked = solution.study
+    require_rolling(asked)
+    tracks = race_tracks(asked.bearing, asked.film, solution.bearing)
+    if asked.traction.model is TractionModel.STRIPS:
+        _ = solution.slopes
+        return
+    for track in tracks:
+        if not track.is_idle:
+            rolling_contact(contact_problem(track, asked.traction), columns=COARSE, rows=COARSE)
+
+
+def compared(solution: Solution) -> None:
+    """Refuse a film whose own pressure an exact contact bears, but not Hertz's: `traction` compares both."""
+    from separatrix.chain.contacts import race_tracks
+    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.race_curve import contact_problem
+    from separatrix.ground.errors import SeparatrixError
+    from separatrix.study.study import ContactPressure, TractionModel
+
+    asked = solution.study
+    if asked.traction.pressure is not ContactPressure.COATED:
+        return
+    tracks = race_tracks(asked.bearing, asked.film, solution.bearing)
+    exact = asked.traction.by(TractionModel.EXACT)
+    try:
+        for track in tracks:
+            rolling_contact(contact_problem(track, exact), columns=COARSE, rows=COARSE)
+    except SeparatrixError:
+        return  # then there is nothing to compare with, and `traction` says so
+    for track in tracks:
+        problem = contact_problem(track, exact.by(TractionModel.EXACT, ContactPressure.HERTZ))
+        rolling_contact(problem, columns=COARSE, rows=COARSE)
+
+
+def impact(solution: Solution) -> None:
+    """Refuse what no restitution factor is computed of: a pocket without stiffness, no running clearance."""
+    _ = solution.clearances, solution.ball_cage_stiffness, solution.inertia
+
+
+def push(solution: Solution) -> None:
+    """Refuse what no mobility is computed of: by strips, whose slip fields are those of any contact."""
+    from dataclasses import replace
+
+    from separatrix.chain.solution import solve
+    from separatrix.study.study import TractionSettings
+
+    _ = solve(replace(solution.study, traction=TractionSettings())).mobility
+
+
+def unpredictable(study: Study) -> Iterator[str]:
+    """Yield why a friction that tests predict cannot be drawn, as `sensitivity` draws it."""
+    from separatrix.friction.friction_fit import TestedFriction
+    from separatrix.ground.errors import SeparatrixError
+    from separatrix.verdict.drawn_frictions import frictions_to_draw
+    from separatrix.verdict.draws import uncertain_inputs
+
+    candidates = study.ranking.candidates if study.ranking and study.cage else ()
+    if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
+        return
+    try:
+        uncertain_inputs(study, frictions_to_draw(study))
+    except SeparatrixError as error:
+        yield str(error)

@@ -1,0 +1,153 @@
+"""Numbers of an answer as facts, columns, sentences and axes, each told as `quantities` describes it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from separatrix.ground.document import Part
+from separatrix.ground.quantity import Estimate, Number, Quantity, alone, scale
+from separatrix.present.blocks import Cell, Column, Level, Table, text_column
+from separatrix.present.figure import Axis, Trace
+from separatrix.verbs.parts.quantities import QUANTITIES
+
+Of = Callable[[Any], Part | None]
+"""From a row to the part that has a number; None where the row has none."""
+
+
+def itself(row: Any) -> Any:
+    """Return a row: most tables have their numbers there."""
+    return row
+
+
+def quantity(name: str) -> Quantity:
+    """Return how a quantity of this name is told; one that only full tables have, by its name.
+
+    A key of a study, as ``film.thickness``, is told by its words, with its section where these need it.
+    """
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    section, _, key = name.replace("_", " ").rpartition(".")
+    is_known = section in ("", "operation") or section in key or key == "race friction"
+    return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
+
+
+def estimate(part: Part, name: str) -> Number:
+    """Return a number of a part, with its interval if it has one."""
+    value = getattr(part, name)
+    low, high = quantity(name).ends or (f"{name}_low", f"{name}_high")
+    if value is None or low not in part.values or part.get(low) is None:
+        return value  # type: ignore[no-any-return]
+    return Estimate(value, part.get(low), part.get(high))
+
+
+def cell(part: Part | None, name: str, mark: str = "") -> Cell:
+    """Return a number of a part as a cell; an absent one without a part."""
+    if part is None:
+        return Cell(None, quantity(name))
+    value = estimate(part, name)
+    return Cell(value, quantity(name), part.unit(name), mark if value is not None else "")
+
+
+def named(name: str) -> str:
+    """Return the label of a quantity with its symbol, as a line begins with it."""
+    known = quantity(name)
+    label = known.label[:1].upper() + known.label[1:]
+    return f"{label} ${known.symbol}$" if known.symbol else label
+
+
+def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
+    """Return label and value of a quantity."""
+    label = label or quantity(name).label
+    return label[:1].upper() + label[1:], cell(part, name)
+
+
+def facts_of(part: Part, *names: str) -> list[tuple[str, Cell]]:
+    """Return label and value of those quantities that are known."""
+    return [fact(part, name) for name in names if name in part]
+
+
+def column(
+    name: str, *, of: Of = itself, head: str = "", mark: Callable[[Any], str] = lambda _: ""
+) -> Column:
+    """Return the column of a quantity; `of` finds in a row the part that has it."""
+    known = quantity(name)
+    return Column(
+        head or known.head or known.label, lambda row: cell(of(row), name, mark(row)), meaning=known.meaning
+    )
+
+
+def place_column(part: Part, name: str, *, head: str = "") -> Column:
+    """Return the column of a list of a part, for rows that are places in it."""
+    known, unit = quantity(name), part.unit(name)
+    return Column(
+        head or known.head or known.label,
+        lambda place: Cell(getattr(part, name)[place], known, unit),
+        meaning=known.meaning,
+    )
+
+
+def by_race(
+    name: str, inner: Part, outer: Part, *names: str, level: Level = Level.ALWAYS, caption: str = ""
+) -> Table:
+    """Return a table with quantities as rows, for the inner and the outer race."""
+
+    def race(part: Part) -> Callable[[Any], Cell]:
+        return lambda row: cell(part, row)
+
+    rows = text_column("", lambda row: quantity(row).label[:1].upper() + quantity(row).label[1:])
+    columns = rows, Column("inner race", race(inner)), Column("outer race", race(outer))
+    return Table(name, columns, names, caption, level)
+
+
+def told(part: Part, name: str) -> str:
+    """Return a number of a part as it stands in a sentence."""
+    return alone(estimate(part, name), quantity(name), part.unit(name))
+
+
+def number_of(part: Part, name: str, value: float | None) -> str:
+    """Return one number of a list of a part, as it stands in a sentence."""
+    return alone(value, quantity(name), part.unit(name))
+
+
+def said(part: Part, template: str) -> str:
+    """Return a sentence in which ``{name}`` stands for a number of a part, as it is told."""
+    return re.sub(r"\{(\w+)\}", lambda name: told(part, name[1]), template)
+
+
+def axis(
+    name: str,
+    unit: str,
+    values: Iterable[float | None],
+    *,
+    label: str = "",
+    low: float | None = None,
+    high: float | None = None,
+    is_log: bool = False,
+) -> Axis:
+    """Return the axis of a quantity in the unit that suits some values: its label, symbol and unit."""
+    known = quantity(name)
+    size, symbol = scale([one for one in values if one is not None], unit, known.unit)
+    sign = f" ${known.symbol}$" if known.symbol else ""
+    words = f"{label or known.label}{sign} [{symbol or '-'}]"
+    return Axis(label=words, size=size, low=low, high=high, is_log=is_log)
+
+
+def marks(
+    rows: Sequence[Part], x: str, y: str, *, hover: Callable[[Part], str] | None = None, **look: Any
+) -> Trace:
+    """Return a mark for each row; an estimate brings its interval along, that of y where both have one."""
+    found: dict[str, Any] = {"line": ""} | look
+    for way, name in (("x", x), ("y", y)):
+        values = [estimate(row, name) for row in rows]
+        if any(isinstance(one, Estimate) for one in values):
+            known = [one if isinstance(one, Estimate) else Estimate(one) for one in values]
+            found |= {
+                "ends_along": way,
+                "low": [one.low for one in known],
+                "high": [one.high for one in known],
+            }
+            values = [one.value for one in known]
+        found[way] = values
+    return Trace(hover=tuple(hover(row) for row in rows) if hover else (), **found)

@@ -1,0 +1,226 @@
+"""What several verbs tell of a verdict: its words, its evidence as columns and facts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from separatrix.ground.document import Part
+from separatrix.present.blocks import Cell, Column, Level, Table, grouped, text_column
+from separatrix.verbs.parts.telling import cell, column, fact, said, told
+
+MOTIONS = {
+    "CENTRED": "the cage rests among its balls, clear of its land",
+    "ON THE LAND": "the cage rests on its land, or moves on it as loads and the land's friction make it",
+    "ROLLING": "a whirl in the pockets, weaker than what frame and loads can give the cage",
+    "WHIRLING": "friction in the pockets sustains the motion, or makes it grow",
+    "DRIFTING": "the cage has no land, and nothing holds its centre",
+}
+DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
+MARK = "*"
+"""After a friction that is extrapolated beyond its tests."""
+
+
+def is_judged(row: Part) -> bool:
+    """Whether a row has a verdict."""
+    return row.get("verdict") is not None
+
+
+def verdict(row: Part) -> str:
+    """Return the verdict of a row, or why there is none."""
+    if is_judged(row):
+        return str(row.verdict)
+    return "not measured" if row.get("friction") is None else "not finished"
+
+
+def rank_texts(ranks: Iterable[int | None]) -> list[str]:
+    """Return ranks as text: = after a shared one, a dash for none."""
+    known = [*ranks]
+    return ["-" if rank is None else f"{rank}{'=' * (known.count(rank) > 1)}" for rank in known]
+
+
+def by_verdict(each: Mapping[str, Sequence[str]]) -> str:
+    """Return verdicts, each with who has it."""
+    return "; ".join(f"{word} {', '.join(who)}" for word, who in each.items())
+
+
+def judged(row: Part) -> Part | None:
+    """Return a row that has a verdict; None of another."""
+    return row if is_judged(row) else None
+
+
+def drifting(row: Part) -> Part | None:
+    """Return a row whose runs do not all whirl: only these have a drift rate."""
+    if not is_judged(row):
+        return None
+    worst = next(one for one in row.by_kick if one.kick == row.worst_kick)
+    return None if worst.whirls == row.runs else row
+
+
+def pocket_force(row: Part) -> Cell:
+    """Return the largest force in a pocket, or what the races hold, beyond which it means nothing."""
+    if not is_judged(row):
+        return cell(None, "largest_contact_force")
+    if not row.force_exceeds_races:
+        return cell(row, "largest_contact_force")
+    held = cell(row, "force_limit")
+    return Cell(held.value, cell(row, "largest_contact_force").quantity, held.unit, before="> ")
+
+
+def evidence_column(name: str) -> Column:
+    """Return a column of evidence; numbers that a row cannot have are absent."""
+    if name == "largest_contact_force":
+        one = column(name)
+        return Column(one.head, pocket_force, meaning=one.meaning)
+    marks: dict[str, Callable[[Part], str]] = {
+        "whirl_frequency": lambda row: f" {DIRECTIONS[row.whirl_direction]}".rstrip()
+    }
+    return column(name, of=drifting if name == "drift_rate" else judged, mark=marks.get(name, lambda _: ""))
+
+
+def motion_column() -> Column:
+    """Return the motion that most runs from the worst disturbance end in."""
+    return text_column("motion", lambda row: (row.cage_motion or "unresolved") if is_judged(row) else "-")
+
+
+def verdict_facts(row: Part) -> list[tuple[str, Any]]:
+    """Return a verdict with its evidence, a fact each."""
+    motion = row.cage_motion
+    drift = said(row, "{drift_rate}") + (
+        said(row, "; by the linear law {drift_rate_law}") if row.drift_rate_law else ""
+    )
+    growth = said(row, "{growth_rate}, from {worst_kick}, the worst initial disturbance")
+    offset = "{largest_offset} at most; {mean_offset} at the end, relative spread {orbit_evenness}"
+    return [
+        ("Verdict", f"{row.verdict}. {row.reason}"),
+        ("Motion", f"{motion}: {MOTIONS[motion]}" if motion else "unresolved in most runs"),
+        fact(row, "probability_stable"),
+        ("Ball", f"{row.ball}. {row.ball_reason or 'The study asks for it.'}"),
+        ("Growth rate", growth),
+        ("Offset", said(row, offset)),
+        *_space_facts(row),
+        ("Drift rate", drift),
+        ("Largest forces", f"{_force_words(row)}; {told(row, 'largest_land_force')} at the land"),
+        *_left_facts(row),
+        ("Impacts", _impacts(row)),
+        ("Whirl", _whirl(row)),
+        ("Energy at the end", said(row, "{end_energy}; frame and loads alone can supply {drive_energy}")),
+        *power_facts(row),
+        ("Runs", said(row, f"{row.runs} from each initial disturbance, of up to {{longest_run}}")),
+    ]
+
+
+def _force_words(row: Part) -> str:
+    if row.force_exceeds_races:
+        return said(row, "above what the races hold, {force_limit}, at a pocket")
+    return said(row, "{largest_contact_force} at a pocket")
+
+
+def _space_facts(row: Part) -> list[tuple[str, str]]:
+    if row.largest_tilt is None or row.axial_travel is None:
+        return []
+    cone = said(row, "; its lean goes round at {cone_ratio} of the balls") if "cone_ratio" in row else ""
+    return [
+        ("Tilt", said(row, "{largest_tilt} at most") + cone),
+        ("Axial motion", said(row, "{axial_travel} from end to end")),
+        ("Impacts at pockets", said(row, "{impact_rate} in the last part")),
+    ]
+
+
+def _left_facts(row: Part) -> list[tuple[str, str]]:
+    every = row.runs * len(row.by_kick)
+    where = f"in {row.left_pocket} of {every} runs a ball reached the edge of its pocket's wall"
+    return [("Left its pocket", where)] if row.left_pocket else []
+
+
+def power_facts(row: Part) -> list[tuple[str, str]]:
+    """Return what friction feeds into the cage or takes from it, and what rubs on the land."""
+    powers = (("pocket", "pocket_power"), ("land", "land_power"))
+    each = [f"{told(row, name)} by the {where}" for where, name in powers if getattr(row, name)]
+    rows = [("Friction power into the cage", ", ".join(each) or "none")]
+    if row.rubbing_force > 0.0:
+        rows.append(
+            ("Rubbing on the land", said(row, "{rubbing_force} at {rubbing_speed}, {rubbing_power} of heat"))
+        )
+    return rows
+
+
+def _impacts(row: Part) -> str:
+    """Return which pocket takes most impacts, against an even share, and the share of the land."""
+    shares = row.pocket_impact_shares
+    if not any(shares):
+        return f"none at a pocket, {'all' if row.land_impact_share else 'none'} at the land"
+    most = max(range(len(shares)), key=shares.__getitem__)
+    share = told(Part({"pocket_impact_share": shares[most]}, {}), "pocket_impact_share")
+    land = said(row, "; {land_impact_share} of all impacts are at the land")
+    return f"pocket {most + 1} takes {share} of the impacts at {len(shares)} pockets{land}"
+
+
+def _whirl(row: Part) -> str:
+    """Return frequency and direction in the turning frame, and the whirl ratio in the fixed one."""
+    seen = f"{told(row, 'whirl_frequency')} {DIRECTIONS[row.whirl_direction] or 'without direction'}"
+    if row.whirl_ratio is None:
+        return f"{seen}; the ball set is at rest"
+    return said(
+        row, f"{seen}, seen from the balls; the centre orbits at {{whirl_ratio}} of the ball set's speed"
+    )
+
+
+def verdict_sentences(rows: Sequence[Part], place: str) -> str:
+    """Return the answer of a ranking: the first, its margin and why it is undecided if it is, the others."""
+    first = [row for row in rows if row.get("rank") == 1]
+    if not first:
+        return f"No candidate was ranked in {place}."
+    each = grouped((verdict(row), row.name) for row in first)
+    word, names = next(iter(each)), ", ".join(row.name for row in first)
+    lead = f"{names} ranks first in {place}: {word}."
+    if len(first) > 1:
+        words = f" ({names}): {word}" if len(each) == 1 else f": {by_verdict(each)}"
+        lead = f"{len(first)} materials tie for first in {place}{words}."
+    limits = (
+        told(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
+    )
+    whose = "The cage" if len(first) == 1 else "Their cages"
+    up_to = f"{whose} remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
+    if not any(row.restitution_threshold for row in first):
+        up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
+    elif [*each] != ["STABLE"]:
+        up_to = f"From the reference disturbance the largest stable restitution factor is {limits}"
+    etas, margins = span(first, "restitution_factor"), span(first, "margin")
+    by_it = f"{up_to}; this bearing and film have {etas}, a margin of {margins}."
+    if first[0].verdict == "UNDECIDED":
+        by_it += f" {first[0].name}: {first[0].reason}"
+    others = grouped((verdict(row), row.name) for row in rows if row not in first)
+    rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
+    return f"{lead} {by_it} {rest}"
+
+
+def span(rows: Sequence[Part], name: str) -> str:
+    """Return the least and the largest value of a quantity among some rows, one where they look alike."""
+    known = sorted((row for row in rows if name in row), key=lambda row: getattr(row, name))
+    ends = [Part({name: getattr(row, name)}, row.units) for row in (known[0], known[-1])]
+    return " to ".join(dict.fromkeys(told(one, name) for one in ends))
+
+
+def all_numbers(answer: Part) -> Table:
+    """Return every number of every candidate in every environment, for a workbook."""
+    rows = [(one.name, row) for one in answer.environments for row in one.materials]
+    rows += [("overall", row) for row in answer.overall]
+    names = dict.fromkeys(key for _, row in rows for key, value in row.values.items() if _is_number(value))
+
+    def number(name: str) -> Column:
+        return Column(name.replace("_", " "), lambda pair: cell(pair[1], name))
+
+    columns = (
+        text_column("environment", lambda pair: pair[0]),
+        text_column("material", lambda pair: pair[1].name),
+        text_column("verdict", lambda pair: verdict(pair[1])),
+        *(number(name) for name in names if not name.endswith(("_low", "_high"))),
+        text_column("extrapolation", lambda pair: "; ".join(pair[1].extrapolation)),
+        text_column("reason", lambda pair: pair[1].reason),
+    )
+    return Table("all numbers", columns, tuple(rows), level=Level.SHEET)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,182 @@
+"""`report`: the pages of the answers to a study joined under one title, as a document to hand over."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from separatrix.ground.document import Document, part_of
+from separatrix.ground.errors import InputError
+from separatrix.present.blocks import Note, Page, joined
+from separatrix.verbs import VERBS, verb_named
+from separatrix.verbs.answer_files import page_of_document
+from separatrix.verbs.parts.bearing_drawing import bearing_picture
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+
+ORDER = (
+    *("rank", "stability", "bearing", "traction", "restitution", "mobility", "map", "sweep"),
+    *("sensitivity", "simulate"),
+)
+"""Verbs in the order of a report: the answer first, then the chain behind it, then what varies it."""
+
+CHAIN = ("bearing", "traction", "restitution")
+"""Verbs that take seconds: computed for the report of a folder that lacks them."""
+
+HANDED = ("name", "verdict", "rank", "margin", "probability_stable", "probability_low", "probability_high")
+"""What the document of a report has of each candidate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A page made of the pages of answers, and their documents by verb."""
+
+    page: Page
+    documents: Mapping[str, Document] = field(repr=False)
+
+    def summary(self) -> str:
+        """The answer in a few sentences, a paragraph each."""
+        return "\n".join(self.page.lead)
+
+    def html(self) -> str:
+        """One HTML file, as text, that needs no other file and no network."""
+        from separatrix.present.html import html
+
+        return html(self.page, self.documents)
+
+    def _repr_html_(self) -> str:
+        return self.html()
+
+    def pdf(self) -> bytes:
+        """The same as PDF; needs the extra ``pdf``."""
+        from separatrix.present.pdf import pdf
+
+        return pdf(self.page)
+
+    def write(self, folder: Path, *, with_pdf: bool) -> list[Path]:
+        """Write report.html, and report.pdf too, into a folder, both or none; return their paths."""
+        from separatrix.ground.files import staged
+
+        contents = {"report.html": self.html().encode()} | ({"report.pdf": self.pdf()} if with_pdf else {})
+        with staged(folder) as stage:
+            for name, content in contents.items():
+                (stage / name).write_bytes(content)
+        return [folder / name for name in contents]
+
+    def document(self, files: Sequence[Path] = ()) -> Document:
+        """Plain data: what was answered in short, and where the report is."""
+        from separatrix import __version__
+
+        rank = self.documents.get("rank") or {}
+        own = [one for one in rank.get("environments", ()) if one["name"] == rank["environment"]]
+        first = next(iter(self.documents.values()), {})
+        return {
+            "separatrix_version": __version__,
+            "verb": "report",
+            "name": first.get("name"),
+            "title": self.page.title,
+            "answers": [*self.documents],
+            "summary": list(self.page.lead),
+            "environment": rank.get("environment"),
+            "materials": [{key: row.get(key) for key in HANDED} for one in own for row in one["materials"]],
+            "files": [str(path) for path in files],
+        }
+
+
+def report_of(
+    found: Mapping[str, Document], missing: Sequence[str] = (), where: str = "The answer"
+) -> Report:
+    """Return the report of answers to one study, by verb.
+
+    Parameters
+    ----------
+    found : mapping
+        The documents.
+    missing : sequence of str
+        What could not be computed, a sentence each: caveats of the first page.
+    where : str
+        What a refusal of a damaged answer names.
+    """
+    kept = {verb: found[verb] for verb in ORDER if verb in found}
+    pages = {
+        verb: page_of_document(verb_named(verb), one, f"{where}: {verb}.json") for verb, one in kept.items()
+    }
+    main = next(iter(pages))
+    caveats = [Note(text, "caveat") for text in [*missing, *_differing(kept)]]
+    bearing = kept.get("bearing")
+    drawn = bearing_picture(part_of(kept[main]), part_of(bearing).contacts if bearing else None)
+    first = replace(pages[main], blocks=(*pages[main].blocks[:1], *caveats, *pages[main].blocks[1:], drawn))
+    parts = [(_title(verb), first if verb == main else page) for verb, page in pages.items()]
+    return Report(joined(first.title, first.subtitle, parts), kept)
+
+
+def _title(verb: str) -> str:
+    return VERBS[verb].rstrip(".")
+
+
+def _differing(found: Mapping[str, Document]) -> Iterator[str]:
+    """Yield how answers of a folder differ in their inputs from the main one, a sentence for each."""
+    from separatrix.study.sources import inputs_of
+
+    main = next(iter(found))
+
+    def known(document: Document) -> dict[str, Any]:
+        inputs = {
+            f"{part}.{key}": entry.get("value", entry.get("name"))
+            for part, key, entry in inputs_of(document["study"])
+        }
+        return inputs | {"seed": document["seed"], "version of separatrix": document["separatrix_version"]}
+
+    ours = known(found[main])
+    for verb, one in found.items():
+        theirs = known(one)
+        names = [key for key in {**ours, **theirs} if ours.get(key) != theirs.get(key)]
+        if names:
+            more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+            listed = ", ".join(names[:4])
+            yield f"`{verb}` was computed from other inputs than `{main}`: {listed}{more} differ."
+
+
+def wanted(study: Study) -> Iterator[str]:
+    """Yield the verbs that a report of a study needs."""
+    yield from ("bearing", "traction")
+    if study.cage is not None:
+        yield "restitution"
+        yield "stability" if study.ranking is None else "rank"
+
+
+def is_answer_to(found: Document, study: Study) -> bool:
+    """Whether an answer is complete, from this version, and to this study."""
+    from separatrix import __version__
+    from separatrix.ground.plain_data import plain
+    from separatrix.study.sources import resolved
+
+    asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
+    asked["separatrix_version"] = __version__
+    return all(found[key] == value for key, value in asked.items()) and found.get("complete", True) is True
+
+
+def add_missing(
+    found: dict[str, Document], verbs: Iterator[str] | Sequence[str], compute: Callable[[str], Document]
+) -> list[str]:
+    """Compute the answers that are not there; return what was refused, a sentence each.
+
+    It ends with the first that is interrupted.
+    """
+    missing = []
+    for verb in verbs:
+        if verb in found:
+            continue
+        try:
+            found[verb] = compute(verb)
+        except InputError as error:
+            if not found:
+                raise
+            missing.append(f"`{verb}` was not computed: {error}")
+            continue
+        if found[verb].get("complete") is False:
+            break
+    return missing

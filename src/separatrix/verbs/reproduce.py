@@ -1,0 +1,273 @@
+"""`reproduce`: saved answers computed again from the study that they keep, and compared in every value."""
+
+from __future__ import annotations
+
+import json
+import types
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin
+
+from separatrix.ground.document import Document, Part
+from separatrix.ground.errors import InputError
+from separatrix.ground.quantity import ABSENT, Quantity, alone
+from separatrix.ground.toml import path_text
+from separatrix.ground.units import Ratio, printable, shown
+from separatrix.present.blocks import Block, Cell, Column, Heading, Level, Note, Page, Table, text_column
+from separatrix.verbs import verb_named
+from separatrix.verbs.parts.comparison import is_number
+from separatrix.verbs.saved_answers import AGAIN, read_answers, refusing_damage
+from separatrix.verbs.verb import Option, Tool, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verdict.long_jobs import Progress
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What `reproduce` takes."""
+
+    result: Annotated[Path, Option("Folder of answers, the .json of one, or a report.", "RESULT", True)]
+
+
+EXACT, ROUNDED, DIFFERENT = "bit for bit", "to rounding", "different"
+ROUNDING = 1e-9
+"""Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
+
+MOST_SHOWN, ON_A_SCREEN = 20, 5
+IGNORED = ("separatrix_version", "provenance", "warnings", "notes", "units")
+"""Keys of a document that are not the answer: warnings name the lines of files."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Differing:
+    """A key whose value differs: numbers, texts, or what only one of them has, in short."""
+
+    key: str
+    stored: object
+    computed: object
+    relative: Ratio | None  # null where they are not numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """How well two documents agree."""
+
+    agreement: str  # "bit for bit", "to rounding" or "different"
+    largest_difference: Ratio | None  # of two numbers, relative; null if no number differs
+    largest_at: str | None  # its key
+    differences: tuple[Differing, ...]  # the first keys that differ beyond rounding
+    count: int  # number of keys that do
+
+
+def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -> Document:
+    """Compute the answers of a folder or file again, and compare them."""
+    from separatrix import __version__
+
+    where = path_text(options.result)
+    found = []
+    for one in read_answers(options.result).values():
+        with refusing_damage(where):
+            found.append(_again(one, where, jobs, progress))
+    same = all(one["same"] for one in found)
+    return {"separatrix_version": __version__, "verb": "reproduce", "same": same, "answers": found}
+
+
+def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -> Document:
+    from separatrix.ground.plain_data import plain
+    from separatrix.study.reading import require, study_again
+
+    kept = kept_by(stored, where)
+    if stored.get("complete") is False:
+        raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
+    verb = verb_named(stored["verb"])
+    study = study_again(kept["study"])
+    options = options_from(verb, kept["command"].get("question"))
+    require(study, verb.name, *verb.needs)
+    made = json.loads(json.dumps(_answered(verb, study, options, jobs, progress)))
+    result = agreement(stored, made)
+    return {
+        "verb": verb.name,
+        "name": study.name,
+        "title": study.title,
+        "same": result.agreement != DIFFERENT,
+        "result": plain(result, left_out=[]),
+        "versions": [*_versions(stored, kept)],
+    }
+
+
+def _answered(verb: Verb, study: Study, options: Any, jobs: int, progress: Progress | None) -> Document:
+    """Return the document of a verb that is computed without a folder."""
+    from separatrix.verbs import computed
+    from separatrix.verbs.answer_files import document
+    from separatrix.verdict.long_jobs import Interrupted
+
+    found = computed(verb, study, options, jobs=jobs, progress=progress)
+    if not found.is_complete:  # what was finished cannot be compared
+        raise Interrupted
+    return document(verb, found)
+
+
+def kept_by(stored: Document, where: str) -> Document:
+    """Provenance of an answer, with what must be there."""
+    kept = stored.get("provenance")
+    if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
+        raise InputError(where, "has no provenance", cure="Answer its question again.")
+    study = kept.get("study")
+    if not isinstance(study, dict):
+        why = kept.get("reason")
+        raise InputError(where, "does not keep its study", cure=printable(why, 200) if why else "")
+    is_right = isinstance(study.get("name"), str) and isinstance(study.get("data"), dict)
+    for one in (study.get("files"), study.get("origins")):
+        is_right = is_right and isinstance(one, dict) and all(isinstance(x, str) for x in one.values())
+    if not is_right:
+        rule = "is damaged: provenance.study must have name, data, files and origins"
+        raise InputError(where, rule, cure=AGAIN)
+    return kept
+
+
+def options_from(verb: Verb, given: object) -> Any:
+    """Return the options of a verb from an answer, each of its type; the verb judges their values."""
+    if not isinstance(given, dict):
+        raise InputError("question", "must be the options of the verb", shown(given))
+    known, found = verb.shown_options(), {}
+    for name, value in given.items():
+        if name not in known:
+            raise InputError(f"--{printable(str(name), 40)}", f"is not an option of {verb.name}")
+        if not fits(value, known[name][0]):
+            raise InputError(f"--{name}", "has a value that is not one of this option", shown(value))
+        found[name] = tuple(value) if isinstance(value, list) else value
+    return verb.options(**found)
+
+
+def fits(value: object, kind: Any) -> bool:
+    """Whether a value of a document is one of the type of an option."""
+    origin, inside = get_origin(kind), get_args(kind)
+    if origin in (Union, types.UnionType):
+        return any(fits(value, one) for one in inside)
+    if origin is Annotated:
+        return fits(value, inside[0])
+    if origin is Literal:
+        return value in inside
+    if isinstance(value, list):
+        return isinstance(origin, type) and origin is not dict and all(fits(one, inside[0]) for one in value)
+    if isinstance(value, Mapping):
+        return (
+            isinstance(origin, type) and issubclass(origin, Mapping) and all(map(is_number, value.values()))
+        )
+    if kind is float:
+        return is_number(value)
+    return type(value) is kind
+
+
+def agreement(stored: Document, computed: Document) -> Agreement:
+    """Compare two documents in their values; not in their versions, provenance and warnings."""
+    found = list(_differing(stored, computed, "", None))
+    beyond = [one for one in found if one.relative is None or one.relative > ROUNDING]
+    numbers = [one for one in found if one.relative is not None]
+    largest = max(numbers, key=lambda one: one.relative or 0.0, default=None)
+    return Agreement(
+        agreement=DIFFERENT if beyond else ROUNDED if found else EXACT,
+        largest_difference=None if largest is None else largest.relative,
+        largest_at=None if largest is None else largest.key,
+        differences=tuple(beyond[:MOST_SHOWN]),
+        count=len(beyond),
+    )
+
+
+def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Differing]:
+    """Yield what differs; numbers of a list are compared with the largest of that list."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        for name in {**a, **b}:
+            at = f"{key}.{name}" if key else str(name)
+            if name in IGNORED:
+                continue
+            if name in a and name in b:
+                yield from _differing(a[name], b[name], at, None)
+            else:
+                yield Differing(
+                    key=at, stored=_short(a.get(name)), computed=_short(b.get(name)), relative=None
+                )
+    elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        size = max((abs(one) for one in (*a, *b) if is_number(one)), default=None)
+        for i, (one, other) in enumerate(zip(a, b, strict=True)):
+            yield from _differing(one, other, f"{key}[{i}]", size)
+    elif a != b or isinstance(a, bool) != isinstance(b, bool):
+        relative = None
+        if is_number(a) and is_number(b):
+            relative = abs(a - b) / (scale or max(abs(a), abs(b)))
+        yield Differing(key=key, stored=_short(a), computed=_short(b), relative=relative)
+
+
+def _short(value: object) -> object:
+    if isinstance(value, Mapping):
+        return f"{len(value)} keys"
+    return f"{len(value)} values" if isinstance(value, list) else value
+
+
+def _versions(stored: Document, kept: Document) -> Iterator[Document]:
+    """Yield each version that is another one here; null where the answer does not state it."""
+    from separatrix import __version__
+    from separatrix.study.sources import versions
+
+    given = kept.get("versions")
+    before = {"separatrix": stored["separatrix_version"], **(given if isinstance(given, dict) else {})}
+    for name, here in {"separatrix": __version__, **versions()}.items():
+        value = before.get(name)
+        if value != here:
+            yield {"name": name, "stored": printable(str(value), 40) if value else None, "here": here}
+
+
+# --- the page -----------------------------------------------------------------------------------
+RELATIVE = Quantity(label="relative difference", form=".2g")
+
+
+def page(answer: Part) -> Page:
+    """Return the page of `reproduce`: a line for each answer, and what differs."""
+    return Page(
+        "Answers computed again",
+        f"Computed by separatrix {answer.separatrix_version}",
+        tuple(block for one in answer.answers for block in _blocks(one)),
+    )
+
+
+def _blocks(one: Part) -> Iterator[Block]:
+    found = one.result
+    differ = "value differs" if found.count == 1 else "values differ"
+    how = f"the same, {found.agreement}" if one.same else f"different: {found.count} {differ}"
+    yield Note(f"{one.verb} {one.name}: {how}.", "lead")
+    if "largest_at" in found:
+        largest = alone(found.largest_difference, RELATIVE, "-")
+        yield Note(f"Largest relative difference {largest}, of `{found.largest_at}`.")
+    rows = tuple(found.differences or ())
+    if rows:
+        yield Heading(f"What differs in {one.verb}")
+    columns = (
+        text_column("key", lambda row: row.key),
+        text_column("in the answer", lambda row: _told(row.stored)),
+        text_column("now", lambda row: _told(row.computed)),
+        Column("relative difference", lambda row: Cell(row.relative, RELATIVE)),
+    )
+    more = f"{found.count - ON_A_SCREEN} more: `--json`." if found.count > ON_A_SCREEN else ""
+    yield Table(f"{one.verb} differs", columns, rows[:ON_A_SCREEN], more, Level.BRIEF)
+    yield Table(f"{one.verb} differs", columns, rows, "", Level.LONG | Level.SHEET)
+    if one.versions:
+        others = [f"{at.name} {at.here} (then {at.stored or 'unknown'})" for at in one.versions]
+        yield Note(f"Other versions here: {', '.join(others)}.")
+
+
+def _told(value: object) -> str:
+    return ABSENT if value is None else printable(str(value), 60)
+
+
+VERB = Tool(
+    name="reproduce",
+    epilog="The study is the one that the answer keeps, with the texts of the files that it names; the same "
+    "verb runs with the same options. RESULT is a folder, the .json of an answer, or a report (.html).",
+    compute=compute,
+    page=page,
+    options=Options,
+    takes_time=True,
+)

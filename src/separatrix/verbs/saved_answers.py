@@ -1,0 +1,160 @@
+"""Saved answers, from files that may come from anybody: documents, folders of them, reports.
+
+Each is refused in one line that names its file. An interrupted answer is read as any other.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NoReturn
+
+from separatrix.ground.document import Document
+from separatrix.ground.errors import InputError
+from separatrix.ground.files import size_of, unreadable
+from separatrix.ground.toml import path_text
+from separatrix.ground.units import printable, shown
+
+VERBS = (
+    *("rank", "sensitivity", "stability", "map", "sweep", "simulate"),
+    *("mobility", "restitution", "traction", "bearing", "check"),
+)
+"""Verbs of a study; of two folders with several, the first that both have is compared."""
+
+REPORTS = (".html", ".htm")
+ENDINGS = (".json", *REPORTS, ".nc")
+"""Endings of files of answers: documents, reports, and arrays, which are not read back."""
+
+MOST_BYTES = 256 * 1024**2
+REPORT = re.compile(
+    rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
+)
+"""The documents of the answers in a report."""
+
+ENVELOPE: dict[str, tuple[type, str]] = {
+    "separatrix_version": (str, "text"),
+    "name": (str, "text"),
+    "title": (str, "text"),
+    "seed": (int, "a whole number"),
+    "units": (dict, "the units of the answer"),
+    "warnings": (list, "a list of texts"),
+}
+"""What every answer has beside those of its verb: the type of each, and its words."""
+
+DAMAGE = (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError, OverflowError)
+"""What a document raises whose parts are not those of an answer."""
+
+AGAIN = "Compute this answer again with this version."
+_MAKE = "Make one with: separatrix rank STUDY --out DIR."
+
+
+def read_answers(path: Path) -> dict[str, Document]:
+    """Answers of a folder, a document (.json) or a report (.html), by verb.
+
+    Raises
+    ------
+    InputError
+        There is none, or one that separatrix did not write.
+    """
+    if path.is_dir():
+        return read_folder(path)
+    if path.suffix.casefold() in REPORTS:
+        return _read_report(path)
+    one = read_answer(path)
+    return {str(one["verb"]): one}
+
+
+def read_answer(path: Path) -> Document:
+    """Answer of a document (.json); refused as by `read_answers`."""
+    where = path_text(path)
+    if path.suffix.casefold() == ".nc":
+        cure = f"Name the {path.stem}.json that was written beside it."
+        raise InputError(where, "cannot be read back: answers are read from their .json", cure=cure)
+    return _checked(_parsed(_bytes(path), where), where)
+
+
+def read_folder(folder: Path) -> dict[str, Document]:
+    """Answers of a folder, by verb; refused as by `read_answers`."""
+    found = {}
+    for verb in VERBS:
+        file = folder / f"{verb}.json"
+        if file.exists():
+            found[verb] = one = read_answer(file)
+            if one["verb"] != verb:
+                raise InputError(path_text(file), f"must be an answer of {verb}", one["verb"])
+    if not found:
+        raise InputError(path_text(folder), "does not contain an answer", cure=_MAKE)
+    return found
+
+
+@contextmanager
+def refusing_damage(where: str) -> Iterator[None]:
+    """Refuse an answer, under its file, whose parts are not what its page or its comparison takes."""
+    try:
+        yield
+    except InputError:
+        raise
+    except DAMAGE as error:
+        raise InputError(where, "is damaged", printable(repr(error), 200), AGAIN) from error
+
+
+def _read_report(path: Path) -> dict[str, Document]:
+    where = path_text(path)
+    match = REPORT.search(_bytes(path))
+    if match is None:
+        raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
+    found = {}
+    for verb, document in _parsed(match[1], where).items():
+        found[verb] = one = _checked(document, where)
+        if one["verb"] != verb:
+            rule = f"must have the answer of {printable(str(verb), 40)} under that name"
+            raise InputError(where, rule, one["verb"])
+    if not found:
+        raise InputError(where, "does not contain an answer", cure=_MAKE)
+    return found
+
+
+def _checked(found: object, where: str) -> Document:
+    """Return a document that has what every answer has; that of its verb is checked where it is used."""
+    if not isinstance(found, dict) or not isinstance(found.get("study"), dict):
+        raise InputError(where, "is not the document of an answer", cure=_MAKE)
+    verb = found.get("verb")
+    if verb not in VERBS:
+        got = shown(verb) if isinstance(verb, str) else "none"
+        raise InputError(where, f"must be an answer of {', '.join(VERBS)}", got=got)
+    for key, (kind, words) in ENVELOPE.items():
+        if key not in found:
+            raise InputError(where, f"lacks {key}", cure=AGAIN)
+        if not isinstance(found[key], kind) or (key in ("name", "title") and not found[key].strip()):
+            raise InputError(where, f"is damaged: {key} must be {words}", cure=AGAIN)
+    if not all(isinstance(one, str) for one in found["warnings"]):
+        raise InputError(where, "is damaged: warnings must be a list of texts", cure=AGAIN)
+    return found
+
+
+def _bytes(path: Path) -> bytes:
+    where = path_text(path)
+    if size_of(path, where) > MOST_BYTES:
+        raise InputError(where, f"is larger than an answer can be, {MOST_BYTES >> 20} MB")
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise unreadable(where, error) from None
+
+
+def _parsed(raw: bytes, where: str) -> Document:
+    try:
+        found = json.loads(raw.decode("utf-8"), parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        rule = "is not the document of an answer: no valid JSON"
+        raise InputError(where, rule, printable(str(error), 80)) from None
+    if not isinstance(found, dict):
+        raise InputError(where, "is not the document of an answer", cure=_MAKE)
+    return found
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is not a number of JSON")
