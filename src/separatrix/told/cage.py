@@ -21,7 +21,6 @@ from separatrix.told.tables import (
     stated,
 )
 from separatrix.verbs.answer_records import SimulationAnswer
-from separatrix.verbs.shapes import outcome_sentence, rubbing_power
 from separatrix.verdict.critical_friction import own_restitution_factor
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.reasons import CageMotion, ball_words
@@ -55,7 +54,7 @@ def simulate(answer: SimulationAnswer, study: Study) -> list[str]:
     history, found = answer.history, answer.analysis
     span = f"{stated(history, 'judged_from')} to {stated(history, 'followed')}"
     ended = [
-        ("Outcome", f"{history.outcome.name}. {outcome_sentence(answer)}"),
+        ("Outcome", f"{history.outcome.name}. {answer.outcome_sentence}"),
         ("Judged", f"from {span}; the run has {stated(found, 'run_length')}"),
         *_start(answer, study),
         ("Drift rate", _drift_text(history.drift_rate, drift_rate_law(answer.cage))),
@@ -245,7 +244,7 @@ def _forces(answer: SimulationAnswer) -> list[tuple[str, str]]:
         each = (f"{100.0 * share:.0f} % {where}" for share, where in shares if share)
         rows.append(("Impulse", ", ".join(each)))
     heat = f"{quantity(float(found.pocket_rubbing_power.sum()), 'W')} of heat, mean of the run"
-    rows += [*_power_facts(history, rubbing_power(answer)), ("Rubbing in the pockets", heat)]
+    rows += [*_power_facts(history, answer.rubbing_power), ("Rubbing in the pockets", heat)]
     done = {name.replace("_", " "): float(work[-1]) for name, work in history.work.items() if work.any()}
     left = float(history.kinetic_energy[-1] + history.stored_energy[-1])
     works = ", ".join(f"{name} {quantity(work, 'J', 3)}" for name, work in done.items())

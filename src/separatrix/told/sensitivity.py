@@ -238,7 +238,7 @@ def _films(films: Sequence[AllowedFilm]) -> Iterator[str]:
         ends = film.restitution_factor_low, film.restitution_factor_high
         eta = interval(film.restitution_factor, *ends, to="-")
         if film.restitution_factor is None:
-            eta = "any" if film.reason.startswith("more") else "none"
+            eta = "any" if film.is_any_allowed else "none"
         cells.append([film.name, eta, *(_thicknesses(film, i) for i in range(len(frictions)))])
     yield paragraph(
         f"Largest restitution factor eta at which {wanted} of the bearings settle (95 %), and the film "
@@ -249,7 +249,7 @@ def _films(films: Sequence[AllowedFilm]) -> Iterator[str]:
 
 
 def _thicknesses(film: AllowedFilm, i: int) -> str:
-    limit = 1.0 if film.reason.startswith("more") else film.restitution_factor
+    limit = 1.0 if film.is_any_allowed else film.restitution_factor
     allowed = [limit is not None and eta <= limit for eta in film.film_restitution_factor[i]]
     if all(allowed) or not any(allowed):
         return "any" if allowed[0] else "none"

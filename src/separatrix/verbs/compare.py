@@ -429,7 +429,6 @@ def _known(side: Sequence[Mapping[str, Any]], end: str) -> list[float]:
 
 VERB = Tool(
     name="compare",
-    help="Two answers of one verb side by side: what differs, and by more than counting noise?",
     epilog="A and B are folders of answers, their .json or .html files, of any verb with a study.",
     compute=compute,
     page=page,

@@ -533,7 +533,6 @@ def _beside(test: Part, name: str, letter: str) -> Panel:
 
 VERB = Tool(
     name="tribometer",
-    help="Friction with its scatter from raw logs of tests.",
     epilog="What is read is shown before it is trusted: without --out nothing is written. A file that exists "
     "is never overwritten.",
     compute=compute,
