@@ -281,9 +281,10 @@ def _long(title: tuple[str, str], whole: Columns, brief: Columns, rows: Sequence
     yield Heading(f"{title[0]}{own}{title[1]}", Level.BRIEF)
     yield Table(name, brief, shown, more, Level.BRIEF)
     yield Heading("".join(title), Level.LONG)
-    rest = f"{len(rows) - IN_A_REPORT} more differ: `--full`." if len(rows) > IN_A_REPORT else ""
-    yield Table(name, whole, tuple(rows[:IN_A_REPORT]), rest, Level.REPORT)
-    yield Table(name, whole, tuple(rows), "", Level.FULL | Level.SHEET)
+    yield Table(name, whole, tuple(rows[:IN_A_REPORT]), "", Level.LONG)
+    if len(rows) > IN_A_REPORT:
+        yield Note(f"{len(rows) - IN_A_REPORT} more differ: `--full`.", "legend", Level.REPORT)
+    yield Table(f"{name}, more", whole, tuple(rows[IN_A_REPORT:]), "", Level.FULL | Level.SHEET)
 
 
 def _words(name: str) -> str:
