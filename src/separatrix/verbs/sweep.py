@@ -402,7 +402,8 @@ def envelope_figure(answer: Part) -> Figure:
         for way in across:
             title, y, marks = make(cases, way, hover)
             marks += _worst(way, cases, worst, answer)
-            row.append(Panel(title=f"{next(letters)}  {title}", x=way.axis, y=y, marks=tuple(marks)))
+            letter = f"{next(letters)}  " if len(makers) * len(across) > 1 else ""
+            row.append(Panel(title=f"{letter}{title}", x=way.axis, y=y, marks=tuple(marks)))
         rows.append(tuple(row))
     varied = [name.rpartition(".")[2] for name in names_of(answer)]
     return Figure(
