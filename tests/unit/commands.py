@@ -21,10 +21,30 @@ COMMAND = [sys.executable, "-m", "separatrix"]
 """The real command, as a process is started with."""
 
 
+SMALL = """
+extends = "cryogenic-turbopump"
+title = "A small ensemble"
+
+[cage]
+ball_cage_friction = 0.1
+
+[stability]
+kicks = ["0.5 m/s"]
+runs = 4
+duration = "4 ms"
+restitution_factors = { from = 0.3, to = 0.9, count = 3 }
+
+[ranking]
+friction = "pin-on-disk-77K"
+materials = ["Armalon", "Meldin HTC 100"]
+"""
+"""A study with an ensemble of no weight."""
+
+
 def work_undrawn(pipe: Connection) -> None:
     """Compute for the page as `separatrix.front.page.worker.work` does, but leave pictures out."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("separatrix.figures.save_all", lambda *_: None)
+        patch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)
         work(pipe)
 
 

@@ -1,27 +1,32 @@
-"""What the page runs and shows: jobs with progress, answers, figures."""
+"""What the page runs and shows: jobs with progress, answers as pages of blocks, points of a map, logs."""
 
-import itertools
 import json
 import os
+import re
 import signal
 import time
-from threading import Event, Thread
+import zipfile
+from io import BytesIO
+from pathlib import Path
 
-import numpy as np
 import pytest
-from commands import work_undrawn
+from commands import SMALL, work_undrawn
 from fastapi.testclient import TestClient
-from test_cli_answers import SMALL
 
-from separatrix.comparing.saved import load
-from separatrix.front.page.folder import TEMPLATES, Folder, Page
-from separatrix.front.page.jobs import Job, Jobs
+from separatrix.front.page import editing
+from separatrix.front.page.folder import TEMPLATES
+from separatrix.front.page.jobs import Job
 from separatrix.front.page.server import application
 from separatrix.front.page.worker import Task
+from separatrix.ground.errors import InputError
+from separatrix.verbs.verb import Option
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
 PATIENCE = 300.0
 """Time for a job, kernels compiled first [s]."""
+
+AXES = {"x": "restitution_factor=0.3..0.9:2", "y": "film.thickness=0.4..0.8um:2"}
+LOG = "time [s],friction\n" + "".join(f"{i / 10},{0.2 + 0.01 * (i % 7)}\n" for i in range(400))
 
 
 @pytest.fixture(scope="module")
@@ -35,13 +40,12 @@ def root(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(root):
-    """The page of that folder, with its answers to `rank` and to a small `map`; no picture is written."""
+    """The page of that folder, with its answers to `bearing`, `rank` and a small `map`, undrawn."""
     with pytest.MonkeyPatch.context() as patch, TestClient(application(root)) as client:
         patch.setattr("separatrix.front.page.jobs.work", work_undrawn)
-        client.post("/run/small.toml", data={"verb": "rank"})
-        axes = {"x": "restitution_factor=0.3..0.9:2", "y": "ball_cage_friction=0.05..0.5:2"}
-        client.post("/run/small.toml", data={"verb": "map", "runs": "1", **axes})
-        until(client, lambda jobs: all("finished" in job for job in jobs))
+        for verb in ("bearing", "rank", "map"):
+            client.post("/run/small.toml", data={"verb": verb, **(AXES | {"runs": "1"} if verb == "map" else {})})
+        until(client, lambda jobs: all(job.startswith("finished") for job in jobs))
         yield client
 
 
@@ -50,94 +54,103 @@ def jobs(page):
     return page.get("/jobs").text.split('<article class="job ')[1:]
 
 
-def until(page, holds):
+def until(page, holds, but=("refused", "failed")):
     """Wait until something holds for the jobs."""
     end = time.monotonic() + PATIENCE
     while not holds(found := jobs(page)):
         assert time.monotonic() < end, found
-        assert not any(job.startswith(("refused", "failed")) for job in found), found
+        assert not any(job.startswith(but) for job in found if but), found
         time.sleep(0.1)
     return found
 
 
-def test_an_answer_is_that_of_the_command_line(page, root):
-    """The same files in the same folder, and the verdicts of its document in the table."""
+def test_an_answer_is_the_page_of_its_document(page, root):
+    """The verdicts of the files that the command line writes; its figures are fetched, each with its PNG."""
     found = json.loads((root / "small" / "rank.json").read_text())
     text = page.get("/answer/rank/small.toml").text
     for row in found["overall"]:
         assert row["name"] in text
         assert row["verdict"] in text
-        assert f"{row['margin']:+.2f}" in text
-    assert (root / "small" / "rank.xlsx").exists()
+    places = re.findall('data-source="([^"]+)"', text)
+    assert places
+    for place in places:
+        assert page.get(place).json()["data"]
+        assert page.get(place.replace(".json/", ".png/")).content[:4] == b"\x89PNG"
 
 
-@pytest.mark.parametrize(
-    ("figure", "names"),
-    [
-        ("rank/curve", {"linear limit", "half of 4 runs whirl"}),
-        ("rank/candidates", {"overall"}),
-        ("map/map", {"share of the runs that whirl"}),
-    ],
-)
-def test_a_figure_has_its_series_and_a_text_at_each_point(page, figure, names):
-    """What is hovered over is the series that the report has."""
-    found = page.get(f"/plot/{figure}/small.toml").json()
-    assert names <= {trace.get("name") for trace in found["data"]}
-    texts = [len(trace["text"]) == len(trace["x"]) for trace in found["data"] if trace.get("text")]
-    assert texts
-    assert all(texts)
+@pytest.mark.parametrize("damage", ["{", "[]", '{"verb": "bearing"}', "interrupted"])
+def test_a_damaged_or_interrupted_answer_is_a_page_or_a_line_with_its_file(page, root, damage):
+    """And no fault of the server."""
+    path = root / "small" / "bearing.json"
+    kept = path.read_text()
+    path.write_text(json.dumps(json.loads(kept) | {"complete": False}) if damage == "interrupted" else damage)
+    found = page.get("/answer/bearing/small.toml")
+    path.write_text(kept)
+    assert found.status_code == 200
+    words = "Interrupted: only what was finished" if damage == "interrupted" else "small/bearing.json"
+    assert words in found.text
 
 
-def test_a_duty_cycle_is_run_from_a_table_beside_the_study(page, root):
-    """A table of the pick-list, with margins: shares of the time, and the envelope to point at."""
-    rows = ("operation.inner_speed,time_share", "9000 rpm,1 h", "15000 rpm,3 h")
-    (root / "duty.csv").write_text("\n".join(rows))
-    assert '<option value="duty.csv">' in page.get("/study/small.toml").text
-    page.post("/run/small.toml", data={"verb": "sweep", "cases": "duty.csv", "margins": "on"})
+def test_an_answer_says_that_its_study_has_changed(page, root):
+    """One line names the inputs; lines that moved in the file are no change."""
+    path = root / "small.toml"
+    path.write_text(f"# moved\n\n{SMALL}")
+    assert "has changed" not in page.get("/answer/rank/small.toml").text
+    path.write_text(SMALL.replace("runs = 4", "runs = 5"))
+    assert "changed after this answer: [stability] runs." in page.get("/answer/rank/small.toml").text
+    path.write_text(SMALL)
+
+
+def test_a_point_of_a_map_is_a_study_of_its_own(page, root):
+    """It extends the first, with the value of the map that is next to the click."""
+    page.post("/point/small.toml", data={"x": "0.41", "y": "5e-7"})
     until(page, lambda jobs: jobs[0].startswith("finished"))
-    data = load(root / "small" / "sweep.json")
-    assert data["time_share"].values == pytest.approx([0.25, 0.75])
-    assert np.isfinite(data["margin"].values).all()
-    assert 'data-source="/plot/sweep/envelope/small.toml"' in page.get("/answer/sweep/small.toml").text
-    found = page.get("/plot/sweep/envelope/small.toml").json()
-    places = [found["layout"][name]["domain"] for name in ("yaxis", "yaxis2", "yaxis3")]
-    assert places[0][1] == 1.0
-    assert places[-1][0] == 0.0
-    assert all(above[0] > below[1] for above, below in itertools.pairwise(places))
-    assert {trace["yaxis"] for trace in found["data"]} == {"y", "y2", "y3"}
-    page.post("/run/small.toml", data={"verb": "sweep", "cases": "duty.csv", "vary": "cage.mass=20..30g:2"})
-    end = time.monotonic() + PATIENCE
-    while not (shown := jobs(page)[0]).startswith("refused"):
-        assert time.monotonic() < end
-        time.sleep(0.1)
-    assert "exclude each other" in shown
+    (path,) = root.glob("small *.toml")
+    text = path.read_text()
+    assert 'extends = "small.toml"' in text
+    assert 'thickness = "4e-07 m"' in text
+    found = json.loads((root / path.stem / "simulate.json").read_text())
+    assert found["provenance"]["command"]["question"]["restitution_factor"] == "0.3"
+
+
+def test_everything_is_downloaded_at_once(page):
+    """The study and every file of its answers."""
+    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as found:
+        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}
+
+
+def test_options_are_fields_of_their_types(monkeypatch, page, root):
+    """A number in digits, a line each, a file beside the study, a flag; empty ones are left out."""
+    kinds = {"runs": int, "vary": tuple[str, ...], "cases": Path | None, "adaptive": bool, "x": str | None}
+    shown = {name: (kind, Option("", ""), None) for name, kind in kinds.items()}
+    verb = type("V", (), {"shown_options": lambda _: shown, "moves_a_cage": True})()
+    monkeypatch.setattr(editing, "verb_named", lambda _: verb)
+    (root / "duty.csv").write_text("film.thickness\n1 um\n")
+    own = page.app.state.page
+    sent = {"runs": "4", "vary": "a=1\n b=2 \n", "cases": "duty.csv", "adaptive": "on", "x": "", "ball": "free"}
+    expected = {"runs": 4, "vary": ("a=1", "b=2"), "cases": root / "duty.csv", "adaptive": True, "ball": "free"}
+    assert editing.asked(own, "small.toml", "any", sent) == expected
+    with pytest.raises(InputError, match="--runs must be a whole number"):
+        editing.asked(own, "small.toml", "any", {"runs": "4.5"})
+
+
+def test_a_log_is_dropped_corrected_and_cut(page, root):
+    """An open question is answered in the draft of its map; the end of running-in is moved."""
+    assert page.put("/logs/a.csv", content=LOG.replace("friction", "b", 1)).status_code == 200
+    page.post("/reduce/a.csv")
+    until(page, lambda jobs: jobs[0].startswith("refused"), but=())
+    draft = (root / "logs" / "a.csv.map.toml").read_text()
+    assert "data-line=" in page.get("/log/a.csv").text
+    mended = re.sub("(?m)^friction = .*", 'friction = { name = "b", unit = "-" }', draft)
+    assert "data-line=" not in page.post("/map/a.csv", data={"text": mended}).text
     page.post("/jobs/forget")
-
-
-def refuse(path):
-    """Stand for a reader that must not be asked."""
-    raise AssertionError(path)
-
-
-def test_reading_one_file_delays_no_other(root):
-    """An answer that takes a second to read leaves titles and tables to other requests."""
-    page, begun, may_end = Page(folder=Folder(root=root), jobs=Jobs(root)), Event(), Event()
-
-    def slowly():
-        begun.set()
-        assert may_end.wait(20)
-        return "read"
-
-    slow = Thread(target=page._known, args=(root / "long.toml", slowly))
-    slow.start()
-    assert begun.wait(20)
-    other = Thread(target=page.title, args=("small.toml",))
-    other.start()
-    other.join(5)
-    assert not other.is_alive()
-    may_end.set()
-    slow.join(20)
-    assert page._known(root / "long.toml", refuse) == "read"
+    page.post("/reduce/a.csv", data={"run_in": "12 s"})
+    until(page, lambda jobs: jobs[0].startswith("finished"))
+    test = json.loads((root / "logs" / "a.csv.answer" / "tribometer.json").read_text())["tests"][0]
+    assert test["run_in_end"] == pytest.approx(12.0)
+    text = page.get("/log/a.csv").text
+    assert 'data-cut="s"' in text
+    assert page.get(re.search('data-source="([^"]+)"', text)[1]).json()["data"]
 
 
 def test_a_job_is_cancelled_and_resumed(page, root):
@@ -146,10 +159,7 @@ def test_a_job_is_cancelled_and_resumed(page, root):
     until(page, lambda jobs: "<progress max" in jobs[0])
     number = jobs(page)[0].partition("/jobs/")[2].partition("/")[0]
     page.post(f"/jobs/{number}/cancel")
-    end = time.monotonic() + PATIENCE
-    while jobs(page)[0].startswith("running"):
-        assert time.monotonic() < end
-        time.sleep(0.1)
+    until(page, lambda jobs: not jobs[0].startswith("running"))
     assert jobs(page)[0].startswith("cancelled")
     assert (root / "long" / "finished-runs.sqlite").exists()
     assert "Resume" in jobs(page)[0]
@@ -165,16 +175,10 @@ def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
     page.post("/run/long.toml", data={"verb": "rank"})
     until(page, lambda jobs: jobs[0].startswith("running"))
     os.kill(queue._process.pid, signal.SIGKILL)
-    end = time.monotonic() + 20
-    while not jobs(page)[0].startswith("failed"):
-        assert time.monotonic() < end
-        time.sleep(0.05)
+    until(page, lambda jobs: jobs[0].startswith("failed"), but=())
     assert "resume to go on" in jobs(page)[0]
     page.post("/run/small.toml", data={"verb": "bearing"})
-    end = time.monotonic() + PATIENCE
-    while not jobs(page)[0].startswith("finished"):
-        assert time.monotonic() < end
-        time.sleep(0.1)
+    until(page, lambda jobs: jobs[0].startswith("finished"), but=())
 
 
 @pytest.mark.parametrize(("seconds", "is_told"), [(5.0, False), (20.0, True)])
@@ -188,5 +192,5 @@ def test_who_waits_for_a_report_is_told_why(seconds, is_told, tmp_path):
         message="Computing bearing for the report.",
         started=time.monotonic() - seconds,
     )
-    text = TEMPLATES.get_template("jobs.html").render(jobs=[job])
+    text = TEMPLATES.get_template("jobs.html").render(jobs=[job], address=lambda _: "")
     assert ("compiles the solver" in text) == is_told

@@ -4,7 +4,7 @@ import importlib.util
 import sys
 import time
 
-from test_cli_answers import SMALL
+from commands import SMALL
 
 from separatrix.front.page.jobs import Jobs
 from separatrix.front.page.worker import is_importing

@@ -17,23 +17,6 @@ from separatrix.front import main
 from separatrix.verbs import VERBS
 from separatrix.verdict.ledger import NAME
 
-SMALL = """
-extends = "cryogenic-turbopump"
-title = "A small ensemble"
-
-[cage]
-ball_cage_friction = 0.1
-
-[stability]
-kicks = ["0.5 m/s"]
-runs = 4
-duration = "4 ms"
-restitution_factors = { from = 0.3, to = 0.9, count = 3 }
-
-[ranking]
-friction = "pin-on-disk-77K"
-materials = ["Armalon", "Meldin HTC 100"]
-"""
 ENVIRONMENTS = [
     "gaseous nitrogen, Chromex 40",
     "gaseous nitrogen, 440C",

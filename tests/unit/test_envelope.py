@@ -20,7 +20,6 @@ from separatrix.chain.solution import solve
 from separatrix.figures import draw
 from separatrix.figures.envelope import envelope_plots, has_envelope, sweep_plots
 from separatrix.front import main
-from separatrix.front.page.plotly import spec
 from separatrix.ground.errors import InputError
 from separatrix.reporting.pictures import picture
 from separatrix.reporting.record import Kept
@@ -107,27 +106,6 @@ def test_the_report_marks_the_cases_in_its_picture(answered):
     assert marks[1].y < marks[0].y < marks[2].y == marks[3].y
     assert all(0 < one.x < found.width and 0 < one.y < found.height for one in found.hover)
     assert len({one.text for one in found.hover}) > 15
-
-
-def test_many_cases_of_several_parameters_are_pointed_at_without_an_envelope():
-    """A panel for each parameter, over its own axis; a case has number and values, a refused one no point."""
-    grid = [(n, t) for n in (600.0, 900.0) for t in np.linspace(0.5e-6, 1e-6, 31)]
-    cases = [{SPEED: n, "film.thickness": t, "cage.mass": 0.003} for n, t in grid]
-    cases[3]["cage.mass"] = -1.0
-    found = present.document("sweep", sweep(STUDY, cases), STUDY)
-    data = present.dataset(found)
-    assert not has_envelope(data)
-    plots, figure = sweep_plots(data), dict(draw("sweep", data))["sweep"]
-    assert [axes.get_xlabel() for axes in figure.axes] == [plot.x_label for plot in plots]
-    for plot in plots:
-        (only,) = plot.series
-        assert only.y == pytest.approx(np.delete(data["restitution_factor"].values, 3))
-        assert only.text[3].startswith("case 4, inner speed 5730 rpm, thickness 566.7 nm, mass 3 g: restit")
-    layout = spec(*plots)["layout"]
-    assert [layout[name]["anchor"] for name in ("yaxis", "yaxis2", "yaxis3")] == ["x", "x2", "x3"]
-    assert layout["xaxis2"]["title"]["text"] == plots[1].x_label
-    (found,) = picture(Kept(found), "sweep", "", "")
-    assert len(found.hover) == 3 * 31  # of 61 every second
 
 
 def test_start_up_from_zero_is_a_row_with_its_reason(answered):

@@ -63,6 +63,7 @@ def html(
     behind = (
         f'<script type="application/json" id="separatrix-answers">{answers}</script>' if documents else ""
     )
+    kept = "The answers behind this page are in this file, as JSON." if documents else ""
     return harmless(f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -82,7 +83,7 @@ def html(
 <main>
 {body(shown, level, picture)}
 </main>
-<footer><p>{subtitle}.{" The answers behind this page are in this file, as JSON." if documents else ""}</p></footer>
+<footer><p>{subtitle}. {kept}</p></footer>
 <div id="tip" role="status" hidden></div>
 {behind}
 <script>
@@ -92,9 +93,14 @@ def html(
 """)
 
 
-def body(page: Page, level: Level = Level.REPORT, picture: PictureHtml | None = None) -> str:
-    """Return the blocks of a page; `picture` shows a picture otherwise than as SVG."""
-    return "\n".join(_block(one, picture or _picture) for one in page.at(level).blocks)
+def body(
+    page: Page,
+    level: Level = Level.REPORT,
+    picture: PictureHtml | None = None,
+    view: Callable[[View], str] | None = None,
+) -> str:
+    """Return the blocks of a page; `picture` shows a picture otherwise than as SVG, `view` a view."""
+    return "\n".join(_block(one, picture or _picture, view or _view) for one in page.at(level).blocks)
 
 
 def _static(name: str) -> str:
@@ -106,7 +112,7 @@ def _css(text: str) -> str:
     return "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text)
 
 
-def _block(block: Block, picture: PictureHtml) -> str:
+def _block(block: Block, picture: PictureHtml, view: Callable[[View], str]) -> str:
     match block:
         case Heading(text=text, depth=depth):
             return f'<h{depth} id="{_id(text)}">{inline(text)}</h{depth}>'
@@ -123,9 +129,7 @@ def _block(block: Block, picture: PictureHtml) -> str:
         case Picture():
             return picture(block)
         case View():
-            inside = f'title="{escape(block.caption)}" srcdoc="{escape(block.html())}"'
-            frame = f'<iframe sandbox="allow-scripts" {inside}></iframe>'
-            return f"<figure>{frame}<figcaption>{inline(block.caption)}</figcaption></figure>"
+            return view(block)
 
 
 def _table(table: Table) -> str:
@@ -196,6 +200,12 @@ def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
     image = _image(drawing, alt)
     caption = f"<figcaption>{inline(one.caption)}{hint}</figcaption>"
     return f'<figure><div class="paper">{image}{over if circles else ""}</div>{caption}</figure>'
+
+
+def _view(one: View) -> str:
+    inside = f'title="{escape(one.caption)}" srcdoc="{escape(one.html())}"'
+    frame = f'<iframe sandbox="allow-scripts" {inside}></iframe>'
+    return f"<figure>{frame}<figcaption>{inline(one.caption)}</figcaption></figure>"
 
 
 def _image(one: draw.Drawing, alt: str) -> str:

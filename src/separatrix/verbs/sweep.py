@@ -509,7 +509,6 @@ def _worst(way: Way, cases: Sequence[Part], worst: Part | None, answer: Part) ->
 
 VERB = Verb(
     name="sweep",
-    help="Chain and verdict of many cases: one table.",
     options=Options,
     compute=compute,
     page=page,

@@ -15,12 +15,12 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable, Item, Table
 
-from separatrix.ground.errors import DataError, InputError, grouped
+from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
-from separatrix.ground.reader import Document, document_of
+from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
-from separatrix.study.reading import library_of, read_study
+from separatrix.study.reading import read_study
 from separatrix.study.study import Study
 from separatrix.study.template import study_keys
 
@@ -30,16 +30,22 @@ DRAFT = ".{}.draft"
 MEND = "Mend it in the text first."
 
 _KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
+_LINE = re.compile(r"line (\d+)")
 _NUMBER = re.compile(rf"\s*{NUMBER}\s*")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing that is wrong: the key it is about (empty texts for the file as a whole), and the message."""
+    """One thing that is wrong: its line (0 if unknown), its key (empty texts for the file as a whole), words.
 
+    `short` leaves out where it is.
+    """
+
+    line: int
     section: str
     key: str
     message: str
+    short: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,17 +59,14 @@ class Checked:
     inherited: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     """Values by section and key, those of the file that it extends among them."""
 
-    tested: tuple[str, ...] = ()
-    """Materials of the tests that it names in [ranking] friction."""
-
     @property
     def version(self) -> str:
         """Which text it is: a tab that has another one edits an older state."""
         return version_of(self.text)
 
-    def faults_of(self, section: str, key: str) -> list[str]:
+    def faults_of(self, section: str, key: str) -> tuple[str, ...]:
         """Return the messages about one key."""
-        return [one.message for one in self.faults if (one.section, one.key) == (section, key)]
+        return tuple(one.message for one in self.faults if (one.section, one.key) == (section, key))
 
 
 def version_of(text: str) -> str:
@@ -115,57 +118,40 @@ def save_to_run(study: Path, root: Path) -> None:
 def check(study: Path, root: Path) -> Checked:
     """Read the draft of a study as every verb would, without files outside `root`."""
     path = draft_path(study) if has_draft(study) else study
+    text, inherited = "", dict[str, dict[str, object]]()
     try:
         text = read_text(path)
-    except InputError as error:
-        return Checked(text="", study=None, faults=tuple(_faults(error, path, study)))
-    inherited, tested = _around(path, root)
-    try:
+        inherited = _inherited(path, root)
         with reading_only_in(root):
             found = read_study(path)
     except InputError as error:
-        faults = tuple(_faults(error, path, study))
-        return Checked(text=text, study=None, faults=faults, inherited=inherited, tested=tested)
-    notes = tuple(grouped(found.notes))
-    return Checked(text=text, study=found, faults=(), notes=notes, inherited=inherited, tested=tested)
+        faults = faults_in(error, study.name, path.name)
+        return Checked(text=text, study=None, faults=faults, inherited=inherited)
+    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(found.notes)), inherited=inherited)
 
 
-def _around(path: Path, root: Path) -> tuple[dict[str, dict[str, object]], tuple[str, ...]]:
-    """Return what a study that extends another has, by section and key, and the materials of its tests."""
+def _inherited(path: Path, root: Path) -> dict[str, dict[str, object]]:
+    """Return what a study that extends another has, by section and key; nothing of another study."""
     try:
         with reading_only_in(root):
-            found = document_of(Study, path)
-            top = {key: value for key, value in found.data.items() if not isinstance(value, dict)}
-            sections = {"": top} | {k: v for k, v in found.data.items() if isinstance(v, dict)}
-            return sections if "extends" in found.data else {}, _tested(found)
+            data = document_of(Study, path).data
     except InputError:  # shown among the faults
-        return {}, ()
+        return {}
+    top = {key: value for key, value in data.items() if not isinstance(value, dict)}
+    sections = {key: value for key, value in data.items() if isinstance(value, dict)}
+    return {"": top} | sections if "extends" in data else {}
 
 
-def _tested(document: Document) -> tuple[str, ...]:
-    """Materials of the table or file in [ranking] friction; none if it cannot be read."""
-    name = document.written(("ranking", "friction"))
-    if not isinstance(name, str):
-        return ()
-    try:
-        if not name.endswith(".toml"):
-            library = library_of(document)
-            return tuple(library.friction_table(library.named("friction table", name) or name).content.rows)
-        from separatrix.friction.friction_file import read_friction
-
-        tests = read_friction(document.folder(("ranking", "friction")) / name)
-        return tuple(dict.fromkeys(test.material for test in tests))
-    except (DataError, InputError):  # refused where the study is read
-        return ()
-
-
-def _faults(error: InputError, path: Path, study: Path) -> list[Fault]:
+def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
+    """Return the faults of a file, which the messages call by a name in place of its label."""
     faults = []
     for one in error.problems or (error,):
-        message, at = str(one).replace(path.name, study.name), _KEY.search(one.path)
+        at, line = _KEY.search(one.path), _LINE.search(one.path)
         section, key = (at["section"], at["key"] or "") if at else ("", "")
-        faults.append(Fault(section=section, key=key, message=message))
-    return faults
+        message, short = str(one).replace(label, name), str(one.at("")).strip()
+        message = message.removeprefix(f"{name}, line {line[1]}: ") if line else message
+        faults.append(Fault(int(line[1]) if line else 0, section, key, message, short))
+    return tuple(faults)
 
 
 def edited(text: str, section: str, key: str, value: str) -> str:
@@ -231,11 +217,6 @@ def _same_list(old: Array, value: list[object]) -> bool:
     for item in value[len(old) :]:
         old.append(item)
     return bool(old.unwrap() == value)
-
-
-def with_unit(value: str, unit: str) -> str:
-    """Return a value with the unit chosen beside it; one that is not a bare number has its own."""
-    return f"{value.strip()} {unit}".strip() if _NUMBER.fullmatch(value) else value.strip()
 
 
 def _typed(value: str, *, is_name: bool = False) -> object:

@@ -1,9 +1,11 @@
-"""Routes of the studies: the list, the form with the text beside it, and running a verb."""
+"""Routes of the studies: the list, the text with the form beside it, and running a verb."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any, get_args, get_origin
 
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
@@ -12,14 +14,15 @@ from tomlkit.exceptions import TOMLKitError
 from separatrix.front.page import drafts as draft
 from separatrix.front.page.folder import Form, Page
 from separatrix.front.page.form import as_typed, form
+from separatrix.front.page.worker import REPORT
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 from separatrix.study.study import BallModel, MotionModel, Study, shipped_studies
 from separatrix.study.template import template
-from separatrix.verbs import VERBS, Verb, verb_named
+from separatrix.verbs import VERBS, verb_named
 
-TYPED = {"points": int, "runs": int, "run": int, "samples": int}
-"""Options that are whole numbers."""
+MODELS = {"motion": [one.value for one in MotionModel], "ball": [one.value for one in BallModel]}
+"""Of a cage that moves: what may be chosen beside the study."""
 
 CHANGED = "Another tab changed this study; its text is shown now. Make your change again."
 
@@ -29,15 +32,19 @@ def routes(page: Page) -> APIRouter:
     router = APIRouter(default_response_class=HTMLResponse)
 
     def edit_again(name: str, path: Path, problem: str = "") -> Response:
-        checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
-        return page.html("editor.html", **_editor(name, path, checked, problem))
-
-    def all_jobs() -> Response:
-        return page.html("jobs.html", jobs=page.jobs.all())
+        return page.html("editor.html", **_editor(page, name, path, problem))
 
     @router.get("/")
     def studies() -> Response:
-        rows = [_summary(page, name) for name in page.folder.studies()]
+        rows = [
+            {
+                "name": name,
+                "title": page.title(name),
+                "answers": page.answered(name),
+                "has_draft": draft.has_draft(page.folder.study(name)),
+            }
+            for name in page.folder.studies()
+        ]
         return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
 
     @router.post("/new")
@@ -51,10 +58,16 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/study/{name:path}")
     def study(name: str) -> Response:
-        path = page.folder.study(name)
-        checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
-        shown = {**_editor(name, path, checked), **_running(page, name, checked.study if checked else None)}
-        return page.html("study.html", title=page.title(name), **shown)
+        shown = _editor(page, name, page.folder.study(name))
+        found = shown["checked"].study if shown["checked"] else None
+        return page.html(
+            "study.html",
+            title=page.title(name),
+            cards=_cards(found),
+            tables=page.folder.tables(name),
+            answers=page.answered(name),
+            **shown,
+        )
 
     @router.post("/edit/{name:path}")
     def edit(name: str, sent: Form) -> Response:
@@ -65,8 +78,9 @@ def routes(page: Page) -> APIRouter:
         elif "text" in sent:
             draft.keep(path, sent["text"].replace("\r\n", "\n"))
         else:
+            section, _, key = sent.get("field", "").partition(".")
             try:
-                draft.keep(path, edited_by(text, sent))
+                draft.keep(path, draft.edited(text, section, key, sent.get("value", "")))
             except InputError as error:
                 problem = str(error)
             except TOMLKitError as error:  # TOML in an order that tomlkit does not take
@@ -87,23 +101,24 @@ def routes(page: Page) -> APIRouter:
 
     @router.post("/run/{name:path}")
     def run(name: str, sent: Form) -> Response:
-        path, verb = page.folder.study(name), verb_named(sent.get("verb", ""))
+        path = page.folder.study(name)
+        verb = sent.get("verb", "")
+        question = {} if verb == REPORT else asked(page, name, verb, sent)
         draft.save_to_run(path, page.folder.root)
-        place = page.folder.answers(name)
-        page.jobs.ask(verb.name, path, place, name=name, question=_question(page, name, verb, sent))
-        return all_jobs()
+        page.jobs.ask(verb, path, page.folder.answers(name), name=name, question=question)
+        return page.running()
 
-    router.get("/jobs")(all_jobs)
+    router.get("/jobs")(page.running)
 
     @router.post("/jobs/{number}/cancel")
     def cancel(number: int) -> Response:
         page.jobs.cancel(number)
-        return all_jobs()
+        return page.running()
 
     @router.post("/jobs/forget")
     def forget() -> Response:
         page.jobs.forget_ended()
-        return all_jobs()
+        return page.running()
 
     @router.post("/jobs/{number}/resume")
     def resume(number: int) -> Response:
@@ -112,86 +127,69 @@ def routes(page: Page) -> APIRouter:
             raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
         task = job.task
         page.jobs.ask(task.verb, task.study, task.folder, name=job.study, question=task.question)
-        return all_jobs()
+        return page.running()
 
     return router
 
 
-def edited_by(text: str, sent: dict[str, str]) -> str:
-    """Return the text of a study with what one part of the form changes in it."""
-    value = draft.with_unit(sent.get("value", ""), sent.get("unit", ""))
-    section, _, key = sent.get("field", "").rpartition(".")
-    if ticked := [value for name, value in sent.items() if name.startswith("box-")]:
-        given = draft.parsed(text).unwrap().get(section, {}).get(key, [])  # its order is that of the answer
-        kept = [one for one in given if one in ticked]
-        value = as_typed([*kept, *(one for one in ticked if one not in kept)])
-    return draft.edited(text, section, key, value)
-
-
-def _summary(page: Page, name: str) -> dict[str, object]:
-    place, answers = page.folder.answers(name), page.answered(name)
-    ranked = page.document(place, "rank") or {}
-    overall = ranked.get("overall") or []
-    counts = {
-        verdict: sum(row.get("verdict") == verdict for row in overall) for verdict in ("STABLE", "UNSTABLE")
-    }
-    best = next((row["name"] for row in overall if row.get("rank") == 1), None)
-    return {
-        "name": name,
-        "title": page.title(name) or ranked.get("title", ""),
-        "answers": answers,
-        "best": best,
-        "counts": counts,
-        "count": len(overall),
-        "has_draft": draft.has_draft(page.folder.study(name)),
-    }
-
-
-def _editor(name: str, path: Path, checked: draft.Checked | None, problem: str = "") -> dict[str, object]:
-    """Return what the form and the text beside it show; nothing of a workbook, which is not `checked`."""
+def _editor(page: Page, name: str, path: Path, problem: str = "") -> dict[str, Any]:
+    """Return what the text and the form beside it show; nothing of a workbook, which is not `checked`."""
+    checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
     return {
         "name": name,
         "checked": checked,
         "sections": form(checked) if checked else (),
+        "as_typed": as_typed,
         "problem": problem if checked else "",
         "has_draft": checked is not None and draft.has_draft(path),
     }
 
 
-def _running(page: Page, name: str, found: Study | None) -> dict[str, object]:
-    """Return what the panel of verbs shows; `lacking` are sections that a verb needs and a study lacks."""
-    lacking = {
-        verb.name: [section for section in verb.needs if found and getattr(found, section) is None]
-        for verb in VERBS
-    }
-    return {
-        "verbs": VERBS,
-        "lacking": lacking,
-        "answers": page.answered(name),
-        "jobs": page.jobs.all(),
-        "motions": [one.value for one in MotionModel],
-        "tables": page.folder.tables(name),
-        "balls": [one.value for one in BallModel],
-    }
+def _cards(study: Study | None) -> list[dict[str, Any]]:
+    """Return each verb with its options, and the sections that it needs and the study lacks."""
+    return [
+        {
+            "verb": verb,
+            "lacks": [one for one in verb.needs if study and getattr(study, one) is None],
+            "options": {
+                name: (_kind(hint), about, default)
+                for name, (hint, about, default) in verb.shown_options().items()
+            },
+            "models": MODELS if verb.moves_a_cage else {},
+        }
+        for verb in map(verb_named, VERBS)
+    ]
 
 
-def _question(page: Page, study: str, verb: Verb, sent: dict[str, str]) -> dict[str, object]:
-    """Return the options of a verb of a study as a form gives them; empty ones have their defaults."""
+def _kind(hint: Any) -> str:
+    """Return the kind of field for a type: flag, lines, file, number or text."""
+    kinds = {get_origin(hint) or hint, *get_args(hint)}
+    known = {bool: "flag", tuple: "lines", Path: "file", int: "number"}
+    return next((kind for one, kind in known.items() if one in kinds), "text")
+
+
+def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[str, object]:
+    """Return the options of a verb, and models, as a form gives them; empty ones have their defaults."""
+    known = verb_named(verb)
+    kinds = {name: _kind(hint) for name, (hint, *_) in known.shown_options().items()}
+    kinds |= dict.fromkeys(MODELS, "text") if known.moves_a_cage else {}
     question: dict[str, object] = {}
-    for name in (*verb.question, *(("motion", "ball") if verb.moves_a_cage else ())):
+    for name, kind in kinds.items():
         text = sent.get(name, "").strip()
-        if not text or name == "animate":
+        if not text:
             continue
-        if name == "vary":
-            question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
-        elif name == "cases":
-            question[name] = page.folder.table(study, text)
-        elif name in ("adaptive", "verdicts", "margins"):
-            question[name] = True
-        elif name in TYPED:
-            if not re.fullmatch("[0-9]{1,9}", text):
-                raise InputError(f"--{name}", "must be a whole number", got=f'"{printable(text)}"')
-            question[name] = int(text)
-        else:
-            question[name] = text
+        if kind == "number" and not re.fullmatch("-?[0-9]{1,9}", text):
+            flag = f"--{name.replace('_', '-')}"
+            raise InputError(flag, "must be a whole number", got=f'"{printable(text)}"')
+        match kind:
+            case "flag":
+                question[name] = True
+            case "lines":
+                question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
+            case "file":
+                question[name] = page.folder.table(study, text)
+            case "number":
+                question[name] = int(text)
+            case _:
+                question[name] = text
     return question

@@ -4,36 +4,28 @@ from __future__ import annotations
 
 import json
 import re
-import threading
 import tomllib
 import zipfile
 import zlib
-from collections import OrderedDict
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
-from urllib.parse import parse_qs
+from typing import Annotated, Any
+from urllib.parse import parse_qs, quote
 
 from fastapi import Depends, Request
 from fastapi.responses import HTMLResponse
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
-from separatrix.comparing.saved import arrays
-from separatrix.front.page.jobs import Jobs
+from separatrix.front.page.jobs import Job, Jobs
+from separatrix.front.page.worker import LOG, REPORT
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import is_inside
 from separatrix.ground.toml import read_text
-from separatrix.ground.units import format_quantity, printable, shown
+from separatrix.ground.units import printable, shown
 from separatrix.verbs import VERBS
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from separatrix.comparing.saved import Document
-
-Content = TypeVar("Content")
 
 STUDY_SUFFIXES = (".toml", ".xlsx", ".xlsm", ".ods")
 ANSWER_SUFFIXES = (
@@ -41,17 +33,14 @@ ANSWER_SUFFIXES = (
     ".toml",
 )
 TABLE_SUFFIX = ".csv"
+LOGS, MAP, OF_LOG = "logs", ".map.toml", ".answer"
+"""Folder of the logs of tribometers; endings of a column map and of the folder of an answer, beside a log."""
+
 MOST_STUDIES, DEEPEST = 500, 3
 _NAME = re.compile(r"[^\W_][\w .,()+-]{0,99}")
 _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
 _SHEET = re.compile(rb'name="bearing"', re.IGNORECASE)
 _BEGINNING = 64 * 1024
-
-MOST_READ = 64
-"""Answers and titles that are kept in memory."""
-
-VERDICTS = {"STABLE": "stable", "UNSTABLE": "unstable", "UNDECIDED": "undecided"}
-"""Verdict -> the class of its look."""
 
 TEMPLATES = Environment(
     loader=PackageLoader("separatrix.front.page"),
@@ -60,9 +49,7 @@ TEMPLATES = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-TEMPLATES.globals |= {"version": __version__, "verdicts": VERDICTS}
-TEMPLATES.filters["quantity"] = lambda value, unit: "-" if value is None else format_quantity(value, unit, 3)
-TEMPLATES.filters["digits"] = lambda value, count=2: "-" if value is None else f"{value:.{count}f}"
+TEMPLATES.globals |= {"version": __version__}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,14 +73,16 @@ class Folder:
         """Whether a path is a file of the folder; one that a link leads out to is not."""
         return path.is_file() and is_inside(path, self.root)
 
-    def new(self, name: str) -> Path:
-        """Return the path of a file to make beside the studies; refused if its name is odd or taken."""
+    def new(self, name: str, place: str = "") -> Path:
+        """Return the path of a file to make beside the studies or in a folder there, or refuse its name."""
         if name == ".toml":
             raise InputError("The name", "must not be empty", cure="Type one, for instance my-bearing.")
         if not _NAME.fullmatch(name) or Path(name).name != name:
             cure = "Use letters, digits, spaces, dots and dashes."
             raise InputError(shown(name), "is not a name for a file", cure=cure)
-        path = self.root / name
+        path = self.root / place / name
+        if not is_inside(path.parent, self.root):
+            raise InputError(shown(place), "leads out of the folder of the studies", cure="Remove this link.")
         if path.exists() or path.is_symlink():
             raise InputError(shown(name), "exists already", cure="Choose another name.")
         return path
@@ -109,6 +98,20 @@ class Folder:
         """Return the folder of the answers to a study, that of the command line; it need not exist."""
         path = self.study(name)
         return path.parent / printable(path.stem, 100)
+
+    def logs(self) -> list[str]:
+        """Return the names of the logs of tribometers."""
+        place = self.root / LOGS
+        found = place.iterdir() if place.is_dir() and is_inside(place, self.root) else ()
+        return sorted(
+            one.name for one in found if self.has(one) and one.name[0] != "." and one.suffix != ".toml"
+        )
+
+    def log(self, name: str) -> Path:
+        """Return the path of a log."""
+        if name not in self.logs():
+            raise InputError(shown(name), "is not a log of this folder")
+        return self.root / LOGS / name
 
     def tables(self, name: str) -> list[str]:
         """Return the names of the CSV files beside a study: what `sweep` may take its cases from."""
@@ -166,73 +169,56 @@ def _is_study(path: Path) -> bool:
         return _HEADER.search(file.read(_BEGINNING)) is not None
 
 
-@dataclass(slots=True)
-class _Read:
-    """The content of a file when it was read; each has its own lock, so that a long read delays no other."""
+@lru_cache(maxsize=64)
+def _loaded(state: tuple[Path, int]) -> Any:
+    """Return the content of a file of JSON or TOML, read once for each state of it; None if it is damaged."""
+    path, _ = state
+    try:
+        return tomllib.loads(read_text(path)) if path.suffix == ".toml" else json.loads(path.read_bytes())
+    except (ValueError, InputError, OSError, RecursionError):
+        return None
 
-    stamp: int | None = None
-    content: Any = None
-    lock: threading.Lock = field(default_factory=threading.Lock)
 
-
-@dataclass(slots=True)
+@dataclass(slots=True, kw_only=True)
 class Page:
     """The folder that is shown, and what works for it."""
 
     folder: Folder
     jobs: Jobs
-    _read: OrderedDict[Path, _Read] = field(default_factory=OrderedDict)
-    _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def html(self, template: str, **values: object) -> HTMLResponse:
-        """Return a page or a part of one."""
-        return HTMLResponse(TEMPLATES.get_template(template).render(**values))
+        """Return a page or a part of one; a list of jobs leads to their answers."""
+        return HTMLResponse(TEMPLATES.get_template(template).render(address=self.address, **values))
 
-    def document(self, place: Path, verb: str) -> Document | None:
-        """Return the document of a verb in a folder of answers; None if there is none, or it is damaged."""
-        path = place / f"{verb}.json"
-        found: Document | None = self._known(path, lambda: json.loads(path.read_text(encoding="utf-8")))
-        return found
+    def running(self) -> HTMLResponse:
+        """Return the list of jobs."""
+        return self.html("jobs.html", jobs=self.jobs.all())
+
+    def loaded(self, path: Path) -> dict[str, Any]:
+        """Return the content of a file of JSON or TOML; an empty one if it is damaged or missing."""
+        found = _loaded((path, path.stat().st_mtime_ns)) if self.folder.has(path) else None
+        return found if isinstance(found, dict) else {}
 
     def title(self, study: str) -> str:
         """Return the title that the file of a study has; empty if it has none of its own."""
         path = self.folder.study(study)
-
-        def load() -> str:
-            title = tomllib.loads(read_text(path)).get("title", "")
-            return title if isinstance(title, str) else ""
-
-        return (self._known(path, load) if path.suffix == ".toml" else None) or ""
-
-    def dataset(self, place: Path, verb: str) -> xr.Dataset | None:
-        """Return the labelled arrays of an answer; None if there is none, or it was interrupted."""
-        found = self.document(place, verb)
-        return None if found is None else arrays(found, self.folder.name(place / f"{verb}.json"))
-
-    def _known(self, path: Path, load: Callable[[], Content]) -> Content | None:
-        """Return the content of a file, read once for each state of the file; None if it is damaged."""
-        if not self.folder.has(path):
-            return None
-        stamp = path.stat().st_mtime_ns
-        with self._lock:
-            known = self._read.setdefault(path, _Read())
-            self._read.move_to_end(path)
-            if len(self._read) > MOST_READ:
-                self._read.popitem(last=False)
-        with known.lock:
-            if known.stamp != stamp:
-                try:
-                    known.content = load()
-                except (ValueError, InputError):
-                    known.content = None
-                known.stamp = stamp
-            found: Content | None = known.content
-            return found
+        title = self.loaded(path).get("title") if path.suffix == ".toml" else ""
+        return title if isinstance(title, str) else ""
 
     def answered(self, study: str) -> list[str]:
         """Return the verbs that a study has saved answers of, in the order of the chain."""
         place = self.folder.answers(study)
-        return [verb.name for verb in VERBS if self.folder.has(place / f"{verb.name}.json")]
+        return [verb for verb in VERBS if self.folder.has(place / f"{verb}.json")]
+
+    def address(self, job: Job) -> str:
+        """Return where the answer of a job is shown."""
+        if job.task.verb == REPORT:
+            return f"/files/{quote(job.study)}"
+        return (
+            f"/log/{quote(job.study)}"
+            if job.task.verb == LOG
+            else f"/answer/{job.task.verb}/{quote(job.study)}"
+        )
 
 
 async def _form_of(request: Request) -> dict[str, str]:

@@ -20,9 +20,8 @@ from fastapi.responses import FileResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
-from separatrix.figures.view import PARTS
-from separatrix.front.page import answers as results
-from separatrix.front.page import editing
+from separatrix import present
+from separatrix.front.page import answers, editing, logs
 from separatrix.front.page.folder import Folder, Page
 from separatrix.front.page.jobs import Jobs
 from separatrix.ground.errors import InputError, SeparatrixError
@@ -34,6 +33,9 @@ IDLE = 10
 """Time after which an idle connection is closed [s]."""
 
 STATIC = Path(__file__).with_name("static")
+BLOCKS = Path(present.__file__).with_name("static") / "page.css"
+"""How a page of blocks looks, in a report as here."""
+
 A_DAY = {"cache-control": "max-age=86400"}
 
 Message = MutableMapping[str, Any]
@@ -84,8 +86,8 @@ def application(root: Path) -> FastAPI:
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
     app.state.root, app.state.page = root, page
-    for routes in (editing.routes, results.routes):
-        app.include_router(routes(page))
+    for rooms in (editing, answers, logs):
+        app.include_router(rooms.routes(page))
 
     def words(request: Request, faults: list[str], status: HTTPStatus) -> Response:
         template = "refusal.html" if "hx-request" in request.headers else "refused.html"
@@ -112,7 +114,10 @@ def application(root: Path) -> FastAPI:
     def plotly() -> FileResponse:
         return FileResponse(drawing, media_type="text/javascript", headers=A_DAY)
 
-    app.mount("/static/cage", StaticFiles(directory=PARTS))
+    @app.get("/static/blocks.css")
+    def style() -> FileResponse:
+        return FileResponse(BLOCKS, media_type="text/css")
+
     app.mount("/static", StaticFiles(directory=STATIC))
     return app
 

@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from pathlib import Path
 from queue import SimpleQueue
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from separatrix.front.console import LeftBehind, Pace, breakable
 from separatrix.ground.errors import InputError, SeparatrixError
@@ -22,10 +22,12 @@ from separatrix.ground.units import shown
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs import Computed, Verb
 
 REPORT = "report"
 """In the place of a verb: the report of a study."""
+
+LOG = "tribometer"
+"""The verb whose question is to a log, not to a study."""
 
 END = "end"
 """What the page sends when it is closed."""
@@ -42,7 +44,7 @@ Send = Callable[..., None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """A question: verb, study file, folder of the answer, options of the verb with the models of motion."""
+    """A question: verb, study or log, folder of the answer, options of the verb with the models of motion."""
 
     number: int
     verb: str
@@ -161,21 +163,17 @@ def _answered(task: Task, send: Send) -> tuple[str, str]:
     question = dict(task.question)
     models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
     with reading_only_in(task.root):
-        verb = None if task.verb == REPORT else verb_named(task.verb)
-        study = read_study(task.study) if verb is None else asked_study(verb, task.study, models)
         _refuse_links_out(task)
         task.folder.mkdir(parents=True, exist_ok=True)
-
-        def compute(one: Verb) -> Computed:
-            progress = Reporter(send)
-            return computed(one, study, question, folder=task.folder, progress=progress)
-
-        if verb is None:
-            return _reported(task, study, compute, send)
-        found = compute(verb)
+        if task.verb == LOG:
+            return _reduced(task, send)
+        if task.verb == REPORT:
+            return _reported(task, read_study(task.study), send)
+        verb = verb_named(task.verb)
+        study, options = asked_study(verb, task.study, models), verb.options(**question)
+        found = computed(verb, study, options, folder=task.folder, progress=Reporter(send))
         send(message="Drawing the figures and writing the files.")
-        answer = document(verb.name, found.record, found.study, found.question)
-        save_answer(task.folder, found.record, found.study, answer)
+        save_answer(task.folder, verb, document(verb, found), options=options)
         if not found.is_complete:
             return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
@@ -192,23 +190,46 @@ def _refuse_links_out(task: Task) -> None:
             raise InputError(shown(path.name), rule, cure="Remove this link.")
 
 
-def _reported(
-    task: Task,
-    study: Study,
-    compute: Callable[[Verb], Computed],
-    send: Send,
-) -> tuple[str, str]:
+def _reported(task: Task, study: Study, send: Send) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.reporting.content import answers_of, keeping, report_of
-    from separatrix.reporting.formats import write
+    from separatrix.verbs import computed, verb_named
+    from separatrix.verbs.answer_files import document, save_answer
+    from separatrix.verbs.report import add_missing, is_answer_to, report_of, wanted
+    from separatrix.verbs.saved_answers import read_answer
 
-    def announced(verb: Verb) -> Computed:
-        send(message=f"Computing {verb.name} for the report.")
-        return compute(verb)
+    def compute(name: str) -> dict[str, Any]:
+        send(message=f"Computing {name} for the report.")
+        verb = verb_named(name)
+        made = document(verb, computed(verb, study, folder=task.folder, progress=Reporter(send)))
+        save_answer(task.folder, verb, made)
+        return made
 
-    found, missing, is_complete = answers_of(study, task.folder, keeping(announced, task.folder))
-    if not is_complete:
+    kept = {one: task.folder / f"{one}.json" for one in wanted(study)}
+    known = {one: read_answer(path) for one, path in kept.items() if path.exists()}
+    found = {one: answer for one, answer in known.items() if is_answer_to(answer, study)}
+    missing = add_missing(found, list(kept), compute)
+    if any(answer.get("complete") is False for answer in found.values()):
         return INTERRUPTED
     send(message="Writing the report.")
-    write(report_of(found, missing), task.folder, with_pdf=find_spec("typst") is not None)
+    report_of(found, missing).write(task.folder, with_pdf=find_spec("typst") is not None)
+    return "finished", ""
+
+
+def _reduced(task: Task, send: Send) -> tuple[str, str]:
+    """Reduce a log and write its answer; one that leaves questions open gets a draft of its column map."""
+    from separatrix.friction.logs import UnmappedError
+    from separatrix.ground.errors import json_text
+    from separatrix.ground.files import staged
+    from separatrix.verbs import processors, tool_named
+
+    tool = tool_named(LOG)
+    try:
+        found = tool.compute(tool.options(files=(task.study,), **task.question), processors(), Reporter(send))
+    except UnmappedError as error:
+        if not error.place.exists():
+            error.place.write_text(error.draft, encoding="utf-8", newline="\n")
+        cure = "Answer the questions in the draft of the column map, on the page of this log."
+        raise error.at(error.path, cure=cure) from None
+    with staged(task.folder) as stage:
+        (stage / f"{LOG}.json").write_text(json_text(found) + "\n", encoding="utf-8")
     return "finished", ""

@@ -6,7 +6,8 @@ const dark = window.matchMedia("(prefers-color-scheme: dark)");
 function looks() {
   const style = getComputedStyle(document.documentElement);
   const of = (name) => style.getPropertyValue(name).trim();
-  return { paper_bgcolor: of("--paper"), plot_bgcolor: of("--paper"), font: { color: of("--ink"), family: "inherit" } };
+  const look = { paper_bgcolor: of("--paper"), plot_bgcolor: of("--paper"), font: { color: of("--ink"), family: "inherit" } };
+  return { ink: of("--ink"), look };
 }
 
 function message(text) {
@@ -20,22 +21,110 @@ function message(text) {
   }
 }
 
-async function fetched(place) {
-  const response = await fetch(place, { headers: { "HX-Request": "true" } });
-  if (response.ok) return response.json();
+async function asked(place, options = {}) {
+  const response = await fetch(place, { ...options, headers: { "HX-Request": "true" } });
+  if (response.ok) return response;
   const page = new DOMParser().parseFromString(await response.text(), "text/html");
   const words = [...page.querySelectorAll(".refusal p")].map((one) => one.textContent).join(" ");
   throw new Error(words || `The server answered ${response.status}.`);
 }
 
 async function show(figure) {
+  const canvas = figure.querySelector(".canvas");
   try {
-    const found = await fetched(figure.dataset.source);
+    figure.found ||= await (await asked(figure.dataset.source)).text();
+    const { ink, look } = looks();
+    const { data, layout } = JSON.parse(figure.found.replaceAll('"#000000"', `"${ink}"`));
+    canvas.style.height = `${layout.height}px`;
     const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
-    await Plotly.react(figure.querySelector(".canvas"), found.data, { ...found.layout, ...looks() }, options);
+    await Plotly.react(canvas, data, { ...layout, ...look }, options);
   } catch (error) {
     message(error.message);
   }
+}
+
+// A click in the first panel, not a drag: a point of a map is simulated, running-in of a log ends there.
+function choosing(figure) {
+  const canvas = figure.querySelector(".canvas");
+  const { point, cut } = figure.closest(".answer").dataset;
+  let down = [];
+  canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; }, true);
+  document.addEventListener("pointerup", ({ clientX, clientY }) => {
+    const [x0, y0] = down;
+    down = [];
+    if (!(Math.hypot(clientX - x0, clientY - y0) < 4)) return;
+    const box = canvas.getBoundingClientRect();
+    const { xaxis, yaxis } = canvas._fullLayout;
+    const across = clientX - box.left - xaxis._offset;
+    const up = clientY - box.top - yaxis._offset;
+    if (across < 0 || up < 0 || across > xaxis._length || up > yaxis._length) return;
+    const [[ofX, ofY]] = canvas.layout.meta;
+    const at = { x: xaxis.p2d(across) * ofX, y: yaxis.p2d(up) * ofY };
+    if (point) htmx.ajax("POST", point, { target: "#jobs", values: at });
+    const field = document.getElementById("run-in");
+    if (!cut || !field) return;
+    field.value = `${Number(at.x.toPrecision(4))} ${cut}`;
+    field.form.requestSubmit();
+  }, true);
+}
+
+// Each fault of a text is written at its line, over the text.
+function paint(code) {
+  const [over, text] = code.children;
+  const lines = text.value.split("\n");
+  const faults = new Map();
+  for (const one of code.parentElement.querySelectorAll("li[data-line]")) {
+    faults.set(Number(one.dataset.line), [faults.get(Number(one.dataset.line)), one.dataset.short].filter(Boolean).join(" "));
+  }
+  over.style.transform = `translateY(${-text.scrollTop}px)`;
+  over.replaceChildren(...lines.map((line, i) => {
+    const row = document.createElement("div");
+    row.dataset.number = i + 1;
+    if (!faults.has(i + 1)) return row;
+    row.className = "wrong";
+    const words = document.createElement("span");
+    words.textContent = faults.get(i + 1);
+    words.style.marginLeft = `calc(${line.length + 2}ch - ${text.scrollLeft}px)`;
+    row.append(words);
+    return row;
+  }));
+}
+
+function goTo(text, number) {
+  const before = text.value.split("\n").slice(0, number - 1).join("\n").length + (number > 1);
+  text.focus();
+  text.setSelectionRange(before, before);
+  text.scrollTop = (number - 5) * parseFloat(getComputedStyle(text).lineHeight);
+}
+
+async function upload(files) {
+  const state = document.getElementById("uploaded");
+  for (const file of files) {
+    state.textContent = `Copying ${file.name} ...`;
+    try {
+      const response = await asked(`/logs/${encodeURIComponent(file.name)}`, { method: "PUT", body: file });
+      document.getElementById("loglist").innerHTML = await response.text();
+      state.textContent = `${file.name} is copied.`;
+    } catch (error) {
+      state.textContent = "";
+      message(`${file.name}: ${error.message}`);
+    }
+  }
+  if (files.length === 1 && state.textContent) location.assign(`/log/${encodeURIComponent(files[0].name)}`);
+}
+
+function dropping(place) {
+  const over = (is) => (event) => {
+    event.preventDefault();
+    place.classList.toggle("hot", is);
+  };
+  place.addEventListener("dragover", over(true));
+  place.addEventListener("dragleave", over(false));
+  place.addEventListener("drop", (event) => {
+    over(false)(event);
+    upload(event.dataTransfer.files);
+  });
+  document.getElementById("pick").addEventListener("change", (event) => upload(event.target.files));
 }
 
 // Make a part of the page like another one, and keep focus, caret, scroll and what is being typed.
@@ -81,21 +170,20 @@ function isEdited(field) {
 
 function inPlace(event) {
   const { target, xhr } = event.detail;
-  if (!event.detail.shouldSwap || !["editor", "jobs"].includes(target.id) || !target.firstElementChild) return;
+  if (!event.detail.shouldSwap || !["editor", "jobs", "map"].includes(target.id) || !target.firstElementChild) return;
   event.detail.shouldSwap = false;
+  const active = target.querySelectorAll(".job.running, .job.waiting");
+  const here = [...active].filter((one) => one.dataset.address === location.pathname).map((one) => one.id);
   const next = target.cloneNode(false);
   next.innerHTML = xhr.responseText;
   morph(target, document.adoptNode(next));
   for (const one of target.children) htmx.process(one); // the target itself keeps its queue of requests
+  for (const code of target.querySelectorAll(".code")) paint(code);
+  for (const id of here) if (!document.querySelector(`#${id}:is(.running, .waiting)`)) location.reload(); // its answer is shown
 }
 
 function sending(event) {
   const { elt, requestConfig } = event.detail;
-  const trigger = requestConfig.triggeringEvent && requestConfig.triggeringEvent.target;
-  if (trigger && trigger.name === "unit" && !trigger.form.elements.value.value.trim()) {
-    event.preventDefault(); // a unit chosen before its number
-    return;
-  }
   if (elt.matches(".field, .text") && ![...elt.elements].some(isEdited)) {
     event.preventDefault(); // Enter both changes and submits: sent again, it would wipe out what the server said
     return;
@@ -105,13 +193,22 @@ function sending(event) {
 }
 
 function ended(event) {
-  if (event.detail.requestConfig.path.startsWith("/edit/")) sent.clear();
+  if (event.detail.requestConfig.elt.matches(".field, .text")) sent.clear();
 }
 
 document.addEventListener("DOMContentLoaded", () => {
-  for (const figure of document.querySelectorAll(".plot")) show(figure);
-  dark.addEventListener("change", () => {
-    for (const canvas of document.querySelectorAll(".plot .canvas")) if (canvas.data) Plotly.relayout(canvas, looks());
+  const figures = document.querySelectorAll(".plot");
+  for (const figure of figures) show(figure);
+  for (const figure of document.querySelectorAll(":is([data-point], [data-cut]) .plot")) choosing(figure);
+  dark.addEventListener("change", () => figures.forEach(show));
+  for (const code of document.querySelectorAll(".code")) paint(code);
+  for (const kind of ["input", "scroll"]) {
+    document.body.addEventListener(kind, ({ target }) => target.id === "text" && paint(target.parentElement), true);
+  }
+  const place = document.getElementById("drop");
+  if (place) dropping(place);
+  document.body.addEventListener("click", ({ target }) => {
+    if (target.matches(".at")) goTo(document.getElementById("text"), Number(target.dataset.line));
   });
   document.body.addEventListener("htmx:beforeRequest", sending);
   document.body.addEventListener("htmx:beforeSwap", inPlace);
