@@ -104,11 +104,6 @@ class Mobility:
     notes: tuple[str, ...] = ()  # where the slip fields leave the range of their model, a sentence each
 
 
-WORN = (
-    "The film is worn: the mobility of a ball takes race_friction on the whole track, and the wear only for "
-    "its elastic creep."
-)
-
 SETTLED = 1e-10
 """Unbalanced friction of a settled ball over mu (Q_i + Q_o); rounding of the slip fields allows 1e-13."""
 
@@ -550,7 +545,7 @@ def mobility(
         force_forward=forward,
         force_backward=backward,
         force_law=law.force(speed),
-        notes=(*([WORN] if film.wear is not None else []), *ball.notes),
+        notes=ball.notes,
     )
 
 

@@ -43,6 +43,10 @@ from separatrix.study.candidates import cage_candidate, environment_of
 from separatrix.study.study import CageDesign, Candidate, ClearanceState, Friction, Material, Study
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
+WORN_MOBILITY = (
+    "The film is worn: the mobility of a ball takes race_friction on the whole track, and the wear only for "
+    "its elastic creep."
+)
 NO_CAGE = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
 
 
@@ -201,7 +205,9 @@ class Solution:
         asked = self.study
         require_rolling(asked)
         _ = self.bearing  # its notes
-        return mobility(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
+        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
+        found = mobility(*records)
+        return found if asked.film.wear is None else replace(found, notes=(WORN_MOBILITY, *found.notes))
 
     @cached_property
     def free_ball(self) -> tuple[FreeBall, tuple[float, float, float]]:

@@ -328,27 +328,66 @@ OWN: dict[str, Callable[[Tool], Callable[..., int]]] = {"compare": _comparing, "
 """Tools whose command writes files."""
 
 
-def _materials() -> typer.Typer:
-    from separatrix.verbs.materials import LIST, SHOW
+def _new_application() -> typer.Typer:
+    return typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
-    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    for tool in (LIST, SHOW):
-        app.command(tool.name.split()[-1], help=tool.help, epilog=tool.epilog)(tool_command(tool))
-    return app
+
+def _command(name: str) -> Any:
+    """Return a command; only its own module is loaded."""
+    app = _new_application()
+    if name == "materials":
+        from separatrix.verbs.materials import LIST, SHOW
+
+        app.callback(help=OTHERS[name])(lambda: None)
+        for tool in (LIST, SHOW):
+            app.command(tool.name.split()[-1], help=tool.help, epilog=tool.epilog)(tool_command(tool))
+    elif name in VERBS:
+        verb = verb_named(name)
+        app.command(name, help=VERBS[name], epilog=verb.epilog)(command_of(verb))
+    elif name in TOOLS:
+        tool = tool_named(name)
+        app.command(name, help=TOOLS[name], epilog=tool.epilog)(OWN.get(name, tool_command)(tool))
+    else:
+        own: dict[str, tuple[Callable[..., int], str | None]] = {
+            "new": (_new, None),
+            "report": (_report, REPORT_EPILOG),
+            "app": (_page, PAGE_EPILOG),
+        }
+        command, epilog = own[name]
+        app.command(name, help=OTHERS[name], epilog=epilog)(command)
+    return typer.main.get_command(app)
+
+
+OTHERS = {
+    "new": "Write a commented study file to fill in.",
+    "report": REPORT,
+    "app": PAGE,
+    "materials": "The library of materials.",
+}
+COMMANDS = {"new": OTHERS["new"], **VERBS, **TOOLS, **OTHERS}
+"""Command -> its line of help, in the order of the chain."""
+
+
+class _Commands(typer.core.TyperGroup):
+    """The commands by name, each made when it is asked for: the list of them loads none."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return [*COMMANDS]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        return _command(cmd_name) if cmd_name in COMMANDS else None
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([*COMMANDS.items()])
 
 
 def _application() -> typer.Typer:
-    """Return the command line, with the verbs in the order of the chain."""
-    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    """Return the command line."""
+    app = typer.Typer(
+        cls=_Commands, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
+    )
     app.callback(invoke_without_command=True, help=HELP)(_start)
-    app.command("new", help="Write a commented study file to fill in.")(_new)
-    for verb in map(verb_named, VERBS):
-        app.command(verb.name, help=verb.help, epilog=verb.epilog)(command_of(verb))
-    for tool in map(tool_named, TOOLS):
-        app.command(tool.name, help=tool.help, epilog=tool.epilog)(OWN.get(tool.name, tool_command)(tool))
-    app.add_typer(_materials(), name="materials", help="The library of materials.")
-    app.command("report", help=REPORT, epilog=REPORT_EPILOG)(_report)
-    app.command("app", help=PAGE, epilog=PAGE_EPILOG)(_page)
     return app
 
 
@@ -362,8 +401,9 @@ def _start(
         answer(f"separatrix {__version__}\n")
         raise typer.Exit
     if context.invoked_subcommand is None:
-        verbs = ", ".join(["new", *VERBS, *TOOLS, "materials", "report", "app"])
-        raise InputError("The command", f"is missing; choose one of {verbs}", cure='Try "separatrix --help".')
+        raise InputError(
+            "The command", f"is missing; choose one of {', '.join(COMMANDS)}", cure='Try "separatrix --help".'
+        )
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:

@@ -21,6 +21,9 @@ from separatrix.present.blocks import (
 WIDTH, TABLE, LABEL = 96, 110, 40
 """Most letters of a line of words, of a table, and of a label."""
 
+LEAST = 24
+"""Letters of a line of the last column of a table, where it is broken into lines."""
+
 ASCII = str.maketrans(
     {"\N{MICRO SIGN}": "u", "\N{PLUS-MINUS SIGN}": "+/-", "\N{SUPERSCRIPT TWO}": "2", "\N{MINUS SIGN}": "-"}
 )
@@ -81,6 +84,9 @@ def _table(table: Table) -> str:
     if sum(widths) + 2 * len(widths) > TABLE:
         heads, widths = _heads(columns, cells, narrow=True)
     signs = ["<" if one.is_text else ">" for one in columns]
+    room = TABLE - sum(widths[:-1]) - 2 * len(widths)
+    if columns[-1].is_text and LEAST <= room < widths[-1]:
+        return _wrapped(heads, cells, [*widths[:-1], room], signs)
     parts = []
     for part in _parts(widths):
         tall = max(len(heads[i]) for i in part)
@@ -90,6 +96,23 @@ def _table(table: Table) -> str:
         looks = [f"{signs[i]}{widths[i]}" for i in part]
         parts.append("\n".join("  " + "  ".join(map(format, line, looks)).rstrip() for line in body))
     return "\n\n".join(parts)
+
+
+def _wrapped(
+    heads: Sequence[Sequence[str]],
+    cells: Sequence[Sequence[str]],
+    widths: Sequence[int],
+    signs: Sequence[str],
+) -> str:
+    """Return a table whose last column is broken into lines."""
+    tall = max(map(len, heads))
+    above = [[*[""] * (tall - len(one)), *one] for one in heads]
+    lines = [*zip(*above, strict=True), ["-" * width for width in widths]]
+    for *row, last in zip(*cells, strict=True):
+        first, *rest = textwrap.wrap(last, widths[-1]) or [""]
+        lines += [[*row, first], *([""] * len(row) + [more] for more in rest)]
+    looks = [f"{sign}{width}" for sign, width in zip(signs, widths, strict=True)]
+    return "\n".join("  " + "  ".join(map(format, line, looks)).rstrip() for line in lines)
 
 
 def _parts(widths: Sequence[int]) -> list[list[int]]:

@@ -20,14 +20,27 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
     from separatrix.verdict.long_jobs import Progress
 
-VERBS = (
-    *("check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate", "rank"),
-    *("sensitivity", "sweep"),
-)
-"""Modules of this package, each a question to a study, in the order of the chain."""
+VERBS = {
+    "check": "Read a study; show what was understood and from where.",
+    "bearing": "Ball loads, contact angles, speeds and contacts.",
+    "traction": "Traction curves of ball on race, and their slopes.",
+    "restitution": "Restitution factor of a ball/cage impact.",
+    "mobility": "Resistance of the races to a ball that is pushed along its orbit.",
+    "stability": "Critical friction against restitution factor.",
+    "map": "Where the cage is stable in the plane of two parameters.",
+    "simulate": "Follow one run of the cage, in the plane or in space.",
+    "rank": "Rank the cage materials: verdict, margin, reason.",
+    "sensitivity": "Verdicts over uncertain inputs, and what to test next.",
+    "sweep": "Chain and verdict of many cases: one table.",
+}
+"""Modules of this package, each a question to a study, in the order of the chain -> its line of help."""
 
-TOOLS = ("tribometer", "compare", "reproduce")
-"""Modules, each a question without a study of its own."""
+TOOLS = {
+    "tribometer": "Friction with its scatter from raw logs of tests.",
+    "compare": "Two answers of one verb side by side: what differs, and by more than counting noise?",
+    "reproduce": "Compute a saved answer again, and report whether it is the same.",
+}
+"""Modules, each a question without a study of its own -> its line of help."""
 
 
 def verb_named(name: str) -> Verb:
@@ -47,7 +60,12 @@ def tool_named(name: str) -> Tool:
 def refusals(study: Study) -> Iterator[tuple[str, str]]:
     """Yield what each verb would refuse of a study, or take long for, with the verb."""
     for name in VERBS:
-        for sentence in verb_named(name).refusals(study):
+        verb = verb_named(name)
+        missing = [f"[{section}]" for section in verb.needs if getattr(study, section) is None]
+        if missing:
+            yield name, f"The study has no {' and no '.join(missing)}."
+            continue
+        for sentence in verb.refusals(study):
             yield name, sentence
 
 

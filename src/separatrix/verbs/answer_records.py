@@ -6,6 +6,7 @@ The answer of `bearing` is a `BearingState`, that of `sweep` a `Sweep`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum, auto
 
 from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
 from separatrix.chain.ball_mobility import LinearMobility, Mobility
@@ -15,11 +16,48 @@ from separatrix.chain.lubrication import LubricationCurve
 from separatrix.chain.shear import ShearField
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import TractionCurve
-from separatrix.ground.units import Metre, MetrePerSecond, Newton, Ratio
+from separatrix.ground.units import (
+    Kilogram,
+    Metre,
+    MetrePerSecond,
+    MetreRadianPerSecond,
+    Newton,
+    Radian,
+    Ratio,
+    Watt,
+)
 from separatrix.verdict.map_records import StabilityMap
 from separatrix.verdict.ranking_records import Ranking
+from separatrix.verdict.reasons import outcome_sentence
 from separatrix.verdict.stability_curve import StabilityCurve
 from separatrix.verdict.uncertain_records import UncertainStudy
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Refusal:
+    """What a verb would refuse of a study, or take long for."""
+
+    verb: str
+    sentence: str
+
+
+class FirstReached(Enum):
+    """What a cage that moves from the middle reaches first."""
+
+    POCKETS = auto()
+    LAND = auto()
+    BOTH = auto()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckedCage:
+    """What follows of a cage from its study: its mass, and how far it may move at rest."""
+
+    mass: Kilogram  # as stated, of its shape, or of a thin ring
+    half_play: Metre  # of a ball in its pocket, each way along the circumference
+    lean: Radian  # of the contact of ball and pocket, towards the bearing axis
+    land_gap: Metre | None  # least radial gap of the land; null without a land
+    first_reached: FirstReached | None  # pockets or land; null without a land
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +67,9 @@ class CheckAnswer:
     The clearances are also None, without a reason, for a study that states the running ones.
     """
 
+    speed_parameter: MetreRadianPerSecond  # bore, or pitch diameter where no bore is known, times speed
+    cage: CheckedCage | None  # null without a cage
+    refusals: tuple[Refusal, ...]  # what each verb would refuse of the study, or take long for
     static: BearingState | None  # contacts of the most loaded ball at standstill; null if refused
     static_reason: str = ""  # why there are no contacts at standstill; empty if there are
     clearances: Clearances | None = None  # running clearances; null if refused, or if the study states them
@@ -105,6 +146,7 @@ class SimulationAnswer(OfCage):
     analysis: CourseAnalysis  # means, extremes, whirl and spectra
     kick: MetrePerSecond
     run: int  # number of the run in the ensemble, from 0
+    given_restitution_factor: Ratio | None  # to which the races are damped; null for that of the study
     force_limit: Newton | None  # its friction is all that the races hold of a ball; null without such a limit
 
     @property
@@ -112,6 +154,16 @@ class SimulationAnswer(OfCage):
         """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
         lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
         return lasts or self.history.cause is Cause.LAND_FRICTION
+
+    @property
+    def rubbing_power(self) -> Watt:
+        """Power that rubbing on the land turns into heat at the end of the run [W]."""
+        return self.cage.land_friction * self.history.rubbing_force * self.history.rubbing_speed
+
+    @property
+    def outcome_sentence(self) -> str:
+        """Where the motion of the run ends, and how the cage then moves, rolls or rubs."""
+        return outcome_sentence(self.history, limit=self.force_limit, rubbing_power=self.rubbing_power)
 
     @property
     def force_exceeds_races(self) -> bool:

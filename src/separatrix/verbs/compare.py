@@ -54,7 +54,7 @@ class Options:
     second: Annotated[Path, Option("Another one of the same verb.", "B", True)]
 
 
-MOST_ROWS, ON_A_SCREEN = 2000, 8
+MOST_ROWS, ON_A_SCREEN, IN_A_REPORT = 2000, 8, 40
 
 
 def compute(options: Options) -> Document:
@@ -156,7 +156,7 @@ ONE_RUN = "A single run of each is not evidence: repeated runs of the same cages
 def page(answer: Part) -> Page:
     """Return the page of `compare`: what a reader decides first, then inputs, then the largest changes."""
     rows = _alike([_Shown(one, answer.get("environment") or "") for one in answer.rows])
-    decisions = [one for one in rows if is_decision(one.row.name)]
+    decisions = sorted((one for one in rows if is_decision(one.row.name)), key=lambda one: not one.is_short)
     others = [one for one in rows if not is_decision(one.row.name)]
     named = [
         f"{one.title} ({printable(one.path, 80)}, seed {one.seed})"
@@ -268,7 +268,9 @@ def _long(title: tuple[str, str], whole: Columns, brief: Columns, rows: Sequence
     yield Heading(f"{title[0]}{own}{title[1]}", Level.BRIEF)
     yield Table(name, brief, shown, more, Level.BRIEF)
     yield Heading("".join(title), Level.LONG)
-    yield Table(name, whole, tuple(rows), "", Level.LONG | Level.SHEET)
+    rest = f"{len(rows) - IN_A_REPORT} more differ: `--full`." if len(rows) > IN_A_REPORT else ""
+    yield Table(name, whole, tuple(rows[:IN_A_REPORT]), rest, Level.REPORT)
+    yield Table(name, whole, tuple(rows), "", Level.FULL | Level.SHEET)
 
 
 def _words(name: str) -> str:
@@ -414,7 +416,6 @@ def _known(side: Sequence[Mapping[str, Any]], end: str) -> list[float]:
 
 VERB = Tool(
     name="compare",
-    help="Two answers of one verb side by side: what differs, and by more than counting noise?",
     epilog="A and B are folders of answers, their .json or .html files, of any verb with a study.",
     compute=compute,
     page=page,

@@ -311,7 +311,10 @@ def map_picture(answer: Part) -> Picture:
 def map_figure(answer: Part) -> Figure:
     """Return the share of the runs that whirl, where it changes, and what has no verdict."""
     x, y = answer.x, answer.y
-    axes = [parameter_axis(one.parameter, one.get("unit") or "-", one.get("values")) for one in (x, y)]
+    axes = [
+        parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
+        for one in (x, y)
+    ]
     kick = "" if KICK in _names(answer) else said(answer, ", initial disturbance {kick}")
     panel = Panel(
         title=f"Share of the runs that whirl{kick}",
@@ -404,7 +407,6 @@ def _study(answer: Part) -> Iterator[Mark]:
 
 VERB = Verb(
     name="map",
-    help="Where the cage is stable in the plane of two parameters.",
     options=Options,
     compute=compute,
     page=page,

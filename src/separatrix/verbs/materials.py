@@ -232,7 +232,11 @@ def _span(bounds: Sequence[float], unit: str) -> str:
 def show_page(answer: Part) -> Page:
     """Return the page of `materials show`: each record whole."""
     names = dict.fromkeys(f"{one.name} ({one.kind})" for one in answer.records)
-    blocks = [block for one in answer.records for block in _whole(one)]
+    several = len(answer.records) > 1
+    blocks: list[Block] = []
+    for one in answer.records:
+        blocks += [Heading(f"{one.name} ({one.kind})")] if several else []
+        blocks += _whole(one)
     return Page(", ".join(names), _subtitle(answer), tuple(blocks))
 
 
@@ -242,7 +246,6 @@ def _whole(record: Part) -> Iterator[Block]:
         ("title", "composition", "substance", "phase", "remark", "source", "confidence"),
     )
     origin = "shipped" if file.shipped else "of the user"
-    yield Heading(f"{record.name} ({record.kind})", Level.REPORT)
     yield facts(
         *((key.capitalize(), record.get(key)) for key in keys),
         *_conditions(record),
@@ -250,10 +253,10 @@ def _whole(record: Part) -> Iterator[Block]:
         ("Library", f"{file.file}, {origin}, sha256 {file.sha256[:12]}..."),
     )
     if record.kind == "friction table":
-        yield Heading("Friction")
+        yield Heading("Friction", depth=3)
         yield _frictions(record)
     else:
-        yield Heading("Data")
+        yield Heading("Data", depth=3)
         yield from _properties(record)
     yield from (Note(one, "caveat") for one in record.get("cautions") or ())
 

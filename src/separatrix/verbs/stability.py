@@ -112,7 +112,6 @@ def curve_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="stability",
-    help="Critical friction against restitution factor.",
     compute=compute,
     page=page,
     needs=("cage",),

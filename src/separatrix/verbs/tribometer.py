@@ -72,7 +72,7 @@ ALONG = ("run_in_end", "steady_end", "along", "span_along", "lag", "correlation_
 RATES = ("drift_rate", "drift_error", "stick_slip_frequency")
 """Quantities whose unit is that of the abscissa of their test, and one over it."""
 
-EXPONENT, DRIFT = Quantity(label="exponent", form=".3f"), Quantity(label="drift")
+EXPONENT, DRIFT = Quantity(label="exponent", form=".3f"), Quantity(label="drift", form=".2e")
 
 MINUTES = (3600.0 * 3, 60.0 * 3)
 """Times from which a test is told in hours, and in minutes [s]."""
@@ -533,7 +533,6 @@ def _beside(test: Part, name: str, letter: str) -> Panel:
 
 VERB = Tool(
     name="tribometer",
-    help="Friction with its scatter from raw logs of tests.",
     epilog="What is read is shown before it is trusted: without --out nothing is written. A file that exists "
     "is never overwritten.",
     compute=compute,

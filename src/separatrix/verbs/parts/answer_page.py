@@ -26,10 +26,14 @@ PROPERTIES = {
 Json = Mapping[str, Any]
 
 
-def page_of(answer: Part, *blocks: Block, draws: bool = False) -> Page:
+APPENDIX = Level.REPORT | Level.SHEET
+
+
+def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level = APPENDIX) -> Page:
     """Return the page of an answer: what is asked, its blocks, its notes, inputs and provenance.
 
     `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
+    `appendix` is where inputs and provenance are shown.
     """
     missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED, "caveat")]
     uncertain = [one["name"] for one in answer.values["study"]["uncertain_inputs"]]
@@ -39,7 +43,7 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False) -> Page:
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",
         (*missing, *blocks, *caveats),
-        tuple(sources(answer)),
+        tuple(sources(answer, appendix)),
     )
 
 
@@ -50,11 +54,11 @@ def at_their_means(names: Sequence[str]) -> str:
     return f"{several if len(names) > 1 else 'An uncertain input is at its mean'}: {listed}."
 
 
-def sources(answer: Part) -> list[Block]:
+def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
     """Return inputs, materials and frictions with where each is from, and how to compute the answer again."""
     from separatrix.study.sources import inputs_of
 
-    study, level = answer.values["study"], Level.REPORT | Level.SHEET
+    study = answer.values["study"]
     known = answer.values.get("provenance") or {}
     entries = tuple(inputs_of(study))
     found = [

@@ -49,6 +49,29 @@ def rolling(solution: Solution) -> None:
             rolling_contact(contact_problem(track, asked.traction), columns=COARSE, rows=COARSE)
 
 
+def compared(solution: Solution) -> None:
+    """Refuse a film whose own pressure an exact contact bears, but not Hertz's: `traction` compares both."""
+    from separatrix.chain.contacts import race_tracks
+    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.race_curve import contact_problem
+    from separatrix.ground.errors import SeparatrixError
+    from separatrix.study.study import ContactPressure, TractionModel
+
+    asked = solution.study
+    if asked.traction.pressure is not ContactPressure.COATED:
+        return
+    tracks = race_tracks(asked.bearing, asked.film, solution.bearing)
+    exact = asked.traction.by(TractionModel.EXACT)
+    try:
+        for track in tracks:
+            rolling_contact(contact_problem(track, exact), columns=COARSE, rows=COARSE)
+    except SeparatrixError:
+        return  # then there is nothing to compare with, and `traction` says so
+    for track in tracks:
+        problem = contact_problem(track, exact.by(TractionModel.EXACT, ContactPressure.HERTZ))
+        rolling_contact(problem, columns=COARSE, rows=COARSE)
+
+
 def impact(solution: Solution) -> None:
     """Refuse what no restitution factor is computed of: a pocket without stiffness, no running clearance."""
     _ = solution.clearances, solution.ball_cage_stiffness, solution.inertia
@@ -62,3 +85,19 @@ def push(solution: Solution) -> None:
     from separatrix.study.study import TractionSettings
 
     _ = solve(replace(solution.study, traction=TractionSettings())).mobility
+
+
+def unpredictable(study: Study) -> Iterator[str]:
+    """Yield why a friction that tests predict cannot be drawn, as `sensitivity` draws it."""
+    from separatrix.friction.friction_fit import TestedFriction
+    from separatrix.ground.errors import SeparatrixError
+    from separatrix.verdict.drawn_frictions import frictions_to_draw
+    from separatrix.verdict.draws import uncertain_inputs
+
+    candidates = study.ranking.candidates if study.ranking and study.cage else ()
+    if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
+        return
+    try:
+        uncertain_inputs(study, frictions_to_draw(study))
+    except SeparatrixError as error:
+        yield str(error)

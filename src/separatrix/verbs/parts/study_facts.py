@@ -27,7 +27,8 @@ def bearing_facts(answer: Part) -> Facts:
     at = study["bearing"]
     balls = f"{at['ball_count']['value']} balls of {entry_words(at['ball_diameter'])}"
     bore = stated(study, "bearing", "bore")
-    steels = f"balls {at['ball_material']['name']}, rings {at['ring_material']['name']}"
+    ball, ring = (at[f"{part}_material"]["name"] for part in ("ball", "ring"))
+    steels = f"balls and rings {ball}" if ball == ring else f"balls {ball}, rings {ring}"
     grooves = ", ".join(f"{entry_words(at[f'{race}_conformity'])} {race}" for race in ("inner", "outer"))
     contact = f"{entry_words(at['contact_angle'])} without load; {steels}; groove radius over ball diameter"
     size = f"pitch diameter {entry_words(at['pitch_diameter'])}"

@@ -14,10 +14,10 @@ SPACE = 1.5
 """Ratio of the last step of an axis to its first beyond which values in proportion are logarithmic."""
 
 
-def parameter_axis(name: str, unit: str, values: Sequence[float]) -> Axis:
-    """Return the axis of a parameter that ends at its first and last value."""
+def parameter_axis(name: str, unit: str, values: Sequence[float], *, is_tight: bool = False) -> Axis:
+    """Return the axis of a parameter; a tight one ends at its first and last value."""
     low, high = min(values), max(values)
-    ends = (low, high) if low < high else (None, None)
+    ends = (low, high) if is_tight and low < high else (None, None)
     return axis(name, unit, values, is_log=is_proportional(values), low=ends[0], high=ends[1])
 
 

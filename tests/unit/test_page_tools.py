@@ -1,0 +1,232 @@
+"""Pages of `tribometer`, `materials`, `compare` and `reproduce`, and saved answers that are wrong."""
+
+import json
+
+import numpy as np
+import pytest
+
+from separatrix.ground.document import part_of
+from separatrix.ground.errors import InputError
+from separatrix.present.blocks import Level, Picture
+from separatrix.present.figure import Band, Trace
+from separatrix.present.text import text
+from separatrix.study.reading import read_study
+from separatrix.verbs import bearing, compare, computed, materials, reproduce, tribometer
+from separatrix.verbs.answer_files import document
+from separatrix.verbs.parts.comparison import difference_interval, differing, results
+from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
+from separatrix.verdict.judgement import wilson_interval
+
+STUDY = read_study("cryogenic-turbopump")
+ANSWER = json.loads(json.dumps(document(bearing.VERB, computed(bearing.VERB, STUDY))))
+
+
+def saved(folder, name="bearing", **changes):
+    """Write the answer of a bearing, changed, and return its path."""
+    path = folder / f"{name}.json"
+    path.write_text(json.dumps(ANSWER | changes))
+    return path
+
+
+# --- saved answers ------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("changes", "rule"),
+    [
+        ({"study": []}, "is not the document of an answer"),
+        ({"verb": "none"}, "must be an answer of rank, sensitivity"),
+        ({"units": None}, "is damaged: units"),
+        ({"title": " "}, "is damaged: title"),
+        ({"seed": "1"}, "is damaged: seed"),
+        ({"warnings": [1]}, "is damaged: warnings"),
+    ],
+    ids=str,
+)
+def test_an_answer_that_was_changed_is_refused(tmp_path, changes, rule):
+    """One line that names the file."""
+    path = saved(tmp_path, **changes)
+    with pytest.raises(InputError, match=rule) as error:
+        read_answer(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_an_answer_of_an_earlier_version_is_refused(tmp_path):
+    """It lacks what every answer has now."""
+    path = saved(tmp_path)
+    path.write_text(json.dumps({key: one for key, one in ANSWER.items() if key != "units"}))
+    with pytest.raises(InputError, match=r"lacks units. Compute this answer again"):
+        read_answer(path)
+
+
+def test_folders_and_reports_have_their_answers_by_verb(tmp_path):
+    """An interrupted answer is read as any other; one under another name is refused."""
+    saved(tmp_path, complete=False)
+    assert read_folder(tmp_path)["bearing"]["complete"] is False
+    page = tmp_path / "report.html"
+    page.write_text(f'<script id="separatrix-answers">{json.dumps({"bearing": ANSWER})}</script>')
+    assert list(read_answers(page)) == ["bearing"]
+    saved(tmp_path, "rank")
+    with pytest.raises(InputError, match="must be an answer of rank; got bearing"):
+        read_folder(tmp_path)
+
+
+# --- two answers --------------------------------------------------------------------------------
+def compared(tmp_path, **changes):
+    """Compare the answer of a bearing with itself, changed."""
+    (tmp_path / "other").mkdir()
+    options = compare.Options(first=saved(tmp_path), second=saved(tmp_path / "other", **changes))
+    return json.loads(json.dumps(compare.compute(options), allow_nan=False))
+
+
+def test_the_interval_of_a_difference_of_shares_is_that_of_another_program():
+    """Newcombe's method 10 as statsmodels 0.15.0 has it (confint_proportions_2indep, newcomb), 4 decimals."""
+    for first, second, low, high in (
+        ((48, 80), (56, 70), 0.0524, 0.3339),
+        ((2, 7), (6, 7), 0.0582, 0.8062),
+        ((0, 20), (0, 10), -0.1611, 0.2775),
+        ((0, 20), (10, 10), 0.6791, 1.0),
+    ):
+        shares = [(n / runs, *wilson_interval(n, runs)) for n, runs in (first, second)]
+        assert difference_interval(*shares) == pytest.approx((low, high), abs=6e-5)
+
+
+def test_noise_is_judged_by_counts_intervals_and_errors():
+    """Beyond where the interval of the change excludes 0; a margin has that of its threshold."""
+
+    def node(count, eta, threshold, error):
+        low, high = wilson_interval(count, 64)
+        ends = {"restitution_threshold_low": threshold - 0.1, "restitution_threshold_high": threshold + 0.1}
+        shares = {"probability_stable": count / 64, "probability_low": low, "probability_high": high}
+        chain = {"restitution_factor": eta, "restitution_threshold": threshold, "margin": threshold - eta}
+        return results(
+            {**ends, **shares, **chain, "friction": 0.1 + error, "friction_error": 0.01, "verdict": "A"}, {}
+        )
+
+    rows = {row.name: row for row in differing("rank", node(32, 0.3, 0.5, 0.0), node(48, 0.4, 0.55, 0.05))}
+    assert {name: row.noise.name for name, row in rows.items()} == {
+        "probability_stable": "BEYOND",
+        "restitution_factor": "EXACT",
+        "restitution_threshold": "WITHIN",
+        "margin": "WITHIN",
+        "friction": "EXACT",
+    }
+    assert (rows["margin"].first.low, rows["margin"].first.high) == pytest.approx((0.1, 0.3))
+
+
+def test_balls_that_changed_alike_are_one_row(tmp_path):
+    """And an input that differs is told with its unit; two equal answers are told to be equal."""
+    study = json.loads(json.dumps(ANSWER["study"]))
+    study["film"]["thickness"]["value"] = 3e-7
+    balls = [ball | {"load_inner": 2.0 * ball["load_inner"]} for ball in ANSWER["balls"]]
+    found = compared(tmp_path, balls=balls, study=study)
+    assert [row["name"] for row in found["rows"]] == ["load_inner"] * len(balls)
+    assert [(one["key"], one["first"], one["second"]) for one in found["inputs"]] == [
+        ("film.thickness", 5e-7, 3e-7)
+    ]
+    words = text(compare.page(part_of(found)))
+    assert f"balls 0 and {len(balls) - 1} more  load on the inner race" in words
+    assert "500 nm  300 nm" in words
+    again = compare.compared({"bearing": ANSWER}, {"bearing": ANSWER}, names=("a", "b"))
+    assert "The two answers are equal in every result." in text(compare.page(part_of(again)))
+
+
+def test_two_rankings_are_drawn_over_the_same_axes(tmp_path):
+    """Curves with their bands and margins with their intervals, first and second."""
+    points = [
+        {"restitution_factor": x, "critical_friction": 0.3 - 0.2 * x, "scatter_low": 0.1, "scatter_high": 0.3}
+        for x in (0.1, 0.9)
+    ]
+    margins = [{"name": name, "margin": 0.1, "low": 0.0, "high": 0.2} for name in ("A", "B")]
+    found = compared(tmp_path, seed=2) | {"curves": [points] * 2, "margins": [margins, margins[:1]]}
+    (picture,) = [one for one in compare.page(part_of(found)).blocks if isinstance(one, Picture)]
+    curves, dots = picture.figure().panels
+    assert [type(one) for one in curves.marks] == [Band, Trace] * 2
+    assert dots.y.names == ("B", "A")
+    assert [list(one.x) for one in dots.marks if isinstance(one, Trace)] == [[0.1, 0.1], [0.1]]
+
+
+def test_what_cannot_be_compared_is_refused(tmp_path):
+    """Two verbs, and an answer whose parts are not those of one: a line with its file."""
+    with pytest.raises(InputError, match="b must be an answer of bearing, as a is; got check"):
+        compare.compared({"bearing": ANSWER}, {"check": ANSWER}, names=("a", "b"))
+    with pytest.raises(InputError, match=r"bearing\.json is damaged|did not write"):
+        compared(tmp_path, study={"ranking": {"candidates": [1]}})
+
+
+# --- an answer again ----------------------------------------------------------------------------
+def test_a_changed_number_is_found_and_a_warning_is_not(tmp_path):
+    """The key, what the answer says, and what is computed; other words of a warning are no difference."""
+    balls = [*ANSWER["balls"]]
+    balls[2] = balls[2] | {"load_inner": 1.001 * balls[2]["load_inner"]}
+    path = saved(tmp_path, balls=balls, warnings=["another"])
+    found = json.loads(json.dumps(reproduce.compute(reproduce.Options(result=path))))
+    (one,) = found["answers"]
+    (differing_one,) = one["result"]["differences"]
+    assert (one["same"], differing_one["key"]) == (False, "balls[2].load_inner")
+    assert "different: 1 value differs." in text(reproduce.page(part_of(found)))
+    same = reproduce.compute(reproduce.Options(result=saved(tmp_path, warnings=["another"])))
+    assert same["answers"][0]["result"]["agreement"] == "bit for bit"
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "is_one"),
+    [
+        (1, int, True),
+        (True, int, False),
+        (1.5, float | str | None, True),
+        (["a"], tuple[str, ...], True),
+        ([1], tuple[str, ...], False),
+        (["a"], str, False),
+    ],
+)
+def test_an_option_from_an_answer_has_its_type(value, kind, is_one):
+    """A number is not a truth, a list has items of its type."""
+    assert reproduce.fits(value, kind) is is_one
+
+
+# --- logs and the library -----------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def tests_of_logs(tmp_path_factory):
+    """Return the document of two logs: running-in from 0.2, then noise about a friction."""
+    folder = tmp_path_factory.mktemp("logs")
+    for seed, name in enumerate(("a.csv", "b.csv")):
+        time, rng = 0.5 * np.arange(1500), np.random.default_rng(seed)
+        values = 0.08 + 0.12 * np.exp(-time / 40.0) + 0.004 * rng.standard_normal(1500)
+        lines = (f"{t:.2f},{f:.5f},20.0" for t, f in zip(time, values, strict=True))
+        (folder / name).write_text("time (s),friction coefficient,normal force (N)\n" + "\n".join(lines))
+    found = tribometer.compute(tribometer.Options(files=(folder,)))
+    return json.loads(json.dumps(found, allow_nan=False))
+
+
+def test_each_test_is_drawn_with_its_cut_and_its_steady_part(tests_of_logs):
+    """Grey before the end of running-in; the mean over the steady part; shares of the rows sum to 1."""
+    page = tribometer.page(part_of(tests_of_logs))
+    pictures = [one for one in page.blocks if isinstance(one, Picture)]
+    assert [one.name for one in pictures] == ["a.csv", "b.csv"]
+    test = tests_of_logs["tests"][0]
+    course, *_ = pictures[0].figure().panels
+    (cut,) = [one for one in course.marks if isinstance(one, Band) and one.name == "left out"]
+    assert tuple(cut.x) == (0.0, test["run_in_end"])
+    (mean,) = [one for one in course.marks if getattr(one, "name", "").startswith("steady mean")]
+    assert tuple(mean.x) == (test["run_in_end"], test["steady_end"])
+    assert sum(test["course"]["row_share"]) == pytest.approx(1.0)
+    assert len(test["course"]["along"]) == 600
+
+
+def test_logs_that_were_read_alike_are_told_once(tests_of_logs):
+    """With the columns that were taken, in a page that fits a screen; places along a test in minutes."""
+    words = text(tribometer.page(part_of(tests_of_logs)))
+    assert words.count('"friction coefficient"') == 1
+    assert "a.csv and 1 more: plain text" in words
+    assert "12.49" in text(tribometer.page(part_of(tests_of_logs)), Level.FULL)  # the last row, at 749.5 s
+    assert words.count("\n") < 45
+
+
+def test_a_record_of_the_library_is_shown_with_what_serves(tmp_path, monkeypatch):
+    """A mark at each datum that serves at the temperature; an unknown name is refused."""
+    monkeypatch.chdir(tmp_path)
+    found = materials.show_records(materials.ShowOptions(name="PTFE", temperature="77 K"))
+    words = text(materials.show_page(part_of(found)))
+    assert "elastic modulus *  4 GPa (3 GPa to 5 GPa), 77 K, bulk; guess" in words
+    assert "*: serves at 77 K." in words
+    with pytest.raises(InputError, match="NAME is not a film of the library"):
+        materials.show_records(materials.ShowOptions(name="none", kind="films"))
