@@ -134,7 +134,7 @@ def test_every_medium_shows_every_page(verb, answers):
         assert not re.search(r"\bnan\b|\binf\b|None|\$", shown), shown
     assert len(text(page).splitlines()) < 75
     drawn = html.html(page, {verb: answers(verb).document()})
-    assert all(f'aria-label="' in drawn for _ in [0])
+    assert all('aria-label="' in drawn for _ in [0])
     assert pdf(page).startswith(b"%PDF")
     assert spreadsheet(page).startswith(b"PK")
     for one in page.blocks:
@@ -143,7 +143,11 @@ def test_every_medium_shows_every_page(verb, answers):
             assert svg(spec).svg.startswith("<svg")
             json.dumps(plotly(spec), allow_nan=False)
             assert spec.alt
-            assert all("[" in axis.label or axis.names or not axis.has_ticks for panel in spec.panels for axis in (panel.x, panel.y))
+            assert all(
+                "[" in axis.label or axis.names or not axis.has_ticks
+                for panel in spec.panels
+                for axis in (panel.x, panel.y)
+            )
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb_named(verb).keeps_runs])
@@ -192,7 +196,11 @@ def test_blocks_are_where_their_level_says(answers):
     assert sum(isinstance(one, Note) and one.kind == "lead" for one in brief) == 1
     for level in LEVELS:
         blocks = page.at(level).blocks
-        assert not [a for a, b in zip(blocks, [*blocks[1:], Heading("end")]) if isinstance(a, Heading) and isinstance(b, Heading) and b.depth <= a.depth]
+        assert not [
+            a
+            for a, b in zip(blocks, [*blocks[1:], Heading("end")])
+            if isinstance(a, Heading) and isinstance(b, Heading) and b.depth <= a.depth
+        ]
     assert "--full" not in text(page, Level.REPORT)
 
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 from commands import refusal_line, written
+from separatrix.told.answer import clearances, shown
 
 from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import CageDesign, PocketContact, PocketShape
-from separatrix.told.answer import clearances, shown
 
 EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))
 
