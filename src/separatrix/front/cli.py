@@ -332,7 +332,7 @@ def _new_application() -> typer.Typer:
     return typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-def _command(name: str) -> typer.core.TyperCommand | typer.core.TyperGroup:
+def _command(name: str) -> Any:
     """Return a command; only its own module is loaded."""
     app = _new_application()
     if name == "materials":
@@ -348,11 +348,12 @@ def _command(name: str) -> typer.core.TyperCommand | typer.core.TyperGroup:
         tool = tool_named(name)
         app.command(name, help=TOOLS[name], epilog=tool.epilog)(OWN.get(name, tool_command)(tool))
     else:
-        command, epilog = {
+        own: dict[str, tuple[Callable[..., int], str | None]] = {
             "new": (_new, None),
             "report": (_report, REPORT_EPILOG),
             "app": (_page, PAGE_EPILOG),
-        }[name]
+        }
+        command, epilog = own[name]
         app.command(name, help=OTHERS[name], epilog=epilog)(command)
     return typer.main.get_command(app)
 
@@ -370,13 +371,13 @@ COMMANDS = {"new": OTHERS["new"], **VERBS, **TOOLS, **OTHERS}
 class _Commands(typer.core.TyperGroup):
     """The commands by name, each made when it is asked for: the list of them loads none."""
 
-    def list_commands(self, ctx: typer.Context) -> list[str]:
+    def list_commands(self, ctx: Any) -> list[str]:
         return [*COMMANDS]
 
-    def get_command(self, ctx: typer.Context, cmd_name: str) -> Any:
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
         return _command(cmd_name) if cmd_name in COMMANDS else None
 
-    def format_commands(self, ctx: typer.Context, formatter: Any) -> None:
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
         with formatter.section("Commands"):
             formatter.write_dl([*COMMANDS.items()])
 

@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
-from matplotlib.patheffects import withStroke
+from matplotlib.patheffects import withStroke, withTickedStroke
 from matplotlib.ticker import LogLocator
 from matplotlib.transforms import Bbox, offset_copy
 
@@ -127,8 +127,8 @@ class Drawing(NamedTuple):
     targets: tuple[tuple[float, float, str], ...] = ()
 
 
-MOST_TARGETS, MOST_CELLS = 400, 900
-"""Of a trace, and of cells."""
+MOST_TARGETS, MOST_CELLS, MANY = 400, 900, 5000
+"""Targets of a trace, and of cells; points of a line from which it is drawn as pixels."""
 
 
 def svg(spec: Figure) -> Drawing:
@@ -209,7 +209,7 @@ def _drawn(spec: Figure) -> Canvas:
         for axes, panel in zip(
             part.subplots(1, len(row), squeeze=False, width_ratios=widths)[0], row, strict=True
         ):
-            _panel(axes, panel)
+            draw_panel(axes, panel)
     for one in spec.legend:
         _trace(figure.axes[0], one, spec.panels[0])
     _legend(figure)
@@ -231,7 +231,8 @@ def _named(spec: Figure) -> list[Any]:
     return [one for one in (*marks, *spec.legend) if getattr(one, "name", "")]
 
 
-def _panel(axes: Axes, panel: Panel) -> None:
+def draw_panel(axes: Axes, panel: Panel) -> None:
+    """Draw title, marks, axes and labels of a panel."""
     axes.set_title(symbols(panel.title))
     for way, one in (("x", panel.x), ("y", panel.y)):
         if one.is_log:
@@ -266,7 +267,8 @@ def _panel(axes: Axes, panel: Panel) -> None:
         axes.spines[:].set_visible(False)
         axes.xaxis.label.set(fontsize=6.5, x=0.0, ha="left")
     if panel.is_to_scale:
-        axes.set_aspect("equal", adjustable="datalim" if panel.has_frame else "box", anchor="N")
+        is_given = not panel.has_frame or None not in (panel.x.low, panel.y.low)
+        axes.set_aspect("equal", adjustable="box" if is_given else "datalim", anchor="N")
     if panel.labels:
         _labels(axes, panel)
 
@@ -325,6 +327,9 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
         draw(place, low, high, color=one.colour, lw=1.4, zorder=3)
     marker = f"${one.marker}$" if one.marker == "*" else one.marker
     look: Any = {"color": one.colour, "ls": DASHES[one.line], "lw": one.width, "marker": marker or None}
+    look |= {"alpha": one.opacity, "rasterized": len(x) > MANY}
+    if one.has_ticks:
+        look["path_effects"] = [withTickedStroke(angle=90, spacing=9, length=0.5)]
     look |= {
         "ms": one.size,
         "mfc": "white" if one.is_open else one.colour,

@@ -63,6 +63,7 @@ def html(
     behind = (
         f'<script type="application/json" id="separatrix-answers">{answers}</script>' if documents else ""
     )
+    kept = "The answers behind this page are in this file, as JSON." if documents else ""
     return harmless(f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -82,7 +83,7 @@ def html(
 <main>
 {body(shown, level, picture)}
 </main>
-<footer><p>{subtitle}.{" The answers behind this page are in this file, as JSON." if documents else ""}</p></footer>
+<footer><p>{subtitle}. {kept}</p></footer>
 <div id="tip" role="status" hidden></div>
 {behind}
 <script>

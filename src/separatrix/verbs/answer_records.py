@@ -24,9 +24,11 @@ from separatrix.ground.units import (
     Newton,
     Radian,
     Ratio,
+    Watt,
 )
 from separatrix.verdict.map_records import StabilityMap
 from separatrix.verdict.ranking_records import Ranking
+from separatrix.verdict.reasons import outcome_sentence
 from separatrix.verdict.stability_curve import StabilityCurve
 from separatrix.verdict.uncertain_records import UncertainStudy
 
@@ -144,6 +146,7 @@ class SimulationAnswer(OfCage):
     analysis: CourseAnalysis  # means, extremes, whirl and spectra
     kick: MetrePerSecond
     run: int  # number of the run in the ensemble, from 0
+    given_restitution_factor: Ratio | None  # to which the races are damped; null for that of the study
     force_limit: Newton | None  # its friction is all that the races hold of a ball; null without such a limit
 
     @property
@@ -151,6 +154,16 @@ class SimulationAnswer(OfCage):
         """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
         lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
         return lasts or self.history.cause is Cause.LAND_FRICTION
+
+    @property
+    def rubbing_power(self) -> Watt:
+        """Power that rubbing on the land turns into heat at the end of the run [W]."""
+        return self.cage.land_friction * self.history.rubbing_force * self.history.rubbing_speed
+
+    @property
+    def outcome_sentence(self) -> str:
+        """Where the motion of the run ends, and how the cage then moves, rolls or rubs."""
+        return outcome_sentence(self.history, limit=self.force_limit, rubbing_power=self.rubbing_power)
 
     @property
     def force_exceeds_races(self) -> bool:

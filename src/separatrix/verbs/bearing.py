@@ -141,6 +141,4 @@ def _around(answer: Part, name: str, title: str) -> Panel:
     return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
 
 
-VERB = Verb(
-    name="bearing", help="Ball loads, contact angles, speeds and contacts.", compute=compute, page=page
-)
+VERB = Verb(name="bearing", compute=compute, page=page)

@@ -216,7 +216,6 @@ def assumed(study: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 VERB = Verb(
     name="check",
-    help="Read a study; show what was understood and from where.",
     compute=compute,
     page=page,
     has_full=True,

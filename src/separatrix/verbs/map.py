@@ -407,7 +407,6 @@ def _study(answer: Part) -> Iterator[Mark]:
 
 VERB = Verb(
     name="map",
-    help="Where the cage is stable in the plane of two parameters.",
     options=Options,
     compute=compute,
     page=page,

@@ -170,7 +170,6 @@ def push_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="mobility",
-    help="Resistance of the races to a ball that is pushed along its orbit.",
     epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
     "the capacity of the races.",
     compute=compute,

@@ -41,9 +41,10 @@ from separatrix.present.figure import (
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
-from separatrix.verbs.parts.telling import axis, cell, column, estimate, fact, marks, said, told
+from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
+    all_numbers,
     by_verdict,
     evidence_column,
     is_judged,
@@ -228,30 +229,6 @@ def environment(name: str, rows: Sequence[Part]) -> list[Block]:
         motion(name, known, FULL),
         reasons(rows, FULL),
     ]
-
-
-def all_numbers(answer: Part) -> Table:
-    """Return every number of every candidate in every environment, for a workbook."""
-    rows = [(one.name, row) for one in answer.environments for row in one.materials]
-    rows += [("overall", row) for row in answer.overall]
-    names = dict.fromkeys(key for _, row in rows for key, value in row.values.items() if _is_number(value))
-
-    def number(name: str) -> Column:
-        return Column(name.replace("_", " "), lambda pair: cell(pair[1], name))
-
-    columns = (
-        text_column("environment", lambda pair: pair[0]),
-        text_column("material", lambda pair: pair[1].name),
-        text_column("verdict", lambda pair: verdict(pair[1])),
-        *(number(name) for name in names if not name.endswith(("_low", "_high"))),
-        text_column("extrapolation", lambda pair: "; ".join(pair[1].extrapolation)),
-        text_column("reason", lambda pair: pair[1].reason),
-    )
-    return Table("all numbers", columns, tuple(rows), level=Level.SHEET)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 # Words.
@@ -540,7 +517,6 @@ def overview(answer: Part) -> Figure:
 
 VERB = Verb(
     name="rank",
-    help="Rank the cage materials: verdict, margin, reason.",
     compute=compute,
     page=page,
     needs=("cage", "ranking"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Note, Page, joined
-from separatrix.verbs import verb_named
+from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 
@@ -114,7 +114,7 @@ def report_of(
 
 
 def _title(verb: str) -> str:
-    return verb_named(verb).help.rstrip(".")
+    return VERBS[verb].rstrip(".")
 
 
 def _differing(found: Mapping[str, Document]) -> Iterator[str]:

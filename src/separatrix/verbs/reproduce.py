@@ -264,7 +264,6 @@ def _told(value: object) -> str:
 
 VERB = Tool(
     name="reproduce",
-    help="Compute a saved answer again, and report whether it is the same.",
     epilog="The study is the one that the answer keeps, with the texts of the files that it names; the same "
     "verb runs with the same options. RESULT is a folder, the .json of an answer, or a report (.html).",
     compute=compute,

@@ -119,8 +119,8 @@ def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:
             f"{number_of(curve, name, eta[i])}"
             for i in films
         )
-        x, y = [thickness[i] for i in films], [eta[i] for i in films]
-        marks.append(Trace(x=x, y=y, name=f"race friction {said_friction}", hover=hover, **look))
+        places, heights = [thickness[i] for i in films], [eta[i] for i in films]
+        marks.append(Trace(x=places, y=heights, name=f"race friction {said_friction}", hover=hover, **look))
         at = [one for i, one in enumerate(eta) if i not in films]
         marks.append(Trace(x=[bare] * len(at), y=at, marker="o", line="", colour=look["colour"], size=3.5))
     here = answer.film_thickness_here or bare
@@ -145,7 +145,6 @@ def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:
 
 VERB = Verb(
     name="restitution",
-    help="Restitution factor of a ball/cage impact.",
     compute=compute,
     page=page,
     needs=("cage",),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.cage import Cause, MovingCage, RunOutcome
+from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
 from separatrix.chain.ball_mobility import Mobility
 from separatrix.chain.clearances import Clearances
@@ -19,9 +19,7 @@ from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, node_of, plain, units_of
 from separatrix.ground.plain_data import shape as shape
-from separatrix.ground.units import Rows, Watt
-from separatrix.told.sentences import pocket_force
-from separatrix.told.tables import quantity
+from separatrix.ground.units import Rows
 from separatrix.verbs.answer_records import (
     CheckAnswer,
     MapAnswer,
@@ -36,7 +34,6 @@ from separatrix.verbs.answer_records import (
 )
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
-from separatrix.verdict.reasons import CAUSES, OUTCOME_SENTENCES
 from separatrix.verdict.swept_cases import Sweep
 from separatrix.verdict.uncertain_records import NotDrawn, UncertainMaterial
 
@@ -183,45 +180,18 @@ def _(found: MapAnswer) -> Node:
     return shape(found.map) | _cage(found)
 
 
-def outcome_sentence(found: SimulationAnswer) -> str:
-    """Return in words where the motion of a run ends, and how the cage then moves, rolls or rubs."""
-    history, outcome = found.history, found.history.outcome
-    cause = CAUSES.get(history.cause, "")
-    said = OUTCOME_SENTENCES[outcome] + (f" Cause: {cause}." if cause else "")
-    if history.cause is Cause.LAND_FRICTION:
-        said = "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
-        if outcome is RunOutcome.WHIRLS:
-            said = "Friction on the land, not in the pockets, makes the motion grow without limit."
-    if history.cause is Cause.LEFT_POCKET:
-        when = quantity(history.left_time, "s", 3)
-        said = f"Ball {history.left_ball} reaches the edge of its pocket's wall at {when}: the model ends."
-    if outcome is RunOutcome.ROLLS:
-        pace = f"{history.whirl_frequency:.3g} Hz, fed {quantity(history.pocket_power, 'W', 3)}"
-        largest = pocket_force(history.largest_contact_force, found.force_limit)
-        said += f" It whirls at {pace}; the largest force in a pocket is {largest}."
-    if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and found.history.mean_offset > 0.0:
-        said += f" Its centre is {quantity(found.history.mean_offset, 'm', 3)} from the axis on average"
-        force, power = quantity(history.rubbing_force, "N", 3), quantity(rubbing_power(found), "W", 3)
-        said += f", and it rubs on its land with {force}, {power}." if history.rubbing_force > 0.0 else "."
-    return said
-
-
-def rubbing_power(found: SimulationAnswer) -> Watt:
-    """Power that rubbing on the land turns into heat at the end of a run [W]."""
-    return found.cage.land_friction * found.history.rubbing_force * found.history.rubbing_speed
-
-
 @shape.register
 def _(found: SimulationAnswer) -> Node:
     pace = found.history.whirl_frequency if found.whirls else None
     node: Node = {
         "kick": Leaf(found.kick, "m/s"),
         "run": Leaf(found.run),
-        "outcome_sentence": Leaf(outcome_sentence(found)),
+        "given_restitution_factor": Leaf(found.given_restitution_factor, "-"),
+        "outcome_sentence": Leaf(found.outcome_sentence),
         "force_limit": Leaf(found.force_limit, "N"),
         "force_exceeds_races": Leaf(found.force_exceeds_races),
         "drift_rate_law": Leaf(drift_rate_law(found.cage), "1/s"),
-        "rubbing_power": Leaf(rubbing_power(found), "W"),
+        "rubbing_power": Leaf(found.rubbing_power, "W"),
     }
     node |= shape(found.history) | shape(found.analysis) | {"whirl_frequency": Leaf(pace, "Hz")}
     if not found.whirls:

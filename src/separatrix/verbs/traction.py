@@ -214,7 +214,7 @@ def slopes_figure(answer: Part) -> Figure:
         x, y = [abs(one.spin_roll_ratio) for one in others], [one.slope for one in others]
         marks.append(Trace(x=x, y=y, line="", name=f"{race} race, by strips", hover=hover, **look))
         said_own = said(part, f"{race} race of this bearing, ratio {{spin_roll_ratio}}: slope {{slope}}")
-        own = {"x": [abs(part.spin_roll_ratio)], "y": [part.slope], "hover": (said_own,)}
+        own: dict[str, Any] = {"x": [abs(part.spin_roll_ratio)], "y": [part.slope], "hover": (said_own,)}
         marks.append(
             Trace(**own, line="", size=7.0, is_open=True, name=f"{race} race of this bearing", **look)
         )
@@ -303,7 +303,6 @@ BOUND = "within $f_BT$ $p$"
 
 VERB = Verb(
     name="traction",
-    help="Traction curves of ball on race, and their slopes.",
     compute=compute,
     page=page,
     refusals=refusals,

@@ -46,12 +46,11 @@ class Verb:
     page of its document. `needs` are sections of a study that may be left out but not here. `keeps_runs` is
     for an answer whose finished runs are kept in its folder, and that may be made on a cluster.
     `files` yields name and content of what it writes besides, of its answer, options and who is told of
-    progress. `moves_a_cage` is for one whose models of motion and ball may be chosen. `refusals` yields, in a second,
-    what the verb would refuse of a study or take long for, a sentence each.
+    progress. `moves_a_cage` is for one whose models of motion and ball may be chosen. `refusals` yields, in a
+    second, what the verb would refuse of a study or take long for, a sentence each.
     """
 
     name: str
-    help: str
     compute: Callable[..., Any]
     page: Callable[[Part], Page]
     options: type = NoOptions
@@ -93,10 +92,10 @@ class Tool:
     """
 
     name: str
-    help: str
     compute: Callable[..., Document]
     page: Callable[[Part], Page]
     options: type
+    help: str = ""
     epilog: str | None = None
     takes_time: bool = False
     has_full: bool = False

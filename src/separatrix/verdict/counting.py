@@ -172,6 +172,7 @@ def allowed_film(
         restitution_factor_low=low,
         restitution_factor_high=high,
         reason=reasons[found] if isinstance(found, Side) else "",
+        is_any_allowed=found is Side.BELOW,
         film_thickness=empty if films is None else films.film_thickness,
         race_friction=empty if films is None else films.race_friction,
         film_restitution_factor=np.zeros((0, 0)) if films is None else films.restitution_factor,

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from separatrix.cage.closed_forms import drift_rate_law, room
 from separatrix.cage.outcome import GROWN, Cause, RunOutcome
 from separatrix.ground.schema import Spelled
-from separatrix.ground.units import Array, Metre, Newton, format_number, format_quantity
+from separatrix.ground.units import Array, Metre, Newton, Watt, format_number, format_quantity
 
 if TYPE_CHECKING:
+    from separatrix.cage.course import History
     from separatrix.cage.ensemble import Ensemble
     from separatrix.cage.moving_cage import MovingCage
     from separatrix.verdict.judgement import KickCount
@@ -41,6 +42,34 @@ CAUSES = {
     Cause.LAND_FRICTION: "friction on the land, not in the pockets, keeps the cage moving",
     Cause.NOT_FINITE: "the motion leaves the range of numbers; lower [stability] kicks or the stiffnesses",
 }
+
+
+def outcome_sentence(history: History, *, limit: Newton | None, rubbing_power: Watt) -> str:
+    """Return in words where the motion of a run ends, and how the cage then moves, rolls or rubs.
+
+    Beyond the `limit` of the races a force in a pocket means nothing.
+    """
+    outcome, cause = history.outcome, CAUSES.get(history.cause, "")
+    said = OUTCOME_SENTENCES[outcome] + (f" Cause: {cause}." if cause else "")
+    if history.cause is Cause.LAND_FRICTION:
+        said = "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
+        if outcome is RunOutcome.WHIRLS:
+            said = "Friction on the land, not in the pockets, makes the motion grow without limit."
+    if history.cause is Cause.LEFT_POCKET:
+        when = format_quantity(history.left_time, "s", 3)
+        said = f"Ball {history.left_ball} reaches the edge of its pocket's wall at {when}: the model ends."
+    if outcome is RunOutcome.ROLLS:
+        pace = f"{history.whirl_frequency:.3g} Hz, fed {format_quantity(history.pocket_power, 'W', 3)}"
+        largest = history.largest_contact_force
+        force = format_quantity(largest, "N", 3)
+        if limit is not None and largest > limit:
+            force = f"above what the races hold, {format_quantity(limit, 'N', 3)}"
+        said += f" It whirls at {pace}; the largest force in a pocket is {force}."
+    if outcome in (RunOutcome.SETTLES, RunOutcome.ROLLS) and history.mean_offset > 0.0:
+        said += f" Its centre is {format_quantity(history.mean_offset, 'm', 3)} from the axis on average"
+        force, power = format_quantity(history.rubbing_force, "N", 3), format_quantity(rubbing_power, "W", 3)
+        said += f", and it rubs on its land with {force}, {power}." if history.rubbing_force > 0.0 else "."
+    return said
 
 
 class CageMotion(Spelled):

@@ -150,6 +150,7 @@ class AllowedFilm:
     restitution_factor_low: Ratio | None  # lower end of the 95 % interval
     restitution_factor_high: Ratio | None  # upper end of the 95 % interval
     reason: str  # why there is no limit; empty if there is
+    is_any_allowed: bool  # whether every restitution factor keeps to the probability; then there is no limit
     film_thickness: Array  # shape (thickness,) [m]
     race_friction: Array  # shape (friction,) [-]
     film_restitution_factor: Array

@@ -1,4 +1,4 @@
-// The view of a run of the cage: in a page of its own and in the local page, data in #run.
+// The view of a run of a cage: its data in #run.
 const run = JSON.parse(document.getElementById("run").textContent);
 const at = (name) => document.getElementById(name), box = at("moving");
 const Z = run.angles.length, N = run.time.length, R = run.radius, TAU = 2 * Math.PI;

@@ -1,0 +1,246 @@
+"""A run of the cage as numbers to draw: its boundaries, its path, its whirl, and the frames of a scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from separatrix.ground.document import Part
+from separatrix.ground.units import Array, Hertz, Metre
+from separatrix.present.view import RIM, Scene
+
+AROUND = np.linspace(0.0, 2 * np.pi, 721)
+"""Directions in which boundaries are drawn: half a degree apart."""
+
+FINE, LAST = 6, 5
+"""Points drawn for a sample of the path, and turns at its end that are drawn darker."""
+
+BEYOND = 2.0
+"""Half the play over the land's gap from which the pockets are left out of the picture."""
+
+NEVER = 1e3
+"""A boundary farther away than this multiple of the play, along the radius of one ball, does not exist."""
+
+SHORTEST = 8
+"""Least samples of a spectrum."""
+
+STRONG, PRESENT = 0.3, 0.05
+"""Shares of the largest amplitude from which a whirl is strong, and is shown."""
+
+MOST_FRAMES, A_TURN = 240, 6
+"""Most frames of a GIF; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
+
+PAGE_FRAMES, PAGE_NUMBERS = 1200, 75_000
+"""Most frames of a page, and most numbers in all: they keep it under 1 MB."""
+
+GAP = 1.5
+"""Steps over the usual one from which frames have a gap."""
+
+BAR_SHARE, FARTHEST = 0.4, 0.25
+"""Least share of the bar in the room between two balls; largest movement drawn over the pitch radius."""
+
+THICK, WIDE = 0.28, 1.35
+"""Half the radial thickness of the cage over the ball's diameter; its width over that, if not stated."""
+
+
+def array(part: Part, name: str) -> Array:
+    """Return numbers of a document as an array."""
+    return np.asarray(part.get(name), dtype=float)
+
+
+def is_in_space(answer: Part) -> bool:
+    """Whether the cage of a run tilts and moves along the axis."""
+    return "lean" in answer
+
+
+def judged_samples(answer: Part) -> int:
+    """Return how many samples lie before the end of the judged part; all if none is judged."""
+    time = array(answer, "time")
+    return int(np.searchsorted(time, answer.followed * (1.0 + 1e-9), side="right")) or time.size
+
+
+def pocket_boundary(answer: Part) -> Array:
+    """Return how far the centre may go in each direction until a pocket touches its ball [m].
+
+    Without rotation and lead that is where |r . e_t,j| = c_j: the polygon inside 2 Z lines. A single ball
+    leaves the way along its own radius free: there it is infinite.
+    """
+    across = np.abs(np.sin(AROUND[:, np.newaxis] - array(answer, "pocket_angle")))
+    reach = array(answer, "half_play") / np.maximum(across, 1.0 / NEVER)
+    return np.where((across < 1.0 / NEVER).all(axis=1), np.inf, reach.min(axis=1))
+
+
+def land_boundary(answer: Part) -> Array | None:
+    """Return how far the centre may go in each direction until the land touches [m]; None without one."""
+    cage = answer.cage
+    if cage.guidance == "ball" or cage.land_clearance is None:
+        return None
+    sign = (-1) ** cage.land_lobes if cage.guidance == "inner" else 1
+    wave = cage.land_out_of_round * sign * np.cos(cage.land_lobes * AROUND)
+    return np.asarray(0.5 * cage.land_clearance - wave)
+
+
+def largest_play(answer: Part) -> Metre | None:
+    """Return half the largest play of the pockets [m]; None if the centre stays far within."""
+    play, land = float(array(answer, "half_play").max()), land_boundary(answer)
+    far = float(np.hypot(*array(answer, "position").T).max())
+    return play if land is None or play <= BEYOND * max(far, float(land.max())) else None
+
+
+def axial_play(answer: Part) -> Metre:
+    """Return half the clearance of the pockets along the axis [m]; 0 for none."""
+    return float(answer.cage.axial_half_play or 0.0)
+
+
+def land_heights(answer: Part) -> Array:
+    """Return the height of the middle of each land over the pockets [m]."""
+    if land_boundary(answer) is None:
+        return np.zeros(0)
+    cage = answer.cage
+    return np.zeros(1) if cage.land_count == 1 else 0.5 * cage.land_spacing * np.array([-1.0, 1.0])
+
+
+def smooth_path(time: Array, position: Array, velocity: Array) -> Array:
+    """Return the path through samples as the cubics that have their positions and velocities.
+
+    Straight lines between the samples of a fast whirl would be drawn as a polygon.
+    """
+    s = np.linspace(0.0, 1.0, FINE, endpoint=False)[:, np.newaxis]
+    step = np.diff(time)[:, np.newaxis, np.newaxis]
+    start, end = position[:-1, np.newaxis], position[1:, np.newaxis]
+    slope, next_slope = step * velocity[:-1, np.newaxis], step * velocity[1:, np.newaxis]
+    there = start + (end - start) * s**2 * (3 - 2 * s)
+    path = there + slope * s * (1 - s) ** 2 - next_slope * s**2 * (1 - s)
+    return np.concatenate([path.reshape(-1, 2), position[-1:]])
+
+
+def last_turns(path: Array) -> int:
+    """Return the first point of the `LAST` turns, by their length; 0 if the path is not much longer."""
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    around = 2 * np.pi * float(np.hypot(*path[-1]))
+    first = int(np.searchsorted(length, length[-1] - LAST * around))
+    return first if length[-1] > 2 * LAST * around and around > 0.0 else 0
+
+
+def whirl_spectrum(answer: Part) -> tuple[Array, Array]:
+    """Return frequency [Hz] and amplitude of the velocity of a run, the largest being 1.
+
+    Seen so that the ball set turns anticlockwise, frequency rises from negative (backward) to positive
+    (forward). A run of few samples goes on at rest up to `SHORTEST` of them.
+    """
+    time, sense = array(answer, "time"), -1.0 if answer.cage.cage_speed < 0.0 else 1.0
+    v = array(answer, "velocity") @ np.array([1.0, 1j * sense])
+    v = np.pad(v, (0, max(0, SHORTEST - v.size)))
+    amplitude = np.abs(np.fft.fftshift(np.fft.fft(v)))
+    step = float(time[1] - time[0] if time.size > 1 else 1.0)
+    return np.fft.fftshift(np.fft.fftfreq(v.size, step)), amplitude / (amplitude.max() or 1.0)
+
+
+def spectrum_reach(answer: Part) -> Hertz:
+    """Return the frequency up to which a picture of the spectrum must go [Hz]."""
+    frequency, share = whirl_spectrum(answer)
+    shown = np.abs(frequency[share > PRESENT])
+    return float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
+
+
+def frame_moments(answer: Part, most: int) -> Array:
+    """Return the samples that become frames, rising, with the first and the last.
+
+    They are close enough to show each turn of the whirl; if the whole run would take too many, its beginning
+    and its end are shown.
+    """
+    time, (frequency, share) = array(answer, "time"), whirl_spectrum(answer)
+    even: Any = np.unique(np.linspace(0, time.size - 1, min(most, time.size)).astype(int))
+    turns = float(np.abs(frequency[share > STRONG]).max(initial=0.0) * time[-1])  # none of a cage at rest
+    step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
+    if int(np.diff(even).max(initial=1)) <= step:
+        return even  # type: ignore[no-any-return]
+    half = np.arange(most // 2) * step
+    return np.unique(np.concatenate([half, time.size - 1 - half]))
+
+
+def shown_parts(time: Array, moments: Array) -> tuple[tuple[float, float], ...]:
+    """Return beginning and end of each part of a run that some frames show [s]."""
+    steps = np.diff(moments)
+    usual = float(np.median(steps)) if steps[1:].size else float(moments[-1])
+    parts = np.split(time[moments], np.flatnonzero(steps > GAP * usual + 1) + 1)
+    return tuple((float(part[0]), float(part[-1])) for part in parts)
+
+
+def turned_by(cage: Part, time: Array) -> Array:
+    """Return the angle by which the ball set has turned [rad], with its start-up ramp."""
+    speed, ramp, start = cage.cage_speed, cage.ramp_time, cage.ramp_start
+    if not ramp > 0.0:
+        return np.asarray(speed * time)
+    within = np.minimum(time, ramp)
+    return np.asarray(speed * (time - (1 - start) * within + (1 - start) * within**2 / (2 * ramp)))
+
+
+def page_scene(answer: Part) -> Scene:
+    """Return the scene of a page, with as many frames as it may have."""
+    numbers = 9 + 3 * len(answer.pocket_angle)
+    return scene(answer, max(2, min(PAGE_FRAMES, PAGE_NUMBERS // numbers)))
+
+
+def scene(answer: Part, most: int = MOST_FRAMES) -> Scene:
+    """Return sizes and movements of a run at some samples, at most so many.
+
+    Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
+    two pockets, the pockets within the cage, and the cage in the picture.
+    """
+    moments, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
+    plays, land, count = array(answer, "half_play"), land_boundary(answer), moments.size
+    in_space, radius, balls = is_in_space(answer), float(cage.pitch_radius), plays.size
+    pitch = 2.0 * np.pi * radius / max(3, balls)
+    ball = 0.5 * (float(cage.ball_diameter) or 0.75 * pitch)
+    stated = answer.values["study"]["cage"]["width"]["value"]
+    half_width = max(0.5 * float(stated or 0.0), WIDE * ball)
+    centre = array(answer, "position")[moments]
+    lean = array(answer, "lean")[moments] if in_space else np.zeros((count, 2))
+    axial = array(answer, "axial_place")[moments] if in_space else np.zeros(count)
+    side = 0 if land is None else (-1 if cage.guidance == "inner" else 1)
+    peaks = [array(answer, name) for name in ("contact_force", "land_force")]
+    force, land_force = (_largest_since(one, moments) for one in peaks)
+    ways = (np.hypot(*centre.T), radius * np.hypot(*lean.T), axial)
+    limits = [
+        (0.5 * (1.0 - BAR_SHARE) * (pitch - 2.0 * ball), float(plays.max())),
+        (RIM * half_width - ball, axial_play(answer) if in_space else 0.0),
+        (FARTHEST * radius, max(float(np.abs(one).max(initial=0.0)) for one in ways)),
+    ]
+    enlarged = min((largest / size for largest, size in limits if size > 0.0), default=1.0)
+    return Scene(
+        radius=radius,
+        ball=ball,
+        half_width=half_width,
+        half_thickness=2.0 * THICK * ball,
+        angles=array(answer, "pocket_angle"),
+        plays=plays,
+        axial_play=limits[1][1],
+        is_square=cage.pocket_shape == "square",
+        land=radius + side * 2.0 * THICK * ball,
+        side=side,
+        heights=tuple(land_heights(answer).tolist()),
+        gap=0.0 if land is None else float(land.max()),
+        in_space=in_space,
+        time=time[moments],
+        parts=shown_parts(time, moments),
+        turned=turned_by(cage, time[moments]),
+        centre=centre,
+        lean=lean,
+        axial=axial,
+        rotation=array(answer, "rotation")[moments],
+        lead=array(answer, "ball_lead")[moments],
+        ball_axial=array(answer, "ball_axial")[moments] if in_space else np.zeros((count, balls)),
+        force=force,
+        land_force=land_force,
+        largest=(float(peaks[0].max()), float(peaks[1].max())),
+        enlarged=float(f"{max(1.0, enlarged):.2g}"),
+    )
+
+
+def _largest_since(values: Array, moments: Array) -> Array:
+    """Return the largest of some values between each moment and the one before it."""
+    before = np.concatenate([[moments[0]], moments[:-1] + 1])
+    pairs = [(min(a, b), b + 1) for a, b in zip(before, moments, strict=True)]
+    return np.array([values[a:b].max(axis=0) for a, b in pairs])

@@ -1,0 +1,230 @@
+"""The pages of `simulate` and `sensitivity`: what their pictures and the moving cage show, and when."""
+
+from __future__ import annotations
+
+import html
+import io
+import json
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+from scipy.integrate import quad
+
+from separatrix.ground.document import Part
+from separatrix.present import animation, draw, view
+from separatrix.verbs import sensitivity
+from separatrix.verbs.parts import cage_scene, run_panels
+from separatrix.verbs.parts.cage_scene import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
+
+LENGTHS = ("position", "axial_place", "half_play", "largest_offset")
+
+
+def run(samples=4, *, count=5, guidance="outer", play=0.6e-3, space=False, whirl=900.0, **cage):
+    """A run of 10 ms of a cage of `count` pockets whose centre goes around, as a document."""
+    time = np.linspace(0.0, 0.01, samples)
+    around = np.stack([np.cos(whirl * time), np.sin(whirl * time)], axis=1)
+    force = np.where(np.arange(samples)[:, None] % 3 == np.arange(count) % 3, 20.0, 0.0)
+    clearance = None if guidance == "ball" else 1e-3
+    values = {
+        "time": time,
+        "position": 4e-4 * around,
+        "velocity": 4e-4 * whirl * around[:, ::-1] * [-1.0, 1.0],
+        "rotation": 1e-3 * time,
+        "ball_lead": np.zeros((samples, count)),
+        "contact_force": force,
+        "land_force": np.where(np.arange(samples) % 4 == 1, 7.0, 0.0),
+        "kinetic_energy": 1e-3 + time,
+        "pocket_angle": 2 * np.pi * np.arange(count) / count,
+        "half_play": np.full(count, 0.5 * play),
+    }
+    if space:
+        values |= {"axial_place": 1e-5 * around[:, 0], "lean": 5e-3 * around, "ball_axial": 0.0 * force}
+        values |= {"lean_rate": 5e-3 * whirl * around[:, ::-1] * [-1.0, 1.0]}
+    document = {name: value.tolist() for name, value in values.items()}
+    document["work"] = {"pocket_friction": (3.0 * time).tolist(), "land_friction": (0.0 * time).tolist()}
+    document |= {"judged_from": 0.0, "followed": 0.0, "force_limit": None, "whirl_frequency": None}
+    document["study"] = {"cage": {"width": {"value": None}}}
+    document["cage"] = {
+        "pitch_radius": 0.0325,
+        "cage_speed": 600.0,
+        "ball_diameter": 0.0111,
+        "guidance": guidance,
+        "land_clearance": clearance,
+        "land_out_of_round": 0.0,
+        "land_lobes": 2,
+        "land_count": 1,
+        "land_spacing": None,
+        "land_width": 3e-3,
+        "ramp_time": 0.0,
+        "ramp_start": 0.1,
+        "pocket_shape": "square",
+        "axial_half_play": 0.5 * play if space else None,
+    } | cage
+    return Part(document, {name: "m" for name in LENGTHS} | {"largest_tilt": "rad", "time": "s"})
+
+
+ODD = {
+    "ordinary": run(),
+    "in space": run(space=True, land_count=2, land_spacing=1e-2),
+    "one sample": run(1, space=True),
+    "one ball": run(2, count=1, guidance="inner"),
+    "no play": run(2, play=0.0, land_out_of_round=1e-5),
+    "a land only": run(2, play=1e-2),
+    "no land": run(3, guidance="ball"),
+}
+
+
+def drawn_at(seen, frame):
+    """Outlines of the cage, and the circle of the land, as an animation draws them in a frame."""
+    axes = Figure().add_subplot()
+    animation._draw_cage(axes, seen)(frame)
+    return [path.vertices for path in axes.collections[0].get_paths()], axes.lines[0].get_xydata()
+
+
+@pytest.mark.parametrize("answer", ODD.values(), ids=ODD.keys())
+def test_any_run_has_panels_and_a_gif(answer):
+    """Each sample is a frame here, reported one by one."""
+    reported, seen, lean = [], scene(answer), "lean" in answer
+    panels = [(run_panels.orbit(answer), seen.centre)]
+    panels += [(run_panels.lean(answer), seen.lean)] if lean else []
+    kinds = (run_panels.offset, run_panels.forces, run_panels.energy, *[run_panels.tilt] * lean)
+    every = [*(panel for panel, _ in panels), *(one(answer, "a") for one in kinds)]
+    for panel in (*every, run_panels.spectrum(answer, title="b")):
+        draw.draw_panel(Figure().add_subplot(), panel)
+    made = animation.animation(seen, panels, ("a $1$",), progress=lambda *args: reported.append(args))
+    with Image.open(io.BytesIO(made)) as found:
+        assert (found.n_frames, found.format) == (len(answer.time), "GIF")
+    assert reported == [(i + 1, seen.time.size) for i in range(seen.time.size)]
+
+
+@pytest.mark.parametrize(("whirl", "parts"), [(50e3, 2), (2e3, 1)])
+def test_a_fast_whirl_is_never_strobed(whirl, parts):
+    """At least `A_TURN` frames a turn; a slow one is shown whole, else the key says what is left out."""
+    answer = run(20_000, whirl=2 * np.pi * whirl)
+    moments = frame_moments(answer, MOST_FRAMES)
+    steps, seen = np.diff(np.array(answer.time)[moments]), scene(answer)
+    assert (steps > 1 / (A_TURN * whirl)).sum() == len(seen.parts) - 1 == parts - 1  # the cut
+    assert (seen.parts[0][0], seen.parts[-1][1]) == pytest.approx((0.0, 0.01))
+    assert MOST_FRAMES / 2 < moments.size <= MOST_FRAMES
+    assert (moments[0], moments[-1]) == (0, 19_999)
+
+
+def test_a_wall_meets_its_ball_when_the_pocket_touches():
+    """A cage moved by the play along the ball's tangent: bar and ball meet in the enlarged picture."""
+    answer = run(1, count=13)
+    answer.values["position"] = [[0.0, 3e-4]]
+    seen = scene(answer)
+    assert seen.enlarged > 2
+    last = drawn_at(seen, 0)[0][12]  # the bar behind ball 0, which lies at (R, 0)
+    wall = last[view.BAR_POINTS : view.BAR_POINTS + 2].mean(axis=0)
+    # rounding: tangent to the ball
+    assert wall[1] == pytest.approx(-seen.ball, rel=1e-9)
+
+
+@pytest.mark.parametrize(("guidance", "side"), [("outer", 1), ("inner", -1)])
+def test_the_cage_meets_its_land_when_it_touches(guidance, side):
+    """At an offset of the gap the surface of the cage reaches the land, outside and inside."""
+    answer = run(1, guidance=guidance)
+    answer.values["position"] = [[5e-4, 0.0]]
+    shapes, land = drawn_at(scene(answer), 0)
+    surface = shapes[-1] if side > 0 else shapes[-2]
+    at = 0 if side > 0 else animation.AROUND.size // 2  # along x, or against it
+    # rounding
+    assert surface[at] == pytest.approx(land[at], rel=1e-12, abs=1e-12)
+
+
+def test_the_ball_set_turns_by_the_integral_of_its_speed():
+    """With a ramp from a fifth of the speed over 4 of 10 ms."""
+    answer = run(6, ramp_time=4e-3, ramp_start=0.2)
+
+    def speed(t):
+        return 600.0 * (0.2 + 0.8 * min(t / 4e-3, 1.0))
+
+    expected = [quad(speed, 0.0, t, points=[4e-3])[0] for t in answer.time]
+    # quadrature
+    assert cage_scene.turned_by(answer.cage, np.array(answer.time)) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("answer", [ODD["ordinary"], ODD["in space"], ODD["one sample"]])
+def test_a_view_has_its_run_as_numbers_and_escapes_the_study(answer):
+    """Tilt, and a view from above, only in space; a study's text ends no script; it says how enlarged."""
+    title, seen = "</script><b> & $1$ @DATA@", cage_scene.page_scene(answer)
+    text = view.page((title, "below"), seen)
+    assert title not in text
+    assert html.escape(title) in text
+    found = json.loads(text.partition('id="run">')[2].partition("</script>")[0])
+    assert (found["lean"] is None) is ("lean" not in answer)
+    assert (found["view"] == [np.pi / 2, 0.0]) is ("lean" not in answer)  # along the axis
+    assert len(found["time"]) == len(answer.time)
+    assert found["enlarged"] == seen.enlarged
+    assert found["most"] == [max(map(max, answer.contact_force)) or 1.0, max(answer.land_force) or 1.0]
+
+
+def test_the_force_of_a_frame_is_the_largest_since_the_one_before():
+    """Of samples between two frames none is lost."""
+    forces = np.zeros((6, 1))
+    forces[2] = 7.0
+    assert cage_scene._largest_since(forces, np.array([0, 3, 5])).ravel().tolist() == [0.0, 7.0, 0.0]
+
+
+def test_a_course_in_time_keeps_its_extremes():
+    """Of many samples the least and the largest of each part are drawn, with the first and the last."""
+    values = np.zeros(20_000)
+    values[[7, 11_111]] = 3.0, -2.0
+    places = run_panels.thinned(values)
+    assert {0, 7, 11_111, 19_999} <= set(places.tolist())
+    assert places.size <= run_panels.SHOWN + 2
+
+
+def test_works_end_with_the_judged_part():
+    """The engine adds up no work beyond it: a picture that went on would fall back to 0."""
+    answer = run(101)
+    answer.values["followed"] = answer.time[40]
+    panel = run_panels.energy(answer, "e")
+    assert panel.x.high == answer.time[40]
+    work = next(
+        one for one, name in zip(panel.marks[-2:], panel.labels, strict=True) if "pocket" in name.text
+    )
+    assert (work.x[-1], work.y[-1]) == (answer.time[40], answer.work.pocket_friction[40])
+
+
+def test_the_pockets_bound_the_path_by_a_polygon():
+    """Half way between the normals of two of six lines the centre goes farther, by 1 over cos 30 deg."""
+    found = cage_scene.pocket_boundary(run(count=3))
+    assert found.min() == pytest.approx(3e-4)
+    # half a degree from one direction to the next
+    assert found.max() == pytest.approx(3e-4 / np.cos(np.pi / 6), rel=1e-4)
+    assert AROUND.size == found.size
+
+
+FILM = {
+    "restitution_factor": 0.5,
+    "is_any_allowed": False,
+    "reason": "",
+    "film_thickness": [1e-7, 1e-6, 1e-5],
+    "film_restitution_factor": [[0.6, 0.5, 0.4], [0.4, 0.6, 0.4], [0.1, 0.2, 0.3], [0.6, 0.6, 0.6]],
+}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, [">= 1 \N{MICRO SIGN}m", "see figure", "any", "none"]),
+        ({"restitution_factor": None, "is_any_allowed": True}, ["any"] * 4),
+        ({"restitution_factor": None, "reason": "more or less in words"}, ["none"] * 4),
+    ],
+)
+def test_allowed_films_are_told_from_the_flag(changes, words):
+    """Not from the sentence of the reason."""
+    answer = Part({}, {"film_thickness_here": "m"})
+    film = Part(FILM | changes, {})
+    assert [sensitivity._thicknesses(answer, place)(film) for place in range(4)] == words
+
+
+@pytest.mark.parametrize(("complete", "said"), [(True, "No case is undecided"), (False, "No finished case")])
+def test_an_interrupted_answer_does_not_say_that_nothing_is_undecided(complete, said):
+    """Cases that are not finished may be."""
+    answer = Part({"undecided": [], "next_tests": [], "complete": complete}, {})
+    assert next(iter(sensitivity.next_tests(answer))).text.startswith(said)
