@@ -97,7 +97,7 @@ def test_a_map_says_where_it_changes_next_to_the_study():
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():
-    """Values and reason stand at each cell, upward in y; what has no share is a gap, a refused point hatched."""
+    """Values and reason stand at each cell, upward in y; what has no share is a gap, a refusal hatched."""
     cells, hatched = map_figure(mapped()).panels[0].marks[:2]
     assert cells.values == [[0.0, None], [1.0, None]]
     assert cells.hover[1][
