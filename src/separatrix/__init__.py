@@ -10,8 +10,8 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "front.api": "Answer bearing check compare map mobility rank report restitution "
-    "sensitivity simulate stability sweep traction",
+    "front.api": "Answer ToolAnswer bearing check compare load map material materials mobility rank report "
+    "restitution sensitivity simulate stability sweep traction tribometer",
     "chain.ball_traction": "BallTraction",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
@@ -33,18 +33,16 @@ _PUBLIC = {
     "chain.shear": "ShearField shear_field",
     "chain.traction_curve": "TractionCurve traction_curve traction_slope",
     "comparing.records": "Comparison",
-    "comparing.saved": "load",
-    "verbs.without_bearing": "Materials TribometerAnswer materials tribometer",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError",
     "verdict.swept_cases": "Sweep SweptCase",
     "friction.logs": "read_log",
     "friction.reduction": "reduce_log",
     "friction.log_series": "ReducedLogs",
     "verdict.ledger": "Ledger",
-    "reporting.record": "Report",
+    "verbs.report": "Report",
     "verdict.long_jobs": "Interrupted Runner",
     "verdict.ranking_records": "Ranking",
-    "present.dataset": "dataset save",
+    "present.dataset": "dataset",
     "verbs.answer_files": "document",
     "verbs.shapes": "to_dataframe to_xarray",
     "verdict.critical_friction": "critical_friction",

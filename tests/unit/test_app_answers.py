@@ -44,7 +44,9 @@ def page(root):
     with pytest.MonkeyPatch.context() as patch, TestClient(application(root)) as client:
         patch.setattr("separatrix.front.page.jobs.work", work_undrawn)
         for verb in ("bearing", "rank", "map"):
-            client.post("/run/small.toml", data={"verb": verb, **(AXES | {"runs": "1"} if verb == "map" else {})})
+            client.post(
+                "/run/small.toml", data={"verb": verb, **(AXES | {"runs": "1"} if verb == "map" else {})}
+            )
         until(client, lambda jobs: all(job.startswith("finished") for job in jobs))
         yield client
 
@@ -127,8 +129,21 @@ def test_options_are_fields_of_their_types(monkeypatch, page, root):
     monkeypatch.setattr(editing, "verb_named", lambda _: verb)
     (root / "duty.csv").write_text("film.thickness\n1 um\n")
     own = page.app.state.page
-    sent = {"runs": "4", "vary": "a=1\n b=2 \n", "cases": "duty.csv", "adaptive": "on", "x": "", "ball": "free"}
-    expected = {"runs": 4, "vary": ("a=1", "b=2"), "cases": root / "duty.csv", "adaptive": True, "ball": "free"}
+    sent = {
+        "runs": "4",
+        "vary": "a=1\n b=2 \n",
+        "cases": "duty.csv",
+        "adaptive": "on",
+        "x": "",
+        "ball": "free",
+    }
+    expected = {
+        "runs": 4,
+        "vary": ("a=1", "b=2"),
+        "cases": root / "duty.csv",
+        "adaptive": True,
+        "ball": "free",
+    }
     assert editing.asked(own, "small.toml", "any", sent) == expected
     with pytest.raises(InputError, match="--runs must be a whole number"):
         editing.asked(own, "small.toml", "any", {"runs": "4.5"})

@@ -6,8 +6,8 @@ import time
 
 from commands import SMALL
 
+from separatrix.front.console import is_importing
 from separatrix.front.page.jobs import Jobs
-from separatrix.front.page.worker import is_importing
 
 PATIENCE = 120.0
 """Time for a job on a loaded machine [s]."""

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from separatrix.chain.contacts import BearingState
-from separatrix.ground.document import Document
+from separatrix.ground.document import Document, part_of
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.reading import read_study, require
 from separatrix.study.study import Study
-from separatrix.verbs import Computed, computed, verb_named
+from separatrix.verbs import Computed, computed, tool_named, verb_named
 from separatrix.verbs.answer_records import (
     CheckAnswer,
     MapAnswer,
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from separatrix.present.blocks import Page
     from separatrix.verbs.report import Report
+    from separatrix.verbs.verb import Tool
 
 Record = TypeVar("Record")
 
@@ -43,8 +44,39 @@ Record = TypeVar("Record")
 Asked = Study | str | Path
 
 
+class Shown:
+    """What every answer can show of itself, from its document and its page."""
+
+    def document(self) -> Document:
+        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+        raise NotImplementedError
+
+    def page(self) -> Page:
+        """Page of blocks: what text, report, workbook and local page show."""
+        raise NotImplementedError
+
+    def summary(self, *, full: bool = False) -> str:
+        """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
+        from separatrix.present.blocks import Level
+        from separatrix.present.text import text
+
+        return text(self.page(), Level.FULL if full else Level.BRIEF)
+
+    def _repr_html_(self) -> str:
+        """The page, as a notebook shows it."""
+        from separatrix.present.html import html
+
+        return html(self.page())
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Return the first figure of the answer, or the one whose file has this name."""
+        from separatrix.present.draw import plot
+
+        return plot(self.page(), name)
+
+
 @dataclass(frozen=True, kw_only=True)
-class Answer(Generic[Record]):
+class Answer(Shown, Generic[Record]):
     """What a verb answers to a study; the names of its record are its own, too.
 
     `record` was computed for `study`; `notes` are about where a model leaves its range.
@@ -64,12 +96,6 @@ class Answer(Generic[Record]):
     def __repr__(self) -> str:
         """Verb and study; `summary` has the answer."""
         return f"<{self.verb} of {self.study.name}: summary(), to_dataframe(), to_xarray(), plot()>"
-
-    def _repr_html_(self) -> str:
-        """The page of the answer, as a notebook shows it."""
-        from separatrix.present.html import html
-
-        return html(self.page())
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -94,13 +120,6 @@ class Answer(Generic[Record]):
 
         return page_of_document(verb_named(self.verb), self.document())
 
-    def summary(self, *, full: bool = False) -> str:
-        """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.present.blocks import Level
-        from separatrix.present.text import text
-
-        return text(self.page(), Level.FULL if full else Level.BRIEF)
-
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
         from separatrix.present.dataset import dataset
@@ -113,11 +132,41 @@ class Answer(Generic[Record]):
 
         return to_dataframe(self.record)
 
-    def plot(self, name: str | None = None) -> Figure:
-        """Return the first figure of the answer, or the one whose file has this name."""
-        from separatrix.present.draw import plot
 
-        return plot(self.page(), name)
+@dataclass(frozen=True)
+class ToolAnswer(Shown):
+    """What a tool answers: the names of its record are its own, too; without one those of its document."""
+
+    tool: Tool
+    found: Document = field(repr=False)
+    record: Any = field(default=None, repr=False)
+
+    def __getattr__(self, name: str) -> Any:
+        """Name of the record, or of the document."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if self.record is not None:
+            return getattr(self.record, name)
+        if name not in self.found:
+            raise AttributeError(name)
+        return self.found[name]
+
+    def document(self) -> Document:
+        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+        return self.found
+
+    def page(self) -> Page:
+        """Page of blocks: what text and files show."""
+        return self.tool.page(part_of(self.found))
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """One row for each test, record or result: the first list of the document that has rows."""
+        import pandas as pd
+
+        rows = (
+            one for one in self.found.values() if isinstance(one, list) and one and isinstance(one[0], dict)
+        )
+        return pd.json_normalize(next(rows, []))
 
 
 def _answer(verb: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
@@ -266,7 +315,7 @@ def sweep(
     return _answer("sweep", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 
-def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> Document:
+def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> ToolAnswer:
     """Two answers of one verb: what differs, and whether by more than counting noise.
 
     Parameters
@@ -287,7 +336,105 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
         for one in (first, second)
     ]
     names = [one.study.name if isinstance(one, Answer) else str(one) for one in (first, second)]
-    return compared(*sides, names=(names[0], names[1]))
+    return ToolAnswer(tool_named("compare"), compared(*sides, names=(names[0], names[1])))
+
+
+def load(path: str | Path) -> xr.Dataset:
+    """Return a saved answer, the .json of a verb, as labelled arrays: those of `Answer.to_xarray`.
+
+    Raises
+    ------
+    InputError
+        The file is not an answer of separatrix, or is damaged.
+    """
+    from separatrix.present.dataset import dataset
+    from separatrix.verbs.saved_answers import read_answer, refusing_damage
+
+    with refusing_damage(str(path)):
+        return dataset(read_answer(Path(path)))
+
+
+def tribometer(
+    paths: str | Path | Sequence[str | Path],
+    *,
+    column_map: str | Path | None = None,
+    run_in: str | None = None,
+    join: bool = False,
+    complete: bool = False,
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> ToolAnswer:
+    """Read logs of tribometers and reduce each test to its steady friction.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        Logs, each of one or several tests, or folders of them.
+    column_map : path, optional
+        What the files do not state themselves.
+    run_in : str, optional
+        Where running-in ends in all of them, such as ``"10 min"``; else as in the map, else as detected.
+    join : bool
+        Whether all logs of a folder are parts of one test.
+    complete : bool
+        Whether a test that a friction file cannot keep is refused.
+    jobs : int
+        Threads. The answer does not depend on it.
+    progress : callable, optional
+        Called with the steps done and their total.
+
+    Raises
+    ------
+    InputError
+        A file is wrong: the first one, and how many others are.
+    """
+    from separatrix.verbs.tribometer import Options, document, reduced
+
+    files = (paths,) if isinstance(paths, str | Path) else tuple(paths)
+    given = None if column_map is None else Path(column_map)
+    options = Options(files=tuple(Path(one) for one in files), column_map=given, run_in=run_in, join=join)
+    found = reduced(options, jobs, progress, complete=complete)
+    return ToolAnswer(tool_named("tribometer"), document(found), found)
+
+
+def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) -> ToolAnswer:
+    """Records of the library: the shipped ones, those of the current folder, and those of `libraries`.
+
+    Parameters
+    ----------
+    kind : str, optional
+        Only ``"bearing material"``, ``"cage material"``, ``"film"``, ``"fluid"`` or ``"friction table"``.
+    libraries : sequence of paths
+        Library files, or folders of them, besides ``materials.toml`` and the folder ``materials``.
+
+    Raises
+    ------
+    InputError
+        A file is wrong or not there, or the kind is not one of these.
+    """
+    from separatrix.verbs.materials import LIST
+
+    options = LIST.options(kind=kind, library=tuple(str(one) for one in libraries))
+    return ToolAnswer(LIST, LIST.compute(options))
+
+
+def material(
+    name: str,
+    *,
+    kind: str | None = None,
+    temperature: str | None = None,
+    libraries: Sequence[str | Path] = (),
+) -> ToolAnswer:
+    """Records of a name, whole; at a temperature, such as ``"77 K"``, with what serves there."""
+    from separatrix.verbs.materials import SHOW
+
+    asked = {
+        "name": name,
+        "kind": kind,
+        "temperature": temperature,
+        "library": tuple(str(one) for one in libraries),
+    }
+    return ToolAnswer(SHOW, SHOW.compute(SHOW.options(**asked)))
 
 
 def report(

@@ -716,7 +716,6 @@ def film_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="sensitivity",
-    help="Verdicts over uncertain inputs, and what to test next.",
     epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
     "their scatter: 9 % of the mean where none was measured, a guess.",
     compute=compute,

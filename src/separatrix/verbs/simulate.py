@@ -380,7 +380,6 @@ def files(
 
 VERB = Verb(
     name="simulate",
-    help="Follow one run of the cage, in the plane or in space.",
     epilog="An unresolved run states its reason.",
     compute=compute,
     page=page,

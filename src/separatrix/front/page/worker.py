@@ -87,11 +87,11 @@ def work(pipe: Connection) -> None:
     waiting: SimpleQueue[Task | None] = SimpleQueue()
     in_hand: list[int] = []
     cancelled: set[int] = set()
-    is_ended = threading.Event()
+    is_ended, main = threading.Event(), threading.get_ident()
 
     def break_in(number: int) -> None:
-        if number in in_hand:
-            _thread.interrupt_main()
+        if number in in_hand:  # a true signal, where there is one: it ends a wait, too
+            getattr(signal, "pthread_kill", lambda *_: _thread.interrupt_main())(main, signal.SIGINT)
 
     def refuse_cancelled(*_: object) -> None:
         for number in in_hand:
