@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from commands import SMALL
 from matplotlib import image
 
 import separatrix
