@@ -103,10 +103,10 @@ class FreeBall:
     """A ball with its mass, both races' slip fields, and the fastest rate of its small motions."""
 
     mass: Kilogram
-    inertia: KilogramMetre2
-    inner: SlipField
-    outer: SlipField
-    fastest_rate: PerSecond
+    inertia: KilogramMetre2  # moment of inertia of the ball
+    inner: SlipField  # slip field of the inner race
+    outer: SlipField  # slip field of the outer race
+    fastest_rate: PerSecond  # of the ball's small motions
 
     @property
     def capacity(self) -> Newton:

@@ -175,7 +175,7 @@ class TractionCurve:
     slope_error: Ratio
     free_rolling_offset: Ratio
     spin_roll_ratio: Ratio
-    nodes: int
+    nodes: int  # elements along the finest strip
     notes: tuple[str, ...] = ()  # where the film leaves the range of its model, a sentence each
 
 

@@ -37,8 +37,8 @@ from separatrix.verdict.uncertain_records import UncertainStudy
 class Refusal:
     """What a verb would refuse of a study, or take long for."""
 
-    verb: str
-    sentence: str
+    verb: str  # that refuses the study, or takes long
+    sentence: str  # why, and what to do
 
 
 class FirstReached(Enum):

@@ -157,7 +157,14 @@ def push_figure(answer: Part) -> Figure:
     panel = Panel(
         title="Ball pushed along its orbit",
         x=axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1]),
-        y=axis("force", answer.unit("capacity"), [capacity], low=0.0, high=1.25 * capacity),
+        y=axis(
+            "force_law",
+            answer.unit("capacity"),
+            [capacity],
+            label="force of the races $F$",
+            low=0.0,
+            high=1.25 * capacity,
+        ),
         marks=(bound, linear, *marks),
     )
     return Figure(

@@ -297,7 +297,7 @@ def next_tests(answer: Part) -> Iterator[Block]:
 
 def _chances(pairs: Any) -> Iterator[str]:
     for case, chance in pairs:
-        yield f"{case} ({told(Part({'chance': chance}, {}), 'chance')})"
+        yield f"{case} ({told(Part({'chances': chance}, {}), 'chances')})"
 
 
 def sources(answer: Part) -> Iterator[Block]:

@@ -487,7 +487,11 @@ def _frequencies(cases: Sequence[Part], way: Way, hover: Sequence[str]) -> Made:
             look = {"line": "", "marker": marker, "size": 5.0, "colour": VERMILION, "hover": texts}
             name = f"{quantity('orbit_frequency').label}, {way_round}"
             marks.append(Trace(x=[way.places[place] for place in those], y=y, name=name, **look))
-    return "Frequencies on the housing", axis("frequency", "Hz", [], is_log=True), marks
+    return (
+        "Frequencies on the housing",
+        axis("shaft_frequency", "Hz", [], label="frequency", is_log=True),
+        marks,
+    )
 
 
 PANELS = {"margin": _margin, "probability_stable": _probability}

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
+from separatrix.ground.quantity import Quantity, alone
 from separatrix.ground.units import format_number
 from separatrix.present.blocks import (
     Cell,
@@ -33,7 +34,7 @@ from separatrix.present.figure import (
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import RACES
 from separatrix.verbs.parts.refused import compared, refused, rolling
-from separatrix.verbs.parts.telling import axis, by_race, cell, number_of, place_column, quantity, said, told
+from separatrix.verbs.parts.telling import axis, by_race, cell, number_of, place_column, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ CONTACT = (
     "slope_error",
     "free_rolling_offset",
 )
+RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 
 
 def compute(study: Study, _options: NoOptions) -> TractionAnswer:
@@ -133,9 +135,7 @@ def by_ratio(answer: Part) -> Table:
 
     ratio = Column(
         "ratio",
-        lambda place: Cell(
-            abs(inner[place].spin_roll_ratio), quantity("ratio"), inner[place].unit("spin_roll_ratio")
-        ),
+        lambda place: Cell(abs(inner[place].spin_roll_ratio), RATIO, inner[place].unit("spin_roll_ratio")),
     )
     return Table(
         "other ratios", (ratio, slope(inner, "inner"), slope(outer, "outer")), tuple(range(len(inner)))
@@ -178,7 +178,7 @@ def curves_panel(part: Part, title: str, y: Axis) -> Panel:
     increment: list[float] = part.creep_increment
     marks: list[Mark] = [Across(at=0.0, axis=way, colour="#c8c8c8") for way in ("x", "y")]
     for place, one in enumerate(part.by_spin_roll_ratio):
-        ratio = number_of(one, "ratio", abs(one.spin_roll_ratio))
+        ratio = alone(abs(one.spin_roll_ratio), RATIO, one.unit("spin_roll_ratio"))
         colour = SEQUENCE[place % len(SEQUENCE)]
         coefficient = one.traction_coefficient
         marks.append(
@@ -222,7 +222,7 @@ def slopes_figure(answer: Part) -> Figure:
     slopes = [one.slope for part in races for one in (part, *part.by_spin_roll_ratio)]
     panel = Panel(
         title="Slope of the traction curve at the origin",
-        x=axis("ratio", "-", [], low=-0.02),
+        x=axis("spin_roll_ratio", "-", [], label=RATIO.label, low=-0.02),
         y=slope_axis(answer, slopes),
         marks=tuple(marks),
     )

@@ -66,7 +66,7 @@ class KickCount:
     """Of those that settle: friction on the land keeps up more motion than frame and loads can give."""
     probability_stable: Ratio  # share of the runs that settle or roll
     probability_low: Ratio  # of its 95 % Wilson interval
-    probability_high: Ratio
+    probability_high: Ratio  # upper end of it
 
     @property
     def runs(self) -> int:
@@ -86,10 +86,10 @@ class Judgement:
     Medians are over the last part of the runs that end in `cage_motion`, or of all if that is None.
     """
 
-    verdict: Verdict
+    verdict: Verdict  # STABLE, UNSTABLE or UNDECIDED
     probability_stable: Ratio  # share of the runs that settle or roll
     probability_low: Ratio  # of its 95 % Wilson interval
-    probability_high: Ratio
+    probability_high: Ratio  # upper end of it
     worst_kick: MetrePerSecond
     """Of the kicks from which most runs whirl, if any, the one from which fewest settle or roll."""
     by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]  # where all runs end

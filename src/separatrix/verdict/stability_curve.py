@@ -82,7 +82,7 @@ class StabilityCurve:
     middle_kick: MetrePerSecond  # of the critical friction
     runs: int  # from each kick
     duration: Second  # of a run
-    ball_scatter: Ratio
+    ball_scatter: Ratio  # initial lead or lag of the balls, over half the pocket clearance
     searched_friction: Ratio  # highest friction that was searched
     drifts: bool  # whether nothing returns the cage centre: a kick may settle, but no verdict is STABLE
     drift_rate_law: PerSecond  # growth of the offset by the linear law; 0 with a land or a ball set at rest

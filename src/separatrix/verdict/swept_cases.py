@@ -159,13 +159,13 @@ class SweptCase:
     linear_whirl_frequency: Hertz | None = None
     orbit_frequency: Hertz | None = None
     restitution_threshold: Ratio | None = None
-    restitution_threshold_low: Ratio | None = None
-    restitution_threshold_high: Ratio | None = None
+    restitution_threshold_low: Ratio | None = None  # lower end of its 95 % interval
+    restitution_threshold_high: Ratio | None = None  # upper end of it
     margin: Ratio | None = None
     verdict: str | None = None  # STABLE, UNSTABLE or UNDECIDED
     probability_stable: Ratio | None = None  # from the worst kick
-    probability_low: Ratio | None = None
-    probability_high: Ratio | None = None
+    probability_low: Ratio | None = None  # lower end of its 95 % interval
+    probability_high: Ratio | None = None  # upper end of it
     cage_motion: str | None = None  # what the cage does at the end
     largest_offset: Metre | None = None
     drift_rate: PerSecond | None = None

@@ -8,6 +8,8 @@ from typing import Annotated
 from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
 from separatrix.verdict.judgement import Judgement
 
+Shares = Annotated[Array, "-"]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputRow:
@@ -101,8 +103,8 @@ class Drivers:
     """Of the variance of the logit of P(settles), largest first, chance last; empty where `reason` states
     why."""
     reason: str  # why there are no shares; empty otherwise
-    predicted: Array  # mean prediction in each bin of bearings left out of the fit, shape (bin,)
-    counted: Array  # share that settles, in the same bins, shape (bin,)
+    predicted: Shares  # mean prediction in each bin of bearings left out of the fit, shape (bin,)
+    counted: Shares  # share that settles, in the same bins, shape (bin,)
     bearings: Array  # number in each bin, shape (bin,)
     skill: Ratio | None  # part of the deviance that the fit removes, on bearings left out
 
@@ -122,7 +124,7 @@ class TestGain:
     """How many undecided cases measuring one input settles on average, and which with what probability."""
 
     name: str  # the input to measure
-    settled: float  # mean number of cases that get a verdict
+    settled: Ratio  # mean number of cases that get a verdict
     cases: tuple[str, ...]  # that may get one
     chances: tuple[Ratio, ...]  # probability that it does, for each case
 

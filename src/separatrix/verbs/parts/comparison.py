@@ -46,14 +46,14 @@ class Row:
 
     place: str  # for instance "liquid nitrogen, 440C / Armalon"
     name: str  # empty where only one answer has the place
-    unit: str
-    first: Value
-    second: Value
+    unit: str  # SI unit of the numbers
+    first: Value  # value of the first answer
+    second: Value  # value of the second one
     change: float | None = None  # second less first
     change_low: float | None = None  # ends of its 95 % interval
-    change_high: float | None = None
+    change_high: float | None = None  # upper end
     relative: float | None = None  # change over the first
-    noise: Noise
+    noise: Noise  # BEYOND, WITHIN, EXACT, UNJUDGED or CHANGED
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,8 +61,8 @@ class Difference:
     """An input that differs; None where it is absent."""
 
     key: str  # of the study, or of the command
-    first: object
-    second: object
+    first: object  # value of the first answer
+    second: object  # value of the second one
     unit: str | None  # of the numbers; null for a text
 
 
