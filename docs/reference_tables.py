@@ -73,7 +73,7 @@ transverse_inertia J_t; cage_frequency f_c; shaft_frequency f_i
 )
 """Symbols that the paper or the theory has for a name, where the table of quantities does not show one."""
 UNSTATED = {"run_in_end": "s", "steady_end": "s", "stick_slip_frequency": "1/s", "effective_count": "-"}
-"""Units that no field states: places along a test are in the SI unit of `run_in_axis`, here those of a time."""
+"""Units that no field states: places along a test are in the SI unit of `run_in_axis`, here of a time."""
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
 
@@ -169,6 +169,7 @@ TRIBOMETER = (
     Line("rows", meaning="rows that were read"),
     Line("described", meaning="what was read, in words"),
     Line("tests", meaning="a row for each test; in `fits` the number of tests"),
+    Line("course", meaning="friction along the test, and what the log has beside it"),
     Line("friction_low", "-", meaning="lower end of the 95 % interval of the friction"),
     Line("friction_high", "-", meaning="upper end of it"),
     Line("fits", meaning="a row for each material in each environment; empty where a test lacks conditions"),

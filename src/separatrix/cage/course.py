@@ -102,7 +102,7 @@ class History:
     followed: Second  # its end; the history may go on
     end_energy: Joule
     growth_rate: PerSecond
-    drift_rate: PerSecond
+    drift_rate: PerSecond  # growth rate of the mean offset
     largest_offset: Metre
     mean_offset: Metre
     offset_spread: Metre  # standard deviation of the offset at the end
@@ -118,7 +118,7 @@ class History:
     land_impacts: int  # impacts of the cage on its land
     left_ball: int  # first ball, from 1, that reached the edge of its pocket's wall; 0 if none did
     left_time: Second
-    energy_imbalance: Ratio
+    energy_imbalance: Ratio  # unexplained part of the energy balance, over the work done
     largest_tilt: Radian | None  # between the axes of cage and bearing
     cone_speed: RadianPerSecond | None
     axial_low: Metre | None  # extremes of the axial place

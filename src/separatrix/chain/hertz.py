@@ -21,7 +21,7 @@ class ContactEllipse:
     Of `contact_ellipse` on arrays every field is an array of their shape.
     """
 
-    load: Newton
+    load: Newton  # normal to the contact
     semi_major: Metre
     semi_minor: Metre
     max_pressure: Pascal

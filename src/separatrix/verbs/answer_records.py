@@ -81,7 +81,7 @@ class CheckAnswer:
 class TractionAnswer:
     """Traction curves by the study's model, by strips at other pivoting-to-rolling ratios, and the shear."""
 
-    race_friction: Ratio
+    race_friction: Ratio  # f_BT, of ball on race
     bearing: BearingState  # equilibrium and contacts
     inner: TractionCurve  # curve of the inner race by the study's model
     outer: TractionCurve  # curve of the outer race by the study's model

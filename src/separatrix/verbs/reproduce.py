@@ -45,9 +45,9 @@ IGNORED = ("separatrix_version", "provenance", "warnings", "notes", "units")
 class Differing:
     """A key whose value differs: numbers, texts, or what only one of them has, in short."""
 
-    key: str
-    stored: object
-    computed: object
+    key: str  # its place in the document
+    stored: object  # value of the saved answer
+    computed: object  # value of the answer computed here
     relative: Ratio | None  # null where they are not numbers
 
 

@@ -111,7 +111,7 @@ class Ranking:
 
     environment: str  # the bearing's own, of the headline
     candidate: str  # whose pocket the chain and the curve are for
-    restitution_factor: Ratio
+    restitution_factor: Ratio  # eta of the chain, for the bearing's own candidate
     restitution_factor_free_spin: Ratio  # of the chain, the ball free to spin in the impact
     ball_cage_stiffness: NewtonPerMetre  # of the pocket of `candidate`
     pocket: PocketConditions  # sliding speed and pressure at which friction is taken

@@ -146,9 +146,9 @@ class SweptCase:
     slope_inner: Ratio | None = None  # alpha of the inner race
     slope_outer: Ratio | None = None  # alpha of the outer race
     ball_cage_stiffness: NewtonPerMetre | None = None
-    race_damping: NewtonSecondPerMetre | None = None
-    damping_ratio: Ratio | None = None
-    restitution_factor: Ratio | None = None
+    race_damping: NewtonSecondPerMetre | None = None  # C_mu, of both races together
+    damping_ratio: Ratio | None = None  # sqrt(k_BC M_C) over 2 C_mu
+    restitution_factor: Ratio | None = None  # eta of the chain
     ball_cage_friction: Ratio | None = None
     pocket_clearance: Metre | None = None  # running, along the circumference, stop to stop
     land_clearance: Metre | None = None  # running, diametral; null without a land
@@ -168,7 +168,7 @@ class SweptCase:
     probability_high: Ratio | None = None  # upper end of it
     cage_motion: str | None = None  # what the cage does at the end
     largest_offset: Metre | None = None
-    drift_rate: PerSecond | None = None
+    drift_rate: PerSecond | None = None  # growth rate of the mean offset, median over the runs
     largest_contact_force: Newton | None = None
     largest_land_force: Newton | None = None
     runs: int | None = None  # of the verdict

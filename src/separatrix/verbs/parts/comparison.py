@@ -36,8 +36,8 @@ class Value:
     """A result in one answer, with its 95 % interval if it has one."""
 
     value: Plain  # null where this answer lacks it
-    low: float | None = None
-    high: float | None = None
+    low: float | None = None  # lower end of its 95 % interval
+    high: float | None = None  # upper end
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
