@@ -56,7 +56,7 @@ class Options:
 
     kick: Annotated[
         str | float | None,
-        Option('For instance "0.5 m/s" [default: the reference kick of the study].', "SPEED"),
+        Option('For instance "0.5 m/s" [default: the reference disturbance of the study].', "SPEED"),
     ] = None
     run: Annotated[int, Option("Which run of the ensemble.", "N")] = 0
     restitution_factor: Annotated[

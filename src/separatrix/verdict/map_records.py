@@ -188,7 +188,7 @@ class MapQuestion:
     study: Study  # with a [cage]
     x: MapAxis  # another parameter than y
     y: MapAxis
-    kick: MetrePerSecond  # of every point, unless an axis is the kick
+    kick: MetrePerSecond  # initial disturbance of every point, unless an axis has it
     runs: int = 16  # most runs of a point
     adaptive: bool = False  # only points near a change of the answer are run, and a sample of the others
 
@@ -204,7 +204,7 @@ class StabilityMap:
     """Bands between motion that settles and a whirl."""
     counts: Annotated[Mapping[str, int], Rows(prefix="points_")]
     """Points of each decision, refused, inferred, not run."""
-    kick: MetrePerSecond  # of every point, unless an axis is the kick
+    kick: MetrePerSecond  # initial disturbance of every point, unless an axis has it
     stopping: Stopping  # when a point is ended early
     inference: Inference | None  # errors of the points that were not run; null if all were
     duration: Second  # of a run

@@ -128,7 +128,7 @@ class Ranking:
     own_curves: Annotated[tuple[OwnCurve, ...] | None, Rows("material", label="name")]
     """A curve for each candidate; null where all have one stiffness."""
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    runs: int  # from each kick
+    runs: int  # from each disturbance
     duration: Second  # of a run
     ball_model: BallModel  # that the study asks for; a verdict states the one that decided
     motion_model: MotionModel  # plane or space

@@ -163,7 +163,7 @@ class SweptCase:
     restitution_threshold_high: Ratio | None = None  # upper end of it
     margin: Ratio | None = None
     verdict: str | None = None  # STABLE, UNSTABLE or UNDECIDED
-    probability_stable: Ratio | None = None  # from the worst kick
+    probability_stable: Ratio | None = None  # from the worst disturbance
     probability_low: Ratio | None = None  # lower end of its 95 % interval
     probability_high: Ratio | None = None  # upper end of it
     cage_motion: str | None = None  # what the cage does at the end

@@ -62,7 +62,7 @@ class UncertainEnvironment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvergenceRow:
-    """P(stable) of one case against the number of bearings, from its worst kick; shape (size,)."""
+    """P(stable) of one case against the number of bearings, from its worst disturbance; shape (size,)."""
 
     name: str  # of the candidate
     environment: str  # empty: overall
@@ -183,6 +183,6 @@ class UncertainStudy:
     allowed_friction: tuple[AllowedFriction, ...]  # of a new material
     allowed_films: tuple[AllowedFilm, ...]  # that keep each case stable
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    runs: int  # of each bearing, from each kick
+    runs: int  # of each bearing, from each disturbance
     notes: tuple[str, ...]  # what was left out and why, a sentence each
     complete: bool  # false if an interrupt left something out
