@@ -43,7 +43,7 @@ def test_marks_are_in_the_unit_of_their_axis_and_named_once():
 
 
 def test_panels_and_labels_do_not_overlap():
-    """Rows are below each other, panels beside, labels apart; a text on an axis of logarithms is at its log."""
+    """Rows are below each other, panels beside, labels apart; a text on a logarithmic axis is at its log."""
     layout = plotly(Figure(rows=((PANEL, PANEL), (PANEL,)), alt=""))["layout"]
     assert layout["yaxis"]["domain"][0] > layout["yaxis3"]["domain"][1]
     assert layout["xaxis"]["domain"][1] < layout["xaxis2"]["domain"][0]
