@@ -37,7 +37,7 @@ KEYS = (
     "seed study"
 )
 OF_A_POINT = (
-    "x y decision probability_whirl probability_low probability_high runs whirling growth_rate "
+    "x y state decision probability_whirl probability_low probability_high runs whirling growth_rate "
     "largest_offset drift_rate largest_contact_force "
     "restitution_factor margin inferred_decision reason"
 )

@@ -105,15 +105,18 @@ def one_line(text: str) -> str:
     return harmless(" ".join(text.split()))
 
 
+_encoded = json.JSONEncoder(allow_nan=False).encode
+
+
 def json_text(value: object, line: str = "\n") -> str:
     """Return plain data as JSON: a line a key and a row of a table, all numbers of an array on one."""
     inside = f"{line} "
     if isinstance(value, dict) and value:
-        rows = (f"{json.dumps(key)}: {json_text(one, inside)}" for key, one in value.items())
+        rows = (f"{_encoded(key)}: {json_text(one, inside)}" for key, one in value.items())
         return f"{{{inside}{f',{inside}'.join(rows)}{line}}}"
     if isinstance(value, list) and any(isinstance(one, dict) for one in value):
         return f"[{inside}{f',{inside}'.join(json_text(one, inside) for one in value)}{line}]"
-    return json.dumps(value, allow_nan=False)
+    return _encoded(value)
 
 
 def grouped(notes: Iterable[str]) -> list[str]:

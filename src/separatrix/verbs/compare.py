@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
@@ -30,6 +30,8 @@ from separatrix.present.figure import BLUE, GREY, VERMILION, Across, Axis, Band,
 from separatrix.verbs.parts.comparison import (
     MAIN,
     UNCOUNTED_VERBS,
+    Input,
+    Node,
     Noise,
     Plain,
     differences,
@@ -81,44 +83,55 @@ def compared(
         rule = f"must be an answer of {' or '.join(first)}, as {names[0]} is"
         raise InputError(names[1], rule, got=", ".join(second))
     verb = shared[0]
-    pair = first[verb], second[verb]
-    nodes, inputs = [], []
-    for name, one in zip(names, pair, strict=True):
-        with refusing_damage(name):
-            nodes.append(results(one, one["units"]))
-            inputs.append(inputs_of_answer(one))
-            if not inputs[-1]:
-                raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
-    rows = sorted(differing(verb, nodes[0], nodes[1]), key=order)
-    verdicts = [
-        {(place, name) for place in one for name in one[place].values if is_decision(name) and name != "rank"}
-        for one in nodes
-    ]
-    own = [one.get("environment") for one in pair]
+    sides = [_read(name, by_verb[verb]) for name, by_verb in zip(names, (first, second), strict=True)]
+    one, other = sides
+    rows = sorted(differing(verb, one.nodes, other.nodes), key=order)
+    any_verdict, shared_verdicts = one.verdicts | other.verdicts, one.verdicts & other.verdicts
     return {
         "separatrix_version": __version__,
         "verb": "compare",
         "of": verb,
-        "answers": [_named(name, one) for name, one in zip(names, pair, strict=True)],
-        "same_seed": pair[0]["seed"] == pair[1]["seed"],
-        "environment": own[0] if own[0] == own[1] else None,
-        "shared_verdicts": len(verdicts[0] & verdicts[1]) if verdicts[0] | verdicts[1] else None,
-        "inputs": plain(tuple(differences(*inputs)), left_out=[]),
+        "answers": [side.named for side in sides],
+        "same_seed": one.named["seed"] == other.named["seed"],
+        "environment": one.environment if one.environment == other.environment else None,
+        "shared_verdicts": len(shared_verdicts) if any_verdict else None,
+        "inputs": plain(tuple(differences(one.inputs, other.inputs)), left_out=[]),
         "rows": plain(tuple(rows[:MOST_ROWS]), left_out=[]),
         "left_out": max(0, len(rows) - MOST_ROWS),
         "also": shared[1:],
-        "curves": _both([_curve(one) for one in pair]),
-        "margins": _both([_margins(one) for one in pair]),
+        "curves": [one.curve, other.curve] if one.curve and other.curve else None,
+        "margins": [one.margins, other.margins] if one.margins and other.margins else None,
     }
+
+
+class _Side(NamedTuple):
+    """What is compared of an answer; its verdicts by place and name."""
+
+    named: Document
+    environment: str | None
+    nodes: dict[tuple[str, ...], Node]
+    verdicts: set[tuple[tuple[str, ...], str]]
+    inputs: dict[str, Input]
+    curve: list[Document]
+    margins: list[Document]
+
+
+def _read(name: str, one: Document) -> _Side:
+    """Take from an answer what is compared; one that is damaged is refused under its name."""
+    with refusing_damage(name):
+        nodes, inputs, own = results(one, one["units"]), inputs_of_answer(one), one.get("environment")
+        places = ((place, key) for place, node in nodes.items() for key in node.values)
+        verdicts = {(place, key) for place, key in places if is_decision(key) and key != "rank"}
+        environment = own if isinstance(own, str) else None
+        side = _Side(_named(name, one), environment, nodes, verdicts, inputs, _curve(one), _margins(one))
+    if not inputs:
+        raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
+    return side
 
 
 def _named(path: str, one: Document) -> Document:
     title, complete = printable(one["title"], 200), one.get("complete") is not False
     return {"path": path, "title": title, "seed": one["seed"], "complete": complete}
-
-
-def _both(pair: Sequence[list[Document]]) -> list[list[Document]] | None:
-    return [*pair] if all(pair) else None
 
 
 def _curve(one: Document) -> list[Document]:
@@ -268,9 +281,10 @@ def _long(title: tuple[str, str], whole: Columns, brief: Columns, rows: Sequence
     yield Heading(f"{title[0]}{own}{title[1]}", Level.BRIEF)
     yield Table(name, brief, shown, more, Level.BRIEF)
     yield Heading("".join(title), Level.LONG)
-    rest = f"{len(rows) - IN_A_REPORT} more differ: `--full`." if len(rows) > IN_A_REPORT else ""
-    yield Table(name, whole, tuple(rows[:IN_A_REPORT]), rest, Level.REPORT)
-    yield Table(name, whole, tuple(rows), "", Level.FULL | Level.SHEET)
+    yield Table(name, whole, tuple(rows[:IN_A_REPORT]), "", Level.LONG)
+    if len(rows) > IN_A_REPORT:
+        yield Note(f"{len(rows) - IN_A_REPORT} more differ: `--full`.", "legend", Level.REPORT)
+    yield Table(f"{name}, more", whole, tuple(rows[IN_A_REPORT:]), "", Level.FULL | Level.SHEET)
 
 
 def _words(name: str) -> str:

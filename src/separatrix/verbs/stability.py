@@ -54,7 +54,7 @@ def page(answer: Part) -> Page:
         Note(" ".join(leads), "lead"),
         *([curve_picture(answer)] if answer.curve else []),
         *own_point(answer),
-        Heading("Stability curve"),
+        *([Heading("Stability curve")] if answer.curve else []),
         *curve_blocks(answer),
         Heading("Basis of this answer", Level.LONG),
         facts(

@@ -74,7 +74,7 @@ RANGES = (
 WORDS = ("verdict", "cage_motion", "reason")
 """What a case has in words."""
 
-FEW, SOME = 8, 40
+FEW, SOME = 12, 40
 """Cases on a screen and in a report: of more, the worst."""
 
 
@@ -178,6 +178,8 @@ def worst_case(answer: Part) -> Part | None:
 def worst_words(answer: Part) -> str:
     """Return the worst case with its values, and the number that makes it so."""
     worst = answer.get("worst")
+    if worst is None and has(answer, "cage_speed"):
+        return "The bearing alone was swept: no case has a restitution factor."
     if worst is None:
         return "No case has an answer."
     name = worst.quantity
@@ -186,7 +188,7 @@ def worst_words(answer: Part) -> str:
     more = "; --margins or --verdicts compare the stability" if name == ETA else ""
     if worst_case(answer) is None:
         same = f"the same {quantity(name).label}, {told(first, name)}"
-        return f"No case is the worst: all {worst.alike} have {same}{more}."
+        return f"No case is the worst: all {worst.alike} with an answer have {same}{more}."
     others = f" ({worst.alike - 1} more are alike)" if worst.alike > 1 else ""
     return (
         f"The worst of {worst.compared} cases is {case_words(answer, first)}{others}. It has the {why}{more}."
@@ -265,17 +267,16 @@ def _parameters(answer: Part) -> list[Column]:
 
 
 def shown_columns(answer: Part) -> tuple[Column, ...]:
-    """Return parameters and answer of a case, or why it was refused."""
-    names = [
-        "time_share",
-        ETA,
-        *([] if answer.margins or answer.verdicts else ["race_damping", "max_pressure_inner"]),
-    ]
+    """Return parameters and answer of a case; a workbook and sweep.csv have why it was refused."""
+    names = ["time_share", ETA]
+    if not (answer.margins or answer.verdicts):
+        names += ["race_damping"] if has(answer, ETA) else ["load_inner", "contact_angle_inner"]
+        names += ["max_pressure_inner"]
     names += ["restitution_threshold", "margin"] if answer.margins else []
     names += ["probability_stable"] if answer.verdicts else []
     words = []
     if answer.verdicts or any(map(is_refused, answer.cases)):
-        words = [text_column("verdict or reason", lambda case: case.verdict or case.reason or "-")]
+        words = [text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")]
     return (*_parameters(answer), *(column(name) for name in names if has(answer, name)), *words)
 
 
@@ -362,7 +363,9 @@ def ways(answer: Part, cases: Sequence[Part]) -> list[Way]:
         return [Way(parameter_axis(*one, only), only, True) for one in units.items()]
     if len(values) > 1 and not has(answer, "time_share"):
         chosen = [*values.items()][:MOST_PANELS]
-        return [Way(parameter_axis(name, units[name], sorted(known)), known, False) for name, known in chosen]
+        return [
+            Way(parameter_axis(name, units[name], sorted({*known})), known, False) for name, known in chosen
+        ]
     names: tuple[str, ...] = ()
     label = "case"
     if len(cases) <= MOST_NAMED:
@@ -399,7 +402,8 @@ def envelope_figure(answer: Part) -> Figure:
         for way in across:
             title, y, marks = make(cases, way, hover)
             marks += _worst(way, cases, worst, answer)
-            row.append(Panel(title=f"{next(letters)}  {title}", x=way.axis, y=y, marks=tuple(marks)))
+            letter = f"{next(letters)}  " if len(makers) * len(across) > 1 else ""
+            row.append(Panel(title=f"{letter}{title}", x=way.axis, y=y, marks=tuple(marks)))
         rows.append(tuple(row))
     varied = [name.rpartition(".")[2] for name in names_of(answer)]
     return Figure(
@@ -422,8 +426,8 @@ def _trace(cases: Sequence[Part], what: str, way: Way, hover: Sequence[str], **l
     texts = tuple(
         f"{at}: {quantity(what).label} {told(case, what)}" for at, case in zip(hover, cases, strict=True)
     )
-    line = look.pop("line", "-") if way.is_line else ""
-    return Trace(x=way.places, y=_numbers(cases, what), hover=texts, line=line, **look)
+    line = look.pop("line", "-")
+    return Trace(x=way.places, y=_numbers(cases, what), hover=texts, line=line if way.is_line else "", **look)
 
 
 def _factor(cases: Sequence[Part], way: Way, hover: Sequence[str]) -> Made:

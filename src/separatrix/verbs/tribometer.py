@@ -72,6 +72,9 @@ ALONG = ("run_in_end", "steady_end", "along", "span_along", "lag", "correlation_
 RATES = ("drift_rate", "drift_error", "stick_slip_frequency")
 """Quantities whose unit is that of the abscissa of their test, and one over it."""
 
+FRICTION = Quantity(label="friction", digits=4)
+"""Of a test: elsewhere the name is that of the friction in a pocket, of which fewer digits matter."""
+
 EXPONENT, DRIFT = Quantity(label="exponent", form=".3f"), Quantity(label="drift", form=".2e")
 
 MINUTES = (3600.0 * 3, 60.0 * 3)
@@ -235,7 +238,7 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
             several = "s"[: one.tests != 1]
             error, scatter = (told(one, name) for name in ("standard_error", "standard_deviation"))
             yield (
-                f"{one.material}, {one.environment}: friction {told(one, 'friction')} from {one.tests} "
+                f"{one.material}, {one.environment}: friction {_friction(one).text} from {one.tests} "
                 f"test{several} (standard error {error}, scatter of a new sample {scatter})."
             )
         return
@@ -243,13 +246,18 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
         yield f"{tests[0].source}: steady friction {_summary(tests[0])}."
         return
     ends = [choose(tests, key=lambda one: one.friction) for choose in (min, max)]
-    low, high = (alone(one.friction, quantity("friction"), "-") for one in ends)
+    low, high = (alone(one.friction, FRICTION, "-") for one in ends)
     yield f"Steady friction of the tests lies between {low} and {high}."
 
 
 def _summary(test: Part) -> str:
     start, end = (_along(test, name).text for name in ("run_in_end", "steady_end"))
-    return f"{told(test, 'friction')} from {start} to {end} of the test"
+    return f"{_friction(test).text} from {start} to {end} of the test"
+
+
+def _friction(one: Part) -> Cell:
+    """Return the friction of a test with its interval, or of a material."""
+    return Cell(Estimate(one.friction, one.get("friction_low"), one.get("friction_high")), FRICTION)
 
 
 def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
@@ -270,8 +278,8 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
         text_column("test", lambda one: one.source),
         *([text_column("material", known("material"))] if stated("material") else []),
         *([text_column(", ".join(pair), known(*pair))] if stated(*pair) else []),
-        *(column(name, of=conditions) for name in loads if stated(name)),
-        column("friction"),
+        *(column(name, of=conditions, head=_plain(name)) for name in loads if stated(name)),
+        Column("friction", _friction),
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
         text_column("notes", numbers),
     )
@@ -288,10 +296,11 @@ def _numbers(tests: Sequence[Part]) -> Iterator[Block]:
         *map(column, names),
         Column("steady until", lambda one: _along(one, "steady_end")),
         *map(column, counts),
-        text_column("end of running-in", lambda one: one.run_in_method),
     )
     caption = "scatter: standard deviation of the means of whole cycles, of rows where no cycle is known."
     yield Table("numbers", first, tuple(tests), caption, Level.LONG)
+    for method in dict.fromkeys(one.run_in_method for one in tests):
+        yield Note(f"End of running-in: {method}.", "legend", Level.LONG)
     rates = [_drift("drift", "drift_rate"), _drift("standard error", "drift_error")]
     rates.append(column("stick_slip_amplitude"))
     caption = "Drift, and the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."
@@ -313,7 +322,7 @@ def _fits(answer: Part) -> Iterator[Block]:
         text_column("material", lambda one: one.material),
         text_column("environment", lambda one: one.environment),
         text_column("tests", lambda one: str(one.tests)),
-        column("friction"),
+        Column("friction", _friction),
         column("standard_error"),
         column("standard_deviation", head="scatter of a sample"),
         text_column("rests on", lambda one: one.scatter_source),
@@ -394,7 +403,12 @@ def _conditions(test: Part) -> Iterator[str]:
     yield from (f"{name} {known.get(name)}" for name in ("sample", "test") if name in known)
     for name in ("temperature", "slip_speed", "pressure", "normal_force", "cycle_time"):
         if name in known:
-            yield f"{'mean pressure' if name == 'pressure' else quantity(name).label} {told(known, name)}"
+            yield f"{_plain(name)} {told(known, name)}"
+
+
+def _plain(name: str) -> str:
+    """Return the words of a condition: those of its key, not of a ball in a pocket."""
+    return "mean pressure" if name == "pressure" else name.replace("_", " ")
 
 
 # --- the figure of a test -----------------------------------------------------------------------
@@ -524,9 +538,9 @@ def _beside(test: Part, name: str, letter: str) -> Panel:
     values = course.get(name)
     ends = (Across(at=one, colour=GREY, line="--") for one in (test.run_in_end, test.steady_end))
     return Panel(
-        title=f"{letter}  {quantity(name).label.capitalize()}",
+        title=f"{letter}  {_plain(name).capitalize()}",
         x=_axis_along(test, course.along[0], max(course.along[-1], test.steady_end)),
-        y=axis(name, course.unit(name), values),
+        y=axis(name, course.unit(name), values, label=_plain(name)),
         marks=(Trace(x=course.along, y=values, colour=BLUE, width=0.8), *ends),
     )
 

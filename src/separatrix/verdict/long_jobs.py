@@ -325,8 +325,8 @@ class Runner:
 
         with _noticed(self.stop):
             try:
-                submit(() if self.stop.is_set else places)
                 report()
+                submit(() if self.stop.is_set else places)
                 while len(results) < len(wanted) and not self.stop.is_set:
                     with contextlib.suppress(Empty, Interrupted):
                         place, future = done.get(timeout=LOOK)

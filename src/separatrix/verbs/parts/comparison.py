@@ -119,13 +119,14 @@ MAIN = ("margin", "probability_stable", "critical_friction", "restitution_factor
 """Names of results that a reader decides by, beside the verdicts, and the numbers behind them."""
 
 NORMAL_95 = 1.959963984540054
+MOST = 1e150  # magnitude from which a number of a document is damage; below it the square is finite
 BESIDE = ("record", "table", "other_tests", "distribution")
 """Parts of a resolved study that are not inputs: whole records of the library."""
 
 
 def is_number(value: object) -> TypeGuard[float]:
     """Whether a value of a document is a finite number; true and false are not."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and -MOST < value < MOST
 
 
 def difference_interval(

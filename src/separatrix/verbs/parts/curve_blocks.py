@@ -276,15 +276,13 @@ def own_point(curve: Part) -> list[Block]:
 
 def band_words(curve: Part, at: Part) -> str:
     """Return between which frictions the disturbance decides at a point."""
+    low = "There is no friction at which runs settle or roll from every disturbance"
     if "critical_friction_low" in at:
         low = f"From every disturbance runs settle or roll below {told(at, 'critical_friction_low')}"
-    else:
-        low = "From some disturbance runs whirl at every friction"
+    high = f"up to {told(curve, 'searched_friction')} there is none above which they whirl from every one"
     if "critical_friction_high" in at:
-        high = f", and whirl above {told(at, 'critical_friction_high')}."
-    else:
-        high = f"; up to {told(curve, 'searched_friction')} none makes them whirl from every one."
-    return low + high
+        high = f"they whirl from every one above {told(at, 'critical_friction_high')}"
+    return f"{low}; {high}."
 
 
 def _sentence(reason: str) -> str:
