@@ -70,7 +70,7 @@ def test_a_click_in_a_map_simulates_the_cage_there(view, server, ranked, folder)
 def test_a_log_is_dropped_and_its_running_in_moved(view, server, tmp_path):
     """A click in its figure moves the end of running-in, and the page shows the new answer."""
     rows = "".join(f"{i / 10},{0.2 + 0.01 * (i % 7)}\n" for i in range(400))
-    (tmp_path / "log.csv").write_text(f"time [s],friction\n{rows}", encoding="utf-8")
+    (tmp_path / "log.csv").write_text(f"time [s],friction [-]\n{rows}", encoding="utf-8")
     page = view()
     page.goto(f"{server.address}/logs")
     page.set_input_files("#pick", tmp_path / "log.csv")
