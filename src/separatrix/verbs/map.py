@@ -358,7 +358,7 @@ def _cells(answer: Part) -> Iterator[Mark]:
         was_run = [one for one in answer.points if one.runs]
         name = "was run; elsewhere the points around agree"
         at: dict[str, Any] = {"x": [one.x for one in was_run], "y": [one.y for one in was_run]}
-        yield Trace(**at, name=name, line="", marker="o", size=2.2, is_open=True, width=0.5)
+        yield Trace(**at, name=name, line="", marker="o", size=2.2, is_open=True, has_halo=True, width=0.5)
 
 
 def _state(point: Part) -> str:
@@ -401,7 +401,7 @@ def _study(answer: Part) -> Iterator[Mark]:
         words = ", ".join(
             f"{quantity(one.parameter).label} {_value(one, one.here)}" for one in (answer.x, answer.y)
         )
-        look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True}
+        look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
         yield Trace(x=at[:1], y=at[1:], name="the study itself", hover=(f"the study: {words}",), **look)
 
 

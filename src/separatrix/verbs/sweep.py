@@ -367,7 +367,7 @@ def ways(answer: Part, cases: Sequence[Part]) -> list[Way]:
             Way(parameter_axis(name, units[name], sorted({*known})), known, False) for name, known in chosen
         ]
     names: tuple[str, ...] = ()
-    label = "case"
+    label = "case [-]"
     if len(cases) <= MOST_NAMED:
         texts = [
             [value_of(one, one.name, case.get(one.name)).text for one in answer.parameters] for case in cases

@@ -73,7 +73,7 @@ QUANTITIES: dict[str, Quantity] = {
     "free_rolling_offset": Q(label="free-rolling offset of the creep", digits=4),
     "creep_increment": Q(label="creep increment", symbol="dxi", unit="%"),
     "traction_coefficient": Q(label="traction coefficient", symbol="C_T", digits=4),
-    "ratio": Q(label="size of the pivoting to rolling ratio", digits=3),
+    "ratio": Q(label="size of the pivoting to rolling ratio", digits=2),
     "shear": Q(label="shear"),
     "along": Q(label="x along rolling"),
     "across": Q(label="y across the groove", digits=2),
