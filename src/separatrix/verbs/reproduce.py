@@ -16,8 +16,7 @@ from separatrix.ground.toml import path_text
 from separatrix.ground.units import Ratio, printable, shown
 from separatrix.present.blocks import Block, Cell, Column, Heading, Level, Note, Page, Table, text_column
 from separatrix.verbs import verb_named
-from separatrix.verbs.parts.comparison import is_number
-from separatrix.verbs.saved_answers import AGAIN, read_answers, refusing_damage
+from separatrix.verbs.saved_answers import AGAIN, is_number, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool, Verb
 
 if TYPE_CHECKING:
