@@ -9,7 +9,7 @@ from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
-from separatrix.present.blocks import Block, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
 
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
@@ -136,15 +136,8 @@ def _properties(study: Json) -> Iterator[tuple[str, ...]]:
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
-    def friction(place: str) -> Any:
-        def words(row: Any) -> str:
-            found = row["friction"].get(place)
-            if found is None:
-                return "not measured"
-            spread = found.get("standard_deviation")
-            return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
-
-        return text_column(place, words)
+    def friction(place: str) -> Column:
+        return text_column(place, lambda row: friction_words(row["friction"].get(place)))
 
     columns = (text_column("candidate", lambda row: row["name"]), *map(friction, ranking["environments"]))
     caption = f"Friction of the candidates as measured, with standard deviation. From {ranking['origin']}."
@@ -152,6 +145,14 @@ def _frictions(ranking: Json, level: Level) -> list[Block]:
     origins = dict.fromkeys(f"{one['source']} ({one['confidence']})" for one in known)
     table = Table("frictions", columns, tuple(ranking["candidates"]), caption, level)
     return [table, *(Note(f"Source of the frictions: {one}.", "legend", level) for one in origins)]
+
+
+def friction_words(found: Json | None) -> str:
+    """Return a measured friction with its standard deviation."""
+    if found is None:
+        return "not measured"
+    spread = found.get("standard_deviation")
+    return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
 
 
 def command(answer: Part) -> str:
