@@ -156,7 +156,9 @@ def list_page(answer: Part) -> Page:
     for kind, rows in grouped((one.kind, one) for one in answer.materials).items():
         known = [one for one in COLUMNS if any(one.cell(row).value not in (None, "") for row in rows)]
         blocks += [Heading(f"{kind.capitalize()}s"), Table(f"{kind}s", tuple(known), tuple(rows))]
-    several = "Of several data of one property the first is listed: `show NAME` has all. The confidence is that in E."
+    several = (
+        "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
+    )
     return Page("Library of materials", _subtitle(answer), (*blocks, Note(several)))
 
 
