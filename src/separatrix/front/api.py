@@ -329,7 +329,7 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     InputError
         One of them is not an answer, or they are of different verbs.
     """
-    from separatrix.verbs.compare import compared
+    from separatrix.verbs.parts.comparison import compared
     from separatrix.verbs.saved_answers import read_answers
 
     sides = [
