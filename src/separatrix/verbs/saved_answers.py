@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NoReturn, TypeGuard
+from typing import NoReturn, TypeGuard
 
 from separatrix.ground.document import Document
 from separatrix.ground.errors import InputError
@@ -125,8 +125,8 @@ def _checked(found: object, where: str) -> Document:
     for key, (kind, words) in ENVELOPE.items():
         if key not in found:
             raise InputError(where, f"lacks {key}", cure=AGAIN)
-        value: Any = found[key]
-        is_right = isinstance(value, kind) and (key not in ("name", "title") or value.strip())
+        value = found[key]
+        is_right = isinstance(value, kind) and (key not in ("name", "title") or str(value).strip())
         if not is_right or (key == "warnings" and not all(isinstance(one, str) for one in value)):
             raise InputError(where, f"is damaged: {key} must be {words}", cure=AGAIN)
     return found
