@@ -25,6 +25,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.verbs.parts.answer_page import friction_words
+from separatrix.verbs.parts.telling import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
@@ -154,8 +155,8 @@ def list_page(answer: Part) -> Page:
     """Return the page of `materials list`: a table for each kind, of what its records have."""
     blocks: list[Block] = []
     for kind, rows in grouped((one.kind, one) for one in answer.materials).items():
-        known = [one for one in COLUMNS if any(one.cell(row).value not in (None, "") for row in rows)]
-        blocks += [Heading(f"{kind.capitalize()}s"), Table(f"{kind}s", tuple(known), tuple(rows))]
+        known = known_columns(COLUMNS, rows)
+        blocks += [Heading(f"{kind.capitalize()}s"), Table(f"{kind}s", known, tuple(rows))]
     several = (
         "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
     )
