@@ -211,7 +211,7 @@ FILM = {
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, [">= 1 \N{MICRO SIGN}m", "see figure", "any", "none"]),
+        ({}, ["1 um to 10 um", "100 nm, 10 um", "any", "none"]),
         ({"restitution_factor": None, "is_any_allowed": True}, ["any"] * 4),
         ({"restitution_factor": None, "reason": "more or less in words"}, ["none"] * 4),
     ],
@@ -220,7 +220,7 @@ def test_allowed_films_are_told_from_the_flag(changes, words):
     """Not from the sentence of the reason."""
     answer = Part({}, {"film_thickness_here": "m"})
     film = Part(FILM | changes, {})
-    assert [sensitivity._thicknesses(answer, place)(film) for place in range(4)] == words
+    assert [sensitivity.thicknesses(answer, place)(film) for place in range(4)] == words
 
 
 @pytest.mark.parametrize(("complete", "said"), [(True, "No case is undecided"), (False, "No finished case")])
