@@ -199,6 +199,7 @@ def test_the_pockets_bound_the_path_by_a_polygon():
     assert AROUND.size == found.size
 
 
+MICRON = "\N{MICRO SIGN}m"
 FILM = {
     "restitution_factor": 0.5,
     "is_any_allowed": False,
@@ -211,7 +212,7 @@ FILM = {
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, ["1 um to 10 um", "100 nm, 10 um", "any", "none"]),
+        ({}, [f"1 {MICRON} to 10 {MICRON}", f"100 nm, 10 {MICRON}", "any", "none"]),
         ({"restitution_factor": None, "is_any_allowed": True}, ["any"] * 4),
         ({"restitution_factor": None, "reason": "more or less in words"}, ["none"] * 4),
     ],

@@ -415,11 +415,15 @@ def _panel(name: str, rows: Sequence[Part]) -> Panel:
             continue
         look = {"colour": VERDICT_COLOURS[row.verdict], "marker": VERDICT_MARKERS[row.verdict], "size": 4.5}
         at = Part({**row.values, "place": place}, row.units)
-        found.append(marks([at], "probability_stable", "place", **look))
+        found.append(marks([at], "probability_stable", "place", hover=_hover, **look))
     names = tuple(row.name + MARK * bool(row.extrapolation) for row in order)
     x = Axis(label="P(stable) [-]", low=-0.02, high=1.02)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=names)
     return Panel(title=_title(name), x=x, y=y, marks=tuple(found))
+
+
+def _hover(row: Part) -> str:
+    return f"{row.name}: {row.verdict}, P(stable) {told(row, 'probability_stable')}"
 
 
 VERB = Verb(
