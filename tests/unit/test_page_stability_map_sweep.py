@@ -10,7 +10,7 @@ from separatrix.verbs.map import map_figure, nearest_words, rows
 from separatrix.verbs.parts.curve_blocks import band_words, linear_law, pocket_friction
 from separatrix.verbs.parts.telling import quantity
 from separatrix.verbs.parts.varied import is_proportional
-from separatrix.verbs.sweep import case_tables, csv_text, envelope_figure, worst_words
+from separatrix.verbs.sweep import case_tables, csv_text, envelope_picture, worst_words
 
 POINT = {"critical_friction_low": 0.1, "critical_friction_high": 0.3}
 
@@ -91,7 +91,7 @@ def test_a_map_says_where_it_changes_next_to_the_study():
     words = nearest_words(mapped())
     assert words.startswith("Next to the study, at film thickness 1 \N{MICRO SIGN}m, the cage begins to whirl ")
     assert "between race friction 0.1 and 0.3." in words
-    assert [row.kind for row in rows(mapped(), [1e-6, 2e-6])] == ["above", "not finished"]
+    assert [row.kind for row in rows(mapped(), [1e-6, 2e-6])] == ["whirls above", "was not finished"]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():
@@ -130,8 +130,9 @@ def test_cases_that_are_alike_have_no_worst():
     """Then the number that they share is told, and no line is drawn."""
     worst = {"case": 0, "quantity": "restitution_factor", "compared": 3, "alike": 3}
     assert worst_words(swept(worst=worst)).startswith("No case is the worst: all 3 with an answer have the same")
-    drawn = envelope_figure(swept(worst=worst)).panels[0].marks
-    assert len(envelope_figure(swept()).panels[0].marks) == len(drawn) + 1
+    found = (swept(worst=worst), swept())
+    alike, other = (len(envelope_picture(one).figure().panels[0].marks) for one in found)
+    assert other == alike + 1
 
 
 def test_the_table_of_cases_is_written_with_units():
