@@ -118,9 +118,12 @@ def _names(answer: Part) -> tuple[str, str]:
 
 
 def _with_units(answer: Part, point: Part) -> Part:
-    """Return a point, or a change, with the units of its place, which are those of the axes."""
+    """Return a point, or a change, with its place under the names of the parameters, and in their units."""
     x, y = (one.get("unit") or "-" for one in (answer.x, answer.y))
-    return Part(point.values, {**point.units, "x": x, **dict.fromkeys(("y", "y_low", "y_high", "margin"), y)})
+    place = {answer.x.parameter: point.x, answer.y.parameter: point.get("y")}
+    rest = {key: value for key, value in point.values.items() if key not in ("x", "y", *place)}
+    units = dict(zip(place, (x, y), strict=True)) | dict.fromkeys(("y_low", "y_high", "margin"), y)
+    return Part(place | rest, {**point.units, **units})
 
 
 def counted(answer: Part) -> str:

@@ -53,8 +53,10 @@ ETA = "restitution_factor"
 WORST = {"margin": "lowest", "probability_stable": "lowest", ETA: "highest"}
 TIMES = ("below_margin", "stable", "unstable", "undecided", "refused")
 SOLVED = ("time_share", ETA, "race_damping", "load_inner", "contact_angle_inner", "max_pressure_inner")
-JUDGED = ("time_share", ETA, "restitution_threshold", "margin", "probability_stable", "largest_offset")
-JUDGED += ("largest_contact_force",)
+JUDGED = (
+    *("time_share", ETA, "restitution_threshold", "margin"),
+    *("probability_stable", "largest_offset", "largest_contact_force"),
+)
 """Columns of a table of cases: of the chain alone, and with verdicts or margins."""
 
 FEW, SOME = 12, 40

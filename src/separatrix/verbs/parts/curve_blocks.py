@@ -29,6 +29,11 @@ ENDS = ("critical_friction_low", "critical_friction_high")
 HEIGHTS = ("critical_friction", "scatter_high", "critical_friction_high")
 """Numbers of a point whose largest is the top of the picture; the limits are drawn as far as they go."""
 
+WIDE = 0.006
+"""Half the width of a band that is known at the bearing's own restitution factor alone."""
+
+# The picture.
+
 # The picture.
 
 
@@ -104,21 +109,18 @@ def _damping(eta: float) -> float:
 
 def own_marks(answer: Part, curve: Part, top: float) -> list[Mark]:
     """Return the restitution factors of the bearing as upright lines, its critical friction and its band."""
-    chain, found = answer.chain, list[Mark]()
-    free = "the same, balls free to spin"
-    for name, words, line in (
-        ("restitution_factor", "this bearing", "-"),
-        ("restitution_factor_free_spin", free, ":"),
-    ):
-        text = f"{words}, $eta$ = {told(chain, name)}"
-        found.append(Across(at=getattr(chain, name), name=text, line=line, hover=text))
+    found: list[Mark] = []
+    for name, words, line in (("", "this bearing", "-"), ("_free_spin", "the same, balls free to spin", ":")):
+        key = f"restitution_factor{name}"
+        text = f"{words}, $eta$ = {told(answer.chain, key)}"
+        found.append(Across(at=answer.chain.get(key), name=text, line=line, hover=text))
     here = curve.get("here")
     if here is None:
         return found
     if not curve.band:
-        at = [here.restitution_factor] * 2
-        look: dict[str, Any] = {"colour": BLUE, "width": 7.0, "opacity": 0.25}
-        found.append(Trace(x=at, y=_ends(here, top), name=_band_name(curve), **look))
+        at, (low, high) = here.restitution_factor, _ends(here, top)
+        look: dict[str, Any] = {"name": _band_name(curve), "opacity": 0.25}
+        found.append(Band(x=(at - WIDE, at + WIDE), low=[low] * 2, high=[high] * 2, **look))
     if "critical_friction" in here:
         look = {"marker": "D", "size": 4.5, "is_open": True}
         look["name"] = f"its critical friction, {told(here, 'critical_friction')}"
@@ -246,13 +248,9 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         column("critical_friction", of=lambda row: linear.get(row.restitution_factor), head="linear limit"),
     )
     reasons = dict.fromkeys(one.reason for one in points if "reason" in one)
-    eta, kicks = "restitution_factor", {"kick": curve.kicks}
-    rows = [
-        (told(one, eta), each)
-        for one in points_of(curve)
-        if one.kick_low
-        for each in each_of(Part({**one.values, **kicks}, {**one.units, "kick": curve.unit("kicks")}))
-    ]
+    eta, units = "restitution_factor", {"kicks": curve.unit("kicks")}
+    each = [(one, Part({**one.values, "kicks": curve.kicks}, one.units | units)) for one in points_of(curve)]
+    rows = [(told(one, eta), row) for one, part in each if one.kick_low for row in each_of(part)]
     return [
         Equation(
             r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}",
