@@ -10,7 +10,7 @@ from separatrix.verbs.map import map_figure, nearest_words, rows
 from separatrix.verbs.parts.curve_blocks import band_words, linear_law, pocket_friction
 from separatrix.verbs.parts.telling import quantity
 from separatrix.verbs.parts.varied import is_proportional
-from separatrix.verbs.sweep import case_tables, csv_text, envelope_picture, worst_words
+from separatrix.verbs.sweep import case_tables, csv_text, envelope_figure, worst_words
 
 POINT = {"critical_friction_low": 0.1, "critical_friction_high": 0.3}
 
@@ -130,8 +130,7 @@ def test_cases_that_are_alike_have_no_worst():
     """Then the number that they share is told, and no line is drawn."""
     worst = {"case": 0, "quantity": "restitution_factor", "compared": 3, "alike": 3}
     assert worst_words(swept(worst=worst)).startswith("No case is the worst: all 3 with an answer have the same")
-    found = (swept(worst=worst), swept())
-    alike, other = (len(envelope_picture(one).figure().panels[0].marks) for one in found)
+    alike, other = (len(envelope_figure(one).panels[0].marks) for one in (swept(worst=worst), swept()))
     assert other == alike + 1
 
 

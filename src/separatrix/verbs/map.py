@@ -159,25 +159,22 @@ def nearest_words(answer: Part) -> str:
     at = min(values, key=lambda value: abs(value - x.here))
     found = []
     for row in rows(answer, [at]):
-        if row.change is None:
-            found.append(row.kind)
-            continue
-        verb = "begins" if row.change.whirls_above else "ceases"
-        found.append(f"{verb} to whirl between {_at(y, row.change.y_low)} and {_value(y, row.change.y_high)}")
+        words = row.kind
+        if row.change is not None:
+            words = "begins to whirl" if row.change.whirls_above else "ceases to whirl"
+            words += f" between {_at(y, row.change.y_low)} and {_value(y, row.change.y_high)}"
+        found.append(words)
     own = f"{_at(x, x.here)} and {_at(y, y.here)}" if "here" in y else _at(x, x.here)
     return f"Next to the study, at {_at(x, at)}, the cage {', and '.join(found)}. The study itself has {own}."
 
 
 def runs_words(answer: Part) -> str:
     """Return how many runs a point has, of which length, from which disturbance."""
-    rule = answer.stopping
-    words = said(rule, "{most_runs} at every point")
-    if rule.agreeing_runs != rule.most_runs:
-        words = said(
-            rule,
-            "up to {most_runs}, stopped after {agreeing_runs} that agree (risk of the wrong side "
-            "{wrong_side_probability}, of another decision {other_decision_probability})",
-        )
+    words = said(
+        answer.stopping,
+        "up to {most_runs}, stopped after {agreeing_runs} that agree (risk of the wrong side "
+        "{wrong_side_probability}, of another decision {other_decision_probability})",
+    )
     kick = "" if KICK in _names(answer) else said(answer, ", from an initial disturbance of {kick}")
     return f"{words}, each of {told(answer, 'duration')}{kick}"
 
@@ -220,21 +217,14 @@ def rows(answer: Part, columns: Sequence[float]) -> list[Row]:
 
 def _kind(column: Sequence[Part]) -> str:
     """Return what the cage does in a column without a change."""
-    sides = {_side(one) for one in column if one.runs}
     if any(_state(one) == "NOT_RUN" for one in column):
         return "was not finished"
-    if not sides:
-        return "was refused"
-    return (
-        "has no boundary that was found"
-        if 0 in sides
-        else f"whirls {'everywhere' if 1 in sides else 'nowhere'}"
-    )
-
-
-def _side(point: Part) -> int:
-    """Return 1 where more than half of the runs whirl, -1 where fewer do, 0 where neither is sure."""
-    return 1 if point.probability_low > 0.5 else -1 if point.probability_high < 0.5 else 0
+    run = [one for one in column if one.runs]
+    if run and all(one.probability_low > 0.5 for one in run):
+        return "whirls everywhere"
+    if run and all(one.probability_high < 0.5 for one in run):
+        return "whirls nowhere"
+    return "has no boundary that was found"
 
 
 def bands(answer: Part) -> Iterator[Table]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -120,7 +120,11 @@ def page(answer: Part) -> Page:
             ("Verdicts", ", ".join(f"{count} {word}" for word, count in sorted(counts.items()))),
             *((f"Time {quantity(name).label}", cell(duty, name)) for name in TIMES if duty and name in duty),
         ),
-        *([envelope_picture(answer)] if has(answer, "cage_speed") else []),
+        *(
+            [Picture("envelope", lambda: envelope_figure(answer), ENVELOPE)]
+            if has(answer, "cage_speed")
+            else []
+        ),
         Heading("Cases"),
         *case_tables(answer),
     )
@@ -229,11 +233,12 @@ def files(answer: Part, *_: Any) -> Iterator[tuple[str, bytes]]:
 
 # The picture.
 
-MOST_PANELS, MOST_DRAWN = 3, 1000
-"""Parameters that have a panel, and cases that are drawn."""
+ENVELOPE = "Stability and frequencies over the cases; orders are those of shaft, cage and balls."
+MOST_PANELS = 3
+"""Parameters that have a panel."""
 
 LOOKS = {
-    "restitution_factor": (BLACK, "-", "o"),
+    "restitution_factor": (ORANGE, "-", "o"),
     "restitution_threshold": (BLUE, "-", "s"),
     "linear_whirl_frequency": (BLACK, "-", "_"),
     "inner_pass_frequency": (PURPLE, ":", "v"),
@@ -252,31 +257,20 @@ class Way(NamedTuple):
     is_line: bool
 
 
-def ways(answer: Part, cases: Sequence[Part]) -> list[Way]:
+def ways(answer: Part) -> list[Way]:
     """Return the axes of the picture: the only parameter, several, or the cases of a duty cycle."""
-    values = {one.name: [case.get(one.name) for case in cases] for one in answer.parameters}
+    values = {one.name: [case.get(one.name) for case in answer.cases] for one in answer.parameters}
     units = {one.name: one.get("unit") or "-" for one in answer.parameters}
-    only = next(iter(values.values()))
-    is_line = len(values) == 1 and all(a < b for a, b in pairwise(only))
+    is_line = len(values) == 1 and all(a < b for each in values.values() for a, b in pairwise(each))
     if not is_line and (len(values) == 1 or has(answer, "time_share")):
-        names = tuple(str(one.case) for one in cases) if len(cases) <= SOME else ()
-        ends = {"low": cases[0].case - 0.6, "high": cases[-1].case + 0.6}
-        return [Way(Axis(label="case", names=names, **ends), "case", False)]
+        return [Way(Axis(label="case", low=-0.6, high=len(answer.cases) - 0.4), "case", False)]
     chosen = [*values.items()][:MOST_PANELS]
     return [Way(parameter_axis(name, units[name], sorted({*known})), name, is_line) for name, known in chosen]
 
 
-def envelope_picture(answer: Part) -> Picture:
-    """Return stability and frequencies over the cases, evenly chosen of very many."""
-    cases = answer.cases[:: -(-len(answer.cases) // MOST_DRAWN)]
-    part = "" if len(cases) == len(answer.cases) else f" {len(cases)} of {len(answer.cases)} cases are drawn."
-    caption = f"Stability and frequencies over the cases; orders are those of shaft, cage and balls.{part}"
-    return Picture("envelope", lambda: envelope_figure(answer, cases), caption)
-
-
-def envelope_figure(answer: Part, cases: Sequence[Part]) -> Figure:
+def envelope_figure(answer: Part) -> Figure:
     """Return restitution factor, its threshold, P(stable) and the frequencies over the parameters."""
-    columns = [[*_panels(answer, cases, way)] for way in ways(answer, cases)]
+    columns = [[*_panels(answer, way)] for way in ways(answer)]
     return Figure(
         rows=tuple(zip(*columns, strict=True)),
         heading=figure_heading(answer, varied=[one.name.rpartition(".")[2] for one in answer.parameters]),
@@ -285,57 +279,52 @@ def envelope_figure(answer: Part, cases: Sequence[Part]) -> Figure:
     )
 
 
-def _panels(answer: Part, cases: Sequence[Part], way: Way) -> Iterator[Panel]:
-    upright = [*_upright(answer, cases, way)]
+def _panels(answer: Part, way: Way) -> Iterator[Panel]:
+    upright = [*_upright(answer, way)]
 
     def panel(title: str, y: Axis, found: Sequence[Mark]) -> Panel:
         return Panel(title=title, x=way.axis, y=y, marks=(*found, *upright))
 
-    known = [name for name in LOOKS if has(answer, name)]
-    factors = [_over(answer, cases, way, name) for name in known if "frequency" not in name]
+    factors: list[Mark] = []
+    frequencies: list[Mark] = []
+    for name, (colour, line, marker) in LOOKS.items():
+        if has(answer, name):
+            among = frequencies if "frequency" in name else factors
+            look = {"colour": colour, "line": line} if way.is_line else {"colour": colour, "marker": marker}
+            among.append(_over(answer, answer.cases, way, name, size=3.0, **look))
     if factors:
         title = "Restitution factor" + " and its threshold" * len(factors[1:])
         yield panel(title, axis(ETA, "-", [], low=-0.03, high=1.05), factors)
     if has(answer, "probability_stable"):
+        chances = []
+        for word, colour in VERDICT_COLOURS.items():
+            those = [one for one in answer.cases if one.verdict == word]
+            look = {"colour": colour, "marker": VERDICT_MARKERS[word], "name": word}
+            chances += [_over(answer, those, way, "probability_stable", **look)] if those else []
         y = axis("probability_stable", "-", [], low=-0.06, high=1.06)
-        yield panel("Probability that the cage is stable", y, [*_chances(answer, cases, way)])
-    frequencies = [_over(answer, cases, way, name) for name in known if "frequency" in name]
-    whirling = [one for one in cases if one.get("orbit_frequency")]
+        yield panel("Probability that the cage is stable", y, chances)
+    whirling = [one for one in answer.cases if one.get("orbit_frequency")]
     if whirling:
         x, speed = [one.get(way.name) for one in whirling], [abs(one.orbit_frequency) for one in whirling]
-        look: dict[str, Any] = {"line": "", "marker": "^", "size": 5.0, "colour": VERMILION}
-        frequencies.append(Trace(x=x, y=speed, name=quantity("orbit_frequency").label, **look))
+        more: dict[str, Any] = {"line": "", "marker": "^", "size": 5.0, "colour": VERMILION}
+        frequencies.append(Trace(x=x, y=speed, name=quantity("orbit_frequency").label, **more))
     yield panel("Frequencies on the housing", axis("frequency", "Hz", [], is_log=True), frequencies)
 
 
-def _over(answer: Part, cases: Sequence[Part], way: Way, name: str) -> Trace:
-    """Return a number of the cases with its interval, as a line or as marks where a line has no meaning."""
-    colour, line, marker = LOOKS[name]
-    known = quantity(name)
-    is_bare = way.is_line and "frequency" in name
-    look = {"line": line if way.is_line else "", "marker": "" if is_bare else marker, "size": 3.0}
-    symbol = f" ${known.symbol}$" if known.symbol else ""
-    hover = _hover(answer, name)
-    return marks(cases, way.name, name, hover=hover, name=known.label + symbol, colour=colour, **look)
+def _over(answer: Part, cases: Sequence[Part], way: Way, what: str, **look: Any) -> Trace:
+    """Return a number of the cases with its interval."""
+    label = quantity(what).label
+
+    def hover(case: Part) -> str:
+        return f"{case_words(answer, case)}: {label} {told(case, what)}"
+
+    return marks(cases, way.name, what, hover=hover, **({"name": label} | look))
 
 
-def _hover(answer: Part, name: str) -> Callable[[Part], str]:
-    return lambda case: f"{case_words(answer, case)}: {quantity(name).label} {told(case, name)}"
-
-
-def _chances(answer: Part, cases: Sequence[Part], way: Way) -> Iterator[Mark]:
-    for word, colour in VERDICT_COLOURS.items():
-        those = [one for one in cases if one.verdict == word]
-        look = {"colour": colour, "marker": VERDICT_MARKERS[word], "name": word}
-        if those:
-            hover = _hover(answer, "probability_stable")
-            yield marks(those, way.name, "probability_stable", hover=hover, **look)
-
-
-def _upright(answer: Part, cases: Sequence[Part], way: Way) -> Iterator[Mark]:
+def _upright(answer: Part, way: Way) -> Iterator[Mark]:
     """Yield the places of refused cases, and of the worst."""
     worst = worst_case(answer)
-    for one in cases:
+    for one in answer.cases:
         if is_refused(one):
             yield Across(at=one.get(way.name), colour=GREY, line=":", name="refused")
         if worst is not None and one.case == worst.case:

@@ -248,9 +248,9 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         column("critical_friction", of=lambda row: linear.get(row.restitution_factor), head="linear limit"),
     )
     reasons = dict.fromkeys(one.reason for one in points if "reason" in one)
-    eta, units = "restitution_factor", {"kicks": curve.unit("kicks")}
-    each = [(one, Part({**one.values, "kicks": curve.kicks}, one.units | units)) for one in points_of(curve)]
-    rows = [(told(one, eta), row) for one, part in each if one.kick_low for row in each_of(part)]
+    own = {"kicks": curve.unit("kicks")}
+    each = [Part({**one.values, "kicks": curve.kicks}, {**one.units, **own}) for one in points_of(curve)]
+    rows = [(one.restitution_factor, row) for one in each if one.kick_low for row in each_of(one)]
     return [
         Equation(
             r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}",
@@ -259,7 +259,7 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         Table("stability curve", columns, tuple(points), caption, level),
         *(Note(_sentence(one), "legend", level) for one in reasons),
         all_numbers("points of the curve", (), ((one,) for one in points_of(curve))),
-        all_numbers("curve by disturbance", (quantity(eta).label,), rows),
+        all_numbers("curve by disturbance", ("restitution factor",), rows),
     ]
 
 

@@ -96,7 +96,7 @@ def each_of(part: Part) -> Iterator[Part]:
 
 
 def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]) -> Table:
-    """Return what some parts have for a workbook; a row is a label for each of `heads`, and then its part."""
+    """Return what some parts have for a workbook; a row is a value for each of `heads`, and then its part."""
     known = tuple(rows)
     kinds: dict[str, bool] = {}
     for key, value in (pair for *_, part in known for pair in part.values.items()):
@@ -106,7 +106,7 @@ def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]
     ends = {end for key in kinds for end in quantity(key).ends or (f"{key}_low", f"{key}_high")}
 
     def label(place: int) -> Column:
-        return text_column(heads[place], lambda row: row[place])
+        return Column(heads[place], lambda row: Cell(row[place], quantity(heads[place])))
 
     def held(key: str) -> Column:
         if kinds[key]:
