@@ -6,4 +6,4 @@ import pytest
 @pytest.fixture
 def undrawn(monkeypatch):
     """Leave the pictures of answers out, where a test is about something else."""
-    monkeypatch.setattr("separatrix.figures.save_all", lambda *_: None)
+    monkeypatch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)

@@ -8,7 +8,6 @@ from separatrix.cage import MovingCage, moving_cage, settings_for
 from separatrix.chain.impact_restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
-from separatrix.ground.plain_data import plain
 from separatrix.study.candidates import require_friction
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
@@ -23,9 +22,7 @@ from separatrix.study.study import (
     PocketShape,
     StabilitySettings,
 )
-from separatrix.told.chain import basis
 from separatrix.verbs.answer_records import OfCage
-from separatrix.verbs.shapes import shape
 
 STUDY = read_study("cryogenic-turbopump")
 POLYMER = Material(name="polymer", elastic_modulus=5e9, poisson_ratio=0.4)
@@ -200,21 +197,3 @@ def of_cage(asked):
     """The cage of a study, with its chain."""
     solution = solve(asked)
     return OfCage(solution=solution, cage=moving_cage(solution, 0.0))
-
-
-def test_results_and_report_say_how_far_balls_lead_and_lag():
-    """Beside half their play, with what the harmonics keep; nothing of it where all balls run alike."""
-    loaded = of_cage(study(operation=replace(STUDY.operation, radial_load=100.0, moment=0.0)))
-    chain = plain(shape(loaded)["chain"])
-    assert chain["half_play"] == 3e-4
-    assert chain["lead_amplitude"] == loaded.cage.lead_amplitude
-    assert dict(basis(STUDY, loaded))["Free balls lead and lag"] == (
-        "up to 63.57 um (pockets 300 um each way); the harmonics used contain 100 % of the speed variance"
-    )
-    turning = replace(STUDY, operation=replace(STUDY.operation, outer_speed=-100.0, moment=0.0))
-    assert dict(basis(turning, loaded))["Operation"] == (
-        "inner ring 15000 rpm, outer ring -954.9 rpm, 3000 N axial"
-    )
-    alike = of_cage(STUDY)
-    assert (alike.cage.lead_amplitude, alike.solution.orbital_share) == (0.0, None)
-    assert "Free balls lead and lag" not in dict(basis(STUDY, alike))

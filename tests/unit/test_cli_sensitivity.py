@@ -12,8 +12,6 @@ from pathlib import Path
 import pytest
 from commands import document, refused
 
-import separatrix
-from separatrix.figures import draw
 from separatrix.front import main
 from separatrix.verdict import input_shares as uncertain
 
@@ -141,29 +139,6 @@ def test_certain_inputs_and_frictions_alone_are_answered(capsys):
     known = row(found, "air", "A")
     assert known["restitution_factor_low"] == known["restitution_factor_high"]
     assert found["shares"] == []
-
-
-def test_text_and_files(capsys):
-    """Sections in their order; document, dataset and pictures in the folder, and each drawn again from it."""
-    assert main(["sensitivity", "small.toml", "--samples", "64", "--out", "here", "--quiet"]) == 0
-    text = capsys.readouterr().out
-    heads = ("With the uncertain", "Air", "Vacuum", "Over all", "Uncertain inputs", "Main sources",
-             "Which test", "Which friction", "Which film", "Basis of this")  # fmt: skip
-    text = text[text.index(heads[0]) :]
-    heads = (heads[0], *(f"\n{head}" for head in heads[1:]))
-    places = [text.index(head) for head in heads]
-    assert places == sorted(places)
-    assert "0.150 (" in text
-    assert max(len(line) for line in text.splitlines()) <= 104
-    pictures = {path.stem for path in Path("here").glob("*.png")}
-    assert {"sensitivity-probabilities", "sensitivity-convergence", "sensitivity-1-air",
-            "sensitivity-2-vacuum", "sensitivity-film"} <= pictures  # fmt: skip
-    data = separatrix.load(Path("here") / "sensitivity.json")
-    assert {name for name, _ in draw("sensitivity", data)} == pictures
-    assert data["material_probability_stable"].attrs["units"] == "-"
-    assert data["cloud_friction"].dims == ("environment", "material", "sample")
-    assert data["film_restitution_factor"].dims == ("material", "race_friction", "film_thickness")
-    assert data["film_thickness"].attrs["units"] == "m"
 
 
 def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):

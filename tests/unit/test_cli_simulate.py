@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import html
-import itertools
 import json
 import re
 from pathlib import Path
@@ -13,10 +11,7 @@ import pytest
 from commands import document, refused
 
 import separatrix
-from separatrix import figures
 from separatrix.cage import run_ensemble, settings_for
-from separatrix.figures.animation import animate
-from separatrix.figures.view import page, view
 from separatrix.front import main
 
 SMALL = """
@@ -69,7 +64,7 @@ def folder(tmp_path_factory):
         for name, text in (("small", SMALL), ("space", SPACE), ("heavy", heavy)):
             (place / f"{name}.toml").write_text(text)
             if name == "heavy":  # its pictures are looked at by no test
-                patch.setattr("separatrix.figures.save_all", lambda *_: None)
+                patch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)
             assert main(["simulate", str(place / f"{name}.toml"), "--out", str(place / name), "--quiet"]) == 0
     return place
 
@@ -255,121 +250,6 @@ def test_wrong_options_are_refused_in_one_line(options, said, capsys):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_ctrl_c_in_an_animation_writes_nothing(folder, capsys, monkeypatch):
-    """Files of an answer come all or none, its GIF among them."""
-
-    def stop(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("separatrix.figures.animation.draw_cage", stop)
-    assert main(["simulate", str(folder / "small.toml"), "--animate", "gif", "--out", "cut"]) == 130
-    assert "no file was written" in capsys.readouterr().err
-    assert not list(Path().iterdir())
-
-
-def test_an_animation_is_written_beside_the_figures(folder, capsys, monkeypatch):
-    """`--animate gif`: a moving picture of more than one frame, and nothing half-written."""
-    from PIL import Image
-
-    monkeypatch.setattr("separatrix.figures.animation.frame_moments", lambda _: np.arange(3))
-    all_of_them = figures.FIGURES["simulate"]
-    monkeypatch.setitem(figures.FIGURES, "simulate", lambda data: itertools.islice(all_of_them(data), 1))
-    options = ["--animate", "gif", "--out", "moving", "--quiet"]
-    assert main(["simulate", str(folder / "small.toml"), *options]) == 0
-    names = {path.name for path in Path("moving").iterdir()}
-    assert {"simulate.json", "simulate.nc", "simulation.gif", "simulation.png"} <= names
-    assert not [name for name in names if name.startswith(".")]
-    with Image.open("moving/simulation.gif") as found:
-        assert found.n_frames > 1
-    animate(separatrix.load("moving/simulate.json"), Path("again.gif"))  # from what was saved, to the byte
-    assert Path("again.gif").read_bytes() == Path("moving/simulation.gif").read_bytes()
-
-
-def test_two_runs_are_compared(folder, capsys):
-    """The numbers of both, the inputs that differ, and a figure."""
-    pair = [str(folder / "small"), str(folder / "heavy" / "simulate.json")]
-    assert main(["compare", *pair, "--out", "both"]) == 0
-    text = capsys.readouterr().out
-    assert "cage.mass" in text
-    found = json.loads(Path("both/compare.json").read_text())
-    assert [run["title"] for run in found["answers"]] == ["A small run", "A heavy cage"]
-    mass = {"key": "cage.mass", "first": 0.025, "second": 0.05, "unit": "kg"}
-    assert found["differences"] == [mass]
-    saved = [separatrix.load(folder / name / "simulate.json") for name in ("small", "heavy")]
-    offset = next(row for row in found["rows"] if row["name"] == "largest_offset")
-    sides = [offset[side]["value"] for side in ("first", "second")]
-    assert sides == [float(one["largest_offset"]) for one in saved]
-    names = {path.name for path in Path("both").iterdir()}
-    assert names == {"compare.json", "compare.txt", "comparison.png", "comparison.svg"}
-    assert text.partition("Results")[0] in Path("both/compare.txt").read_text(encoding="ascii")
-    ((_, figure),) = figures.draw("compare", *saved)
-    figures.save(figure, Path("again.svg"))
-    assert Path("again.svg").read_bytes() == Path("both/comparison.svg").read_bytes()
-
-
-def test_options_and_frictions_that_differ_are_inputs_that_differ(folder, capsys):
-    """Two kicks and seeds of one study, another friction; no key that a study file does not know."""
-    other = SMALL.replace("= 0.1", "= 0.2").replace("[stability]", "[stability]\nseed = 2")
-    (folder / "other.toml").write_text(other)
-    other = document(capsys, "simulate", str(folder / "other.toml"), "--kick", "1 m/s", "--run", "1")
-    (folder / "other.json").write_text(json.dumps(other))
-    pair = folder / "small" / "simulate.json", folder / "other.json"
-    found = document(capsys, "compare", *map(str, pair))
-    small = json.loads(pair[0].read_text())
-    assert {one["key"]: (one["first"], one["second"]) for one in found["differences"]} == {
-        "cage.ball_cage_friction": (0.1, 0.2),
-        "stability.seed": (1, 2),
-        "--kick": (small["kick"], 1.0),
-        "--run": (0, 1),
-    }
-
-
-def test_the_friction_that_a_candidate_gives_is_compared(folder, capsys):
-    """One run takes it from the first candidate, the other from the study; the table's range is no input."""
-    own = SMALL.replace("ball_cage_friction = 0.1", "")
-    (folder / "candidate.toml").write_text(own)
-    run = document(capsys, "simulate", str(folder / "candidate.toml"))
-    (folder / "own.json").write_text(json.dumps(run))
-    pair = folder / "small" / "simulate.json", folder / "own.json"
-    found = document(capsys, "compare", *map(str, pair))["differences"]
-    taken = run["cage"]["ball_cage_friction"]
-    assert found == [{"key": "cage.ball_cage_friction", "first": 0.1, "second": taken, "unit": "-"}]
-
-
-def test_a_saved_run_of_numbers_that_cannot_be_drawn_is_refused(folder, capsys, tmp_path):
-    """One line, not a traceback of the plotting library."""
-    usual = folder / "small" / "simulate.json"
-    found = json.loads(usual.read_text())
-    said = "must have finite numbers below 1e+30 in position"
-    for value in (1e300, None):
-        found["position"][0] = [value, 0.0]
-        (tmp_path / "odd.json").write_text(json.dumps(found))
-        assert main(["compare", str(tmp_path / "odd.json"), str(usual)]) == 2
-        assert said in capsys.readouterr().err
-
-
-def test_a_comparison_as_a_document_writes_nothing(folder, capsys):
-    """`--json` without `--out`: the document alone."""
-    same = [str(folder / "small" / "simulate.json")] * 2
-    assert document(capsys, "compare", *same)["differences"] == []
-    assert list(Path().iterdir()) == []
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_what_is_no_simulation_is_not_compared(folder, capsys):
-    """Nothing there, another verb's answer, a file that is no document."""
-    small, toml = str(folder / "small"), str(folder / "small.toml")
-    assert main(["bearing", toml, "--out", str(folder / "bearing")]) == 0
-    capsys.readouterr()
-    for other, said in (
-        ("nowhere", "cannot be read: no such file"),
-        (str(folder / "bearing" / "bearing.json"), "must be an answer of bearing, as"),
-        (toml, "is not the document of an answer"),
-    ):
-        assert said in refused(capsys, "compare", other, small)
-
-
-@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("motion", ["plane", "space"])
 def test_balls_that_their_races_grip_have_an_infinite_damping(folder, capsys, motion):
     """A restitution factor of 1, the end of a map's axis: null in the document, in words in the text."""
@@ -381,62 +261,3 @@ def test_balls_that_their_races_grip_have_an_infinite_damping(folder, capsys, mo
     assert found["chain"]["race_damping"] > 0.0
     assert not [one for one in found["warnings"] if "not finite" in one]
     assert "infinite, for a restitution factor of 1 in place of the study's" in text
-
-
-def test_every_picture_is_drawn_again_from_the_saved_answer(answered, data, tmp_path):
-    """To the byte."""
-    drawn, again = set(), tmp_path / "again.svg"
-    for name, figure in figures.draw("simulate", data):
-        figures.save(figure, again)
-        assert again.read_bytes() == (answered / f"{name}.svg").read_bytes()
-        drawn.add(name)
-    assert drawn == set(PICTURES)
-    assert page(data) == (answered / "simulation.html").read_text(encoding="utf-8")
-
-
-def test_the_page_needs_no_network_and_its_words_are_escaped(folder):
-    """No address in it; the title of the study cannot end its script; under 1 MB."""
-    text = page(separatrix.load(folder / "space" / "simulate.json"))
-    assert len(text.encode()) < 1_000_000
-    assert not re.search(r"https?:|//[a-z]|src=|href=|@import|url\(|fetch|XMLHttp|import\s*\(", text)
-    assert "default-src 'none'" in text
-    assert text.count("</script>") == 2
-    assert "<b>" not in text
-    (found,) = re.findall(r'id="run">(.*?)</script>', text, re.DOTALL)
-    assert f'<h1 id="title">{html.escape(TITLE)}</h1>' in text
-    assert len(json.loads(found)["time"]) > 2
-    assert "NaN" not in found
-
-
-def test_a_long_title_or_none_leaves_the_operating_point_to_the_view(data):
-    """The words under the title are those of the run, however many lines the title would take."""
-    about = re.search('class="about">(.*?)</p>', view(data), re.DOTALL)[1]
-    assert "inner ring" in about
-    for title in ("", "A long title of a study. " * 9):
-        other = view(data.assign_attrs(title=title))
-        assert re.search('class="about">(.*?)</p>', other, re.DOTALL)[1] == about
-
-
-def test_a_bearing_that_turns_backward_is_its_mirror_image(folder, capsys):
-    """The same sizes; what is across the axis has another sign."""
-    turned = SPACE.replace("[cage]", '[operation]\ninner_speed = "-15000 rpm"\n\n[cage]')
-    (folder / "backward.toml").write_text(turned)
-    usual = document(capsys, "simulate", str(folder / "space.toml"))
-    found = document(capsys, "simulate", str(folder / "backward.toml"))
-    assert found["largest_tilt"] == pytest.approx(usual["largest_tilt"], rel=1e-6)
-    assert np.allclose(found["position"], np.array(usual["position"]) * [1.0, -1.0], rtol=1e-6)
-    assert found["orbit_speed"] == pytest.approx(usual["orbit_speed"], rel=1e-6)
-
-
-def test_a_ball_guided_cage_has_no_land(folder):
-    """No land in the text and the pictures."""
-    text = SPACE.replace('guidance = "inner"', 'guidance = "ball"')
-    for key in ("land_clearance", "land_count", "land_spacing"):
-        text = re.sub(rf"{key} = .*\n", "", text)
-    (folder / "ball.toml").write_text(text)
-    answer = separatrix.simulate(folder / "ball.toml")
-    data = answer.to_xarray()
-    assert float(data["land_force"].max()) == 0.0
-    for _, figure in figures.draw("simulate", data):
-        assert figure.axes
-    assert "no land" in answer.summary()

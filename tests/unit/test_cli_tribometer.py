@@ -13,8 +13,8 @@ import pytest
 from separatrix.friction.friction_file import read_friction
 from separatrix.friction.logs.column_map import column_map
 from separatrix.front import main
-from separatrix.front.commands_without_bearing import file_name
 from separatrix.study.reading import read_study
+from separatrix.verbs.tribometer import file_name
 
 MAP = """
 [test]

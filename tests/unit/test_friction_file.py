@@ -251,20 +251,6 @@ def test_the_shipped_study_rubs_at_25_metres_a_second():
     assert found.max_pressure == pytest.approx(1.5 * found.pressure)
 
 
-def test_figures_mark_in_their_legend_that_something_was_not_tested():
-    """One line, whatever the sentences are: the printed answer has them; nothing where all was tested."""
-    import xarray as xr
-    from matplotlib.figure import Figure
-
-    from separatrix.figures.stability import explain_extrapolated
-
-    axes = Figure().subplots()
-    explain_extrapolated(axes, xr.DataArray([["too fast; too hot", ""], ["too fast", ""]]))
-    assert axes.get_legend_handles_labels()[1] == ["friction extrapolated"]
-    explain_extrapolated(bare := Figure().subplots(), xr.DataArray([["", ""]]))
-    assert bare.get_legend_handles_labels()[1] == []
-
-
 def test_a_result_holds_every_test_behind_a_friction(tmp_path):
     """Whole, in SI, as the file may change; also of materials not ranked, as scatter is pooled over them."""
     found = resolved(read_study(study(tmp_path)))["ranking"]
@@ -277,15 +263,15 @@ def test_a_result_holds_every_test_behind_a_friction(tmp_path):
     assert [test["material"] for test in found["other_tests"]] == ["Armalon"]
 
 
-def test_check_warns_of_tests_that_sensitivity_refuses(tmp_path, capsys):
+def test_check_names_tests_that_sensitivity_refuses(tmp_path, capsys):
     """A mean that is known to ten times itself: the same line from both, and nothing of tests that tell."""
     for friction in ("0.001\nstandard_error = 0.5", "0.08"):
         path = study(tmp_path, SMALL.replace("0.08", friction, 1))
-        warned = document(capsys, "check", str(path))["warnings"]
+        refused = document(capsys, "check", str(path))["refusals"]
         if friction == "0.08":
-            assert warned == []
+            assert refused == []
             continue
         assert main(["sensitivity", str(path), "--json", "--samples", "64"]) == 2
         line = capsys.readouterr().err.removeprefix("separatrix: ").rstrip()
         assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
-        assert warned == [f"`sensitivity` refuses this study: {line}"]
+        assert {"verb": "sensitivity", "sentence": line} in refused

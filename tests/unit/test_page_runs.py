@@ -62,7 +62,7 @@ def run(samples=4, *, count=5, guidance="outer", play=0.6e-3, space=False, whirl
         "pocket_shape": "square",
         "axial_half_play": 0.5 * play if space else None,
     } | cage
-    return Part(document, {name: "m" for name in LENGTHS} | {"largest_tilt": "rad", "time": "s"})
+    return Part(document, dict.fromkeys(LENGTHS, "m") | {"largest_tilt": "rad", "time": "s"})
 
 
 ODD = {

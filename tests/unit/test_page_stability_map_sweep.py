@@ -89,16 +89,20 @@ def mapped(**more):
 def test_a_map_says_where_it_changes_next_to_the_study():
     """The nearest column is told with both ends of its change."""
     words = nearest_words(mapped())
-    assert words.startswith("Next to the study, at film thickness 1 \N{MICRO SIGN}m, the cage begins to whirl ")
+    assert words.startswith(
+        "Next to the study, at film thickness 1 \N{MICRO SIGN}m, the cage begins to whirl "
+    )
     assert "between race friction 0.1 and 0.3." in words
     assert [row.kind for row in rows(mapped(), [1e-6, 2e-6])] == ["whirls above", "was not finished"]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():
-    """Values and reason stand at each cell, upward in y; what has no share is a gap, a refused point hatched."""
+    """Values and reason stand at each cell, upward in y; what has no share is a gap, a refusal hatched."""
     cells, hatched = map_figure(mapped()).panels[0].marks[:2]
     assert cells.values == [[0.0, None], [1.0, None]]
-    assert cells.hover[1][0] == "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; share that " + (
+    assert cells.hover[1][
+        0
+    ] == "film thickness 1 \N{MICRO SIGN}m, race friction 0.3: UNSTABLE; share that " + (
         "whirls 1 (0.7 to 1), 6 runs"
     )
     assert cells.hover[0][1].endswith("too thin")
@@ -129,7 +133,7 @@ def test_a_screen_has_the_worst_cases():
 def test_cases_that_are_alike_have_no_worst():
     """Then the number that they share is told, and no line is drawn."""
     worst = {"case": 0, "quantity": "restitution_factor", "compared": 3, "alike": 3}
-    assert worst_words(swept(worst=worst)).startswith("No case is the worst: all 3 with an answer have the same")
+    assert worst_words(swept(worst=worst)).startswith("No case is the worst: all 3 with an answer have the ")
     alike, other = (len(envelope_figure(one).panels[0].marks) for one in (swept(worst=worst), swept()))
     assert other == alike + 1
 

@@ -3,7 +3,6 @@
 import math
 import re
 from itertools import accumulate, pairwise
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
-from separatrix.told.stability import curve
 from separatrix.verdict import long_jobs as runner
 from separatrix.verdict.critical_friction import CriticalFriction, critical_friction, own_restitution_factor
 from separatrix.verdict.long_jobs import Runner
@@ -391,26 +389,3 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
     factors = threshold_factors(StabilitySettings(restitution_factors=(0.3, 0.5)))
     assert factors == [0.0, 0.3, 0.5, 0.98, 1.0]
     assert threshold_factors(StabilitySettings()) == []
-
-
-def test_the_report_says_between_which_frictions_the_kick_decides():
-    """The band at the bearing's own restitution factor in words; what is missing has its reason."""
-    kicks = {"kick_critical_friction": (0.19, None), "reason": "so"}
-    here = CriticalFriction(restitution_factor=0.27, critical_friction_high=0.258, **kicks)
-    point = CriticalFriction(restitution_factor=0.5, critical_friction_low=0.1, critical_friction_high=0.2)
-    limit = SimpleNamespace(restitution_factor=0.5, critical_friction=0.07)
-    found = SimpleNamespace(
-        curve=[point],
-        linear_limit=[limit],
-        here=here,
-        kicks=(0.1, 2.0),
-        drifts=False,
-        drift_rate_law=None,
-    )
-    text = "\n".join(curve(found))
-    assert "0.500 - 0.100 0.200 0.070" in " ".join(text.split())
-    said = " ".join(text.split())
-    assert "Every kick settles or rolls below none" in said
-    assert "Every kick whirls above a friction of 0.258" in said
-    assert "0.190 from 0.1 m/s, - from 2 m/s" in said
-    assert "Reason so" in said

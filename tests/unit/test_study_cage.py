@@ -10,7 +10,8 @@ from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import CageDesign, PocketContact, PocketShape
-from separatrix.told.answer import clearances, shown
+from separatrix.verbs.answer_records import FirstReached
+from separatrix.verbs.check import _cage as checked
 
 EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))
 
@@ -128,7 +129,6 @@ def test_pocket_angles_are_one_for_each_ball(read):
     """A list of angles; their unit is shown with them."""
     study = read(cage=f"pocket_angles = [{EVEN}]")
     assert study.cage.pocket_angles[1] == pytest.approx(2 * math.pi / 13, rel=1e-7)  # six decimals of 27 deg
-    assert shown(study.cage.pocket_angles, "rad") == "0 ... 332.308 deg (13)"
 
 
 def test_everything_new_is_off_by_default(read):
@@ -155,20 +155,19 @@ def test_uneven_pockets_fit_up_to_their_bars(read):
 def test_a_land_tighter_than_the_pockets_is_a_land_guided_cage(read):
     """No fault: its pockets touch by turning, and as balls lead and lag; the report says what is met."""
     tight = read(cage='guidance = "outer"\nland_clearance = "0.3 mm"\nland_out_of_round = "10 um"')
-    rows = dict(clearances(tight.cage))
-    assert rows["Land clearance"] == "300 um: 140 um radial at the least, reached before the pockets"
-    wide = read(cage='guidance = "outer"\nland_clearance = "1 mm"')
-    assert dict(clearances(wide.cage))["Land clearance"] == "1 mm: 500 um radial, reached after the pockets"
-    landless = dict(clearances(read(cage='guidance = "ball"').cage))
-    assert landless["Land clearance"] == "no land: the balls guide the cage"
+    assert checked(tight).land_gap == pytest.approx(140e-6, rel=1e-12)
+    assert checked(tight).first_reached is FirstReached.LAND
+    wide = checked(read(cage='guidance = "outer"\nland_clearance = "1 mm"'))
+    assert (wide.land_gap, wide.first_reached) == (pytest.approx(500e-6, rel=1e-12), FirstReached.POCKETS)
+    assert checked(read(cage='guidance = "ball"')).land_gap is None
 
 
 def test_the_report_shows_what_shape_and_offset_leave(read):
     """Half play and lean of an elongated pocket: 0.3 - 0.2 + sqrt(0.2^2 - 0.1^2) mm, asin(0.1/0.2)."""
     cage = 'pocket_shape = "elongated"\npocket_axial_clearance = "0.4 mm"\npocket_axial_offset = "0.1 mm"'
-    rows = dict(clearances(read(cage=cage).cage))
-    assert rows["Pocket clearance"] == "600 um: 273.2 um each way along the circumference"
-    assert rows["Lean of its contact"] == "30 deg, towards the bearing axis"
+    found = checked(read(cage=cage))
+    assert found.half_play == pytest.approx(0.1e-3 + math.sqrt(0.03) * 1e-3, rel=1e-12)
+    assert math.degrees(found.lean) == pytest.approx(30.0, rel=1e-12)
 
 
 SHAPES = [

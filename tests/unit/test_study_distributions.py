@@ -9,13 +9,12 @@ from pathlib import Path
 import pytest
 from scipy.stats import lognorm
 
+import separatrix
 from separatrix.ground.errors import InputError
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
-from separatrix.told.answer import in_words
-from separatrix.verbs.answer_records import CheckAnswer
 from separatrix.verdict.draws import sample, uncertain_inputs
 from separatrix.verdict.map_records import varied
 from separatrix.verdict.ranking_records import measured
@@ -210,14 +209,13 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
 def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
     """`check` lists the distributions; the others say that they take the means."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = in_words("check", CheckAnswer(static=None), study, [])
+    shown = separatrix.check(study).summary()
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
-    from separatrix.chain.solution import solve
 
-    told = in_words("bearing", solve(study).bearing, study, [])
+    told = separatrix.bearing(study).summary()
     assert "An uncertain input is at its mean: film.thickness." in told
     certain = read_study("cryogenic-turbopump")
-    told = in_words("bearing", solve(certain).bearing, certain, [])
+    told = separatrix.bearing(certain).summary()
     assert "uncertain" not in told
 
 

@@ -9,13 +9,11 @@ import pytest
 from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
-from separatrix.figures.tribometer import heading, page
 from separatrix.friction import steady
 from separatrix.friction.cycles import oscillation
 from separatrix.friction.friction_file import place
-from separatrix.friction.logs.log import Conditions, RawLog
-from separatrix.friction.reduction import TestFriction, reduce_log, reduction
-from separatrix.present.tribometer import page_data
+from separatrix.friction.logs.log import Conditions
+from separatrix.friction.reduction import TestFriction, reduce_log
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}
 QUIET = Recipe(rows=4000, noise=0.004)
@@ -326,35 +324,3 @@ def test_an_interval_is_students():
     test = replace(reduce_log(log()), standard_error=0.01, degrees_of_freedom=5)
     assert test.half_width == pytest.approx(0.02571, abs=5e-6)  # the table's digits
     assert test.interval == (test.friction - test.half_width, test.friction + test.half_width)
-
-
-def test_a_page_is_drawn_from_a_dataset():
-    """Every panel has labels with units; without a spectrum, where friction never varies, nothing warns."""
-    page(page_data(reduction(log(friction=lambda t: np.full(t.size, 0.12)))))
-    one = log(replace(QUIET, run_in=0.1), temperature=lambda t: 77.0 + 0.0 * t)
-    figure = page(page_data(reduction(one)))
-    assert len(figure.axes) == 5
-    for axes in figure.axes:
-        assert "[" in axes.get_xlabel()
-        assert "[" in axes.get_ylabel()
-        assert axes.get_title(loc="left")
-
-
-def test_the_heading_of_a_page_names_conditions_numbers_and_flags():
-    """Who reads the page alone knows what it is of."""
-    data = page_data(reduction(log(replace(QUIET, drift=0.05))))
-    text = " ".join(heading(data))
-    due = ("from 0 s to 6.66", "PTFE on 440C", "gaseous nitrogen", "77 K", "pV 0.5 MPa m/s", "(95 %)")
-    assert [words for words in (*due, "drifts by") if words not in text] == []
-
-
-def test_a_page_of_a_long_log_is_small():
-    """200 000 rows give a dataset of a few thousand numbers."""
-    size = 200_000
-    time = np.arange(size) * 0.1
-    one = RawLog(
-        source="long", checksum="", format="made", friction=0.1 + 0.01 * _noise(size), time=time,
-        conditions=Conditions(cycle_time=1.0),
-    )  # fmt: skip
-    data = page_data(reduction(one))
-    assert sum(variable.size for variable in data.variables.values()) < 20_000

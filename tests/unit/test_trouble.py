@@ -15,10 +15,11 @@ from commands import refused
 from separatrix.cage import Cause, RunOutcome, run_ensemble
 from separatrix.chain.impact_restitution import damping_for
 from separatrix.front import main
+from separatrix.ground.document import part_of
+from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
-from separatrix.told.answer import in_words
-from separatrix.verbs import simulate
+from separatrix.verbs import Computed, simulate
 from separatrix.verbs.answer_files import document
 from separatrix.verdict.judgement import Verdict, judge
 
@@ -141,11 +142,12 @@ def test_an_odd_cage_has_a_verdict_and_a_reason(changes):
 def test_an_unresolved_run_says_so():
     """Table and document give the outcome and its sentence, and the time up to which it was followed."""
     asked = read_study(study(""))
-    answer = simulate.compute(asked)
+    answer = simulate.compute(asked, simulate.Options())
     lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.FALLING)
     answer = replace(answer, history=lost)
-    found = document("simulate", answer, asked)
-    said = " ".join(in_words("simulate", answer, asked, []).split())
+    made = Computed(record=answer, study=asked, options=simulate.Options(), is_complete=True)
+    found = document(simulate.VERB, made)
+    said = " ".join(text(simulate.page(part_of(found))).split())
     assert (found["outcome"], found["cause"]) == ("UNRESOLVED", "FALLING")
     assert "UNRESOLVED" in said
     assert "The run does not show where the motion ends." in said

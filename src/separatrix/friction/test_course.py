@@ -88,6 +88,7 @@ def autocorrelation(values: Array) -> tuple[Array, Array]:
     x = np.arange(n) - (n - 1) / 2
     level = values - values.mean()
     level = level - x * (x @ level) / (x @ x)
+    level[np.abs(level) < 1e-12 * np.abs(values).max()] = 0.0  # rounding is no noise
     lags = np.arange(max(2, n // 4))
     total = float(level @ level) or 1.0
     found = [float(level[: n - lag] @ level[lag:]) / total for lag in lags.tolist()]

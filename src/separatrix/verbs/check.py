@@ -10,7 +10,6 @@ from separatrix.present.blocks import Heading, Level, Note, Page, facts, grouped
 from separatrix.verbs.parts.answer_page import APPENDIX, entry_words, page_of
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 from separatrix.verbs.parts.chain_blocks import clearance_facts
-from separatrix.verbs.parts.refused import unpredictable
 from separatrix.verbs.parts.study_facts import bearing_facts
 from separatrix.verbs.parts.telling import fact, said
 from separatrix.verbs.verb import NoOptions, Verb
@@ -57,8 +56,6 @@ def _refusals(study: Study) -> Iterator[Refusal]:
 
     for verb, sentence in refusals(study):
         yield Refusal(verb=verb, sentence=sentence)
-    for sentence in unpredictable(study):
-        yield Refusal(verb="sensitivity", sentence=sentence)
 
 
 def _cage(study: Study) -> CheckedCage | None:

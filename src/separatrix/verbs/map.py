@@ -311,7 +311,7 @@ def _cells(answer: Part) -> Iterator[Mark]:
         was_run = [one for one in answer.points if one.runs]
         name = "was run; elsewhere the points around agree"
         at: dict[str, Any] = {"x": [one.x for one in was_run], "y": [one.y for one in was_run]}
-        yield Trace(**at, name=name, line="", marker="o", size=2.2, is_open=True, width=0.5)
+        yield Trace(**at, name=name, line="", marker="o", size=2.2, is_open=True, has_halo=True, width=0.5)
 
 
 def _state(point: Part) -> str:
@@ -337,7 +337,7 @@ def _overlays(answer: Part) -> Iterator[Mark]:
         at, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
         yield Trace(x=at, y=low, low=low, high=high, line="", colour=VERMILION)
     if all("here" in one and one.get("values")[0] <= one.here <= one.get("values")[-1] for one in (x, y)):
-        look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True}
+        look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
         yield Trace(x=[x.here], y=[y.here], name="the study itself", **look)
 
 

@@ -44,7 +44,10 @@ ENVELOPE: dict[str, tuple[type, str]] = {
 }
 """What every answer has beside those of its verb: the type of each, and its words."""
 
-DAMAGE = (ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError, OverflowError)
+DAMAGE = (
+    *(ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError, ArithmeticError),
+    StopIteration,
+)
 """What a document raises whose parts are not those of an answer."""
 
 AGAIN = "Compute this answer again with this version."

@@ -53,6 +53,7 @@ from separatrix.verbs.parts.telling import (
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
+    candidate_numbers,
     evidence_column,
     is_judged,
     judged,
@@ -370,10 +371,7 @@ def thicknesses(answer: Part, place: int) -> Callable[[Part], str]:
 
 def sheets(answer: Part) -> Iterator[Table]:
     """Yield every number: of candidates, shares of inputs, looks at P(stable), and bearings."""
-    heads = ("environment", "material")
-    places = [(one.name, row) for one in answer.environments for row in one.materials]
-    places += [(OVERALL, row) for row in answer.overall]
-    yield all_numbers("all numbers", heads, ((place, row.name, row) for place, row in places))
+    yield candidate_numbers(answer)
     logit = [(one, "variance of the logit", each) for one in answer.drivers for each in one.shares]
     indices = ((one, kind) for one in answer.shares for kind in ("first", "total"))
     sobol = [(one, f"{kind}, {one.quantity}", each) for one, kind in indices for each in one.get(kind)]
@@ -382,7 +380,7 @@ def sheets(answer: Part) -> Iterator[Table]:
     tables = {"all shares": logit + sobol, "convergence": looks, "bearings": bearings}
     for name, rows in tables.items():
         named = ((one.get("environment") or OVERALL, one.name, of, each) for one, of, each in rows)
-        yield all_numbers(name, (*heads, "of"), named)
+        yield all_numbers(name, ("environment", "material", "of"), named)
 
 
 # The picture.

@@ -158,7 +158,7 @@ def page(answer: Part) -> Page:
         force_facts(answer),
         pockets(answer),
         Picture("simulation", lambda: _figure(answer), _caption(answer)),
-        View("simulation", lambda: _view(answer), "The moving cage: play, turn, zoom."),
+        View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
         *(clearance_blocks(clearances) if clearances else []),
         Note(SINGLE, "caveat"),
     )

@@ -97,7 +97,9 @@ def _value(value: Any, unit: str) -> str:
         return ", ".join(_value(one, unit) for one in value) or "-"
     if value is None or isinstance(value, bool) or not isinstance(value, int | float):
         return "-" if value is None else str(value)
-    return format_quantity(value, unit, 7) if unit not in ("", "-") else f"{value:g}"
+    if unit in ("", "-"):
+        return f"{value:g}"
+    return format_quantity(value, unit, 7).replace(" um", " \N{MICRO SIGN}m")
 
 
 def _materials(study: Json, level: Level) -> list[Block]:

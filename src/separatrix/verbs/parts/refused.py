@@ -85,19 +85,3 @@ def push(solution: Solution) -> None:
     from separatrix.study.study import TractionSettings
 
     _ = solve(replace(solution.study, traction=TractionSettings())).mobility
-
-
-def unpredictable(study: Study) -> Iterator[str]:
-    """Yield why a friction that tests predict cannot be drawn, as `sensitivity` draws it."""
-    from separatrix.friction.friction_fit import TestedFriction
-    from separatrix.ground.errors import SeparatrixError
-    from separatrix.verdict.drawn_frictions import frictions_to_draw
-    from separatrix.verdict.draws import uncertain_inputs
-
-    candidates = study.ranking.candidates if study.ranking and study.cage else ()
-    if not any(isinstance(one.law, TestedFriction) for c in candidates for one in c.friction.values() if one):
-        return
-    try:
-        uncertain_inputs(study, frictions_to_draw(study))
-    except SeparatrixError as error:
-        yield str(error)

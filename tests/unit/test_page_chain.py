@@ -1,0 +1,129 @@
+"""What is special in the pages of check, traction, restitution and mobility, and in the bearing to scale."""
+
+from __future__ import annotations
+
+import pytest
+
+from separatrix.ground.document import part_of
+from separatrix.present.figure import Trace
+from separatrix.study.reading import read_study
+from separatrix.verbs import computed, verb_named
+from separatrix.verbs.answer_files import document
+from separatrix.verbs.parts.bearing_drawing import bearing_picture, shape_of
+from separatrix.verbs.parts.study_facts import contact_words
+
+SHIPPED = "cryogenic-turbopump"
+
+
+def answer(verb, study):
+    """Document of an answer, as a part."""
+    found = verb_named(verb)
+    return part_of(document(found, computed(found, study)))
+
+
+@pytest.fixture(scope="module")
+def restitution():
+    """Answer of the shipped study."""
+    return answer("restitution", read_study(SHIPPED))
+
+
+def changed(tmp_path, name, *edits, more=""):
+    """A shipped study with other text in it."""
+    from importlib.resources import files
+
+    text = files("separatrix.examples").joinpath(f"{name}.toml").read_text(encoding="utf-8")
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "changed.toml").write_text(text + more, encoding="utf-8")
+    return read_study(tmp_path / "changed.toml")
+
+
+SOFT = ('thickness = "1 um"', 'thickness = "50 um"\nelastic_modulus = "20 MPa"\npoisson_ratio = 0.3')
+SPUTTERED = ('material = "MoS2 sputtered dense"', "")
+
+
+@pytest.mark.parametrize(
+    ("traction", "refusing"),
+    [
+        ('model = "exact"', ["traction", "restitution", "mobility"]),
+        ('pressure = "coated"', ["traction"]),  # which also compares with Hertz's pressure
+        ('model = "strips"', []),
+    ],
+)
+def test_check_names_the_verbs_that_refuse_a_soft_film(tmp_path, traction, refusing):
+    """Each claim is that of the verb itself, and a verb that is not named answers."""
+    study = changed(tmp_path, "momentum-wheel", SOFT, SPUTTERED, more=f"\n[traction]\n{traction}\n")
+    found = [one for one in answer("check", study).refusals if one.verb in ("traction", "restitution")]
+    assert [one.verb for one in found] == [one for one in refusing if one != "mobility"]
+    for verb in ("traction", "restitution", "mobility"):
+        said = [*verb_named(verb).refusals(study)]
+        assert bool(said) == (verb in refusing)
+        if said:
+            with pytest.raises(ValueError, match="film strain") as refused:
+                computed(verb_named(verb), study)
+            assert said == [str(refused.value)]
+        else:
+            computed(verb_named(verb), study)
+
+
+def test_a_verb_that_lacks_a_section_is_refused_for_that():
+    """Every verb of a cage, where the study has none, and the first sentence says so."""
+    found = answer("check", read_study("le7"))
+    assert {one.verb for one in found.refusals} == {
+        *("restitution", "stability", "map", "simulate", "rank", "sensitivity")
+    }
+    lead = verb_named("check").page(found).lead[0]
+    assert lead.startswith("The study is valid. It has no [cage] and no [ranking]. `restitution`,")
+
+
+@pytest.mark.parametrize(
+    ("clearance", "first"), [('"1 mm"', "POCKETS"), ('"0.6 mm"', "BOTH"), ('"0.2 mm"', "LAND")]
+)
+def test_what_a_cage_reaches_first(tmp_path, clearance, first):
+    """The radial gap of the land against half the clearance of a pocket."""
+    study = changed(tmp_path, SHIPPED, ('land_clearance = "1 mm"', f"land_clearance = {clearance}"))
+    assert answer("check", study).cage.first_reached == first
+
+
+def test_films_have_bare_races_apart_and_the_star_at_the_study(restitution):
+    """A logarithmic axis has no zero."""
+    pictures = [one for one in verb_named("restitution").page(restitution).blocks if hasattr(one, "figure")]
+    (panel, _) = pictures[0].figure().panels
+    traces = [one for one in panel.marks if isinstance(one, Trace)]
+    lines, star = [one for one in traces if one.line], traces[-1]
+    assert all(min(line.x) > 0.0 for line in lines)
+    assert panel.x.ticks[0][1] == "bare"
+    assert (star.x, star.y) == ([5e-7], [restitution.restitution_factor])
+
+
+def test_bare_races_have_no_other_films(restitution):
+    """No empty picture, but the reason."""
+    none = {"lubrication": None, "lubrication_reason": "The study names no film material."}
+    found = part_of({**restitution.values, **none, "units": restitution.units})
+    blocks = verb_named("restitution").page(found).blocks
+    assert not [one for one in blocks if hasattr(one, "figure")]
+    assert any("names no film material" in getattr(one, "text", "") for one in blocks)
+
+
+def test_the_drawing_dashes_what_the_study_does_not_state(restitution):
+    """Guessed parts are named, the stated clearance is kept, and every ball is there."""
+    study = restitution.values["study"]
+    shape = shape_of(study)
+    assert shape.guessed == {"rings", "cage"}
+    assert shape.outer_land - shape.cage[1] == pytest.approx(shape.land_clearance / 2)  # rounding
+    assert "the cage's section" in bearing_picture(restitution, None).caption
+    _, view, _ = bearing_picture(restitution, restitution).figure().panels
+    balls = [one for one in view.marks if isinstance(one, Trace) and one.face == "#eef1f5"]
+    assert len(balls) == shape.count
+
+
+def test_what_is_worn_is_told():
+    """Which race, how wide, and what is left there."""
+    entry = {"value": "inner"}
+    film = {"wear.races": entry, "wear.across": {"value": []}, "wear.width": {"value": 1e-4, "unit": "m"}}
+    film |= {"wear.thickness": {"value": 0.0, "unit": "m"}, "wear.friction": {"value": 0.3, "unit": "-"}}
+    asked = {"model": "strips", "pressure": "hertz", "pressure_slip": "neglected"}
+    study = {"traction": {key: {"value": one} for key, one in asked.items()}, "film": film}
+    words = contact_words(study)
+    assert words.endswith("film of the inner race worn over 100 \N{MICRO SIGN}m, bare, friction 0.3")
