@@ -263,7 +263,9 @@ def ways(answer: Part) -> list[Way]:
     units = {one.name: one.get("unit") or "-" for one in answer.parameters}
     is_line = len(values) == 1 and all(a < b for each in values.values() for a, b in pairwise(each))
     if not is_line and (len(values) == 1 or has(answer, "time_share")):
-        return [Way(Axis(label="case [-]", low=-0.6, high=len(answer.cases) - 0.4), "case", False)]
+        count = len(answer.cases)
+        names = tuple(map(str, range(count))) if count <= SOME else ()
+        return [Way(Axis(label="case [-]", low=-0.6, high=count - 0.4, names=names), "case", False)]
     chosen = [*values.items()][:MOST_PANELS]
     return [Way(parameter_axis(name, units[name], sorted({*known})), name, is_line) for name, known in chosen]
 
