@@ -77,21 +77,7 @@ def test_the_list_of_one_kind_is_a_table(folder, ask):
     """In any spelling of the kind; the user's records beside the shipped ones."""
     text = ask("list", "--kind", "Films")
     ours = next(line.split() for line in text.splitlines() if "Our film" in line)
-    assert ours == [
-        "Our",
-        "film",
-        "2",
-        "GPa",
-        "(first",
-        "of",
-        "2)",
-        "0.400",
-        "-",
-        "77",
-        "K",
-        "measured",
-        "materials.toml",
-    ]
+    assert " ".join(ours) == "Our film 2 (first of 2) 0.400 77 K measured materials.toml"
     assert "PTFE transfer film" in text
     assert "440C" not in text
     assert max(map(len, text.splitlines())) <= 110  # of a terminal: names and files stand in full
@@ -99,7 +85,7 @@ def test_the_list_of_one_kind_is_a_table(folder, ask):
 
 def test_a_record_is_shown_whole(folder, ask):
     """Every number with range, condition, confidence and source; the checksum of the library."""
-    text = ask("show", "Our film")
+    text = " ".join(ask("show", "Our film").split())
     assert "elastic modulus 2 GPa, 77 K; measured: fitted to test 12" in text
     assert "elastic modulus 400 MPa, 295 K; guess: as PTFE" in text
     assert "Poisson's ratio 0.4, at no stated temperature; guess: usual" in text
@@ -115,7 +101,7 @@ def test_a_record_at_a_temperature_says_which_datum_serves(folder, ask):
     assert record["taken"] == {"elastic_modulus": 1, "poisson_ratio": 0}
     assert record["taken_at"] == 295.15
     assert record["cautions"] == ["Poisson's ratio: its source states no temperature, taken at 295.1 K"]
-    assert "* elastic modulus 400 MPa" in ask("show", "Our film", "--temperature", "295 K")
+    assert "elastic modulus * 400 MPa" in " ".join(ask("show", "Our film", "--temperature", "295 K").split())
 
 
 def test_a_fluid_is_shown_by_its_other_name(folder, ask):

@@ -16,7 +16,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html
 from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View
-from separatrix.present.draw import svg
+from separatrix.present.draw import save
 from separatrix.present.hover import plotly
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
@@ -142,7 +142,7 @@ def test_every_medium_shows_every_page(verb, answers):
     for one in page.blocks:
         if isinstance(one, Picture):
             spec = one.figure()
-            assert svg(spec).svg.startswith("<svg")
+            assert save(spec).svg.startswith("<svg")
             json.dumps(plotly(spec), allow_nan=False)
             assert spec.alt
             assert all(

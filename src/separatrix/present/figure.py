@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 PURPLE, SKY, BLACK, GREY = "#CC79A7", "#56B4E9", "#000000", "#6b6b6b"
@@ -143,7 +144,7 @@ Mark = Trace | Band | Across | Cells | Hatched | Words
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
-    """Marks over two axes; `head` is above its labels.
+    """Marks over two axes, that of y with both ends where there are `labels`; `head` is above these.
 
     A drawing has no frame: the label of x is what stands below it.
     """
@@ -177,6 +178,12 @@ class Figure:
     def panels(self) -> list[Panel]:
         """All of them, row by row."""
         return [panel for row in self.rows for panel in row]
+
+    @property
+    def named(self) -> list[Any]:
+        """What has a name in the legend."""
+        marks = [one for panel in self.panels for one in panel.marks]
+        return [one for one in (*marks, *self.legend) if getattr(one, "name", "")]
 
 
 def sign(marker: str, colour: str, name: str, *, line: str = "", is_open: bool = False) -> Trace:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TypeGuard
 
 from separatrix.ground.document import Document
 from separatrix.ground.errors import InputError
@@ -50,8 +50,15 @@ DAMAGE = (
 )
 """What a document raises whose parts are not those of an answer."""
 
+MOST = 1e150  # magnitude from which a number of a document is damage; below it the square is finite
+
 AGAIN = "Compute this answer again with this version."
 _MAKE = "Make one with: separatrix rank STUDY --out DIR."
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value of a document is a finite number; true and false are not."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and -MOST < value < MOST
 
 
 def read_answers(path: Path) -> dict[str, Document]:

@@ -63,6 +63,13 @@ class Verb:
     files: Callable[..., Iterable[tuple[str, bytes]]] | None = None
     refusals: Callable[[Study], Iterator[str]] = no_refusals
 
+    @property
+    def help(self) -> str:
+        """Its line of help, which stands in the registry."""
+        from separatrix.verbs import VERBS
+
+        return VERBS[self.name]
+
     def shown_options(self) -> Mapping[str, tuple[Any, Option, Any]]:
         """Type, help and default of each option, by name."""
         return options_of(self.options)
