@@ -133,8 +133,16 @@ def _note_console(one, faults: list[str]) -> None:
 
 def run(page, verb: str) -> None:
     """Run a verb of the study that is open, and wait for its end."""
-    page.get_by_role("button", name=f"Run {verb}", exact=True).click()
+    opened(page, verb).get_by_role("button", name=f"Run {verb}", exact=True).click()
     ended(page, verb)
+
+
+def opened(page, verb: str):
+    """Open a verb of the study, and return its card."""
+    card = page.locator(".verb", has=page.locator("summary", has_text=re.compile(rf"^{verb}\b")))
+    if card.get_attribute("open") is None:
+        card.locator("summary").click()
+    return card
 
 
 def ended(page, title: str, state: str = "finished") -> None:

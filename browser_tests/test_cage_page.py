@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import STUDY, run
+from conftest import STUDY, opened, run
 from playwright.sync_api import expect
 
 MOTIONS = ("plane", "space")
@@ -80,11 +80,8 @@ def test_the_local_page_plays_it(view, server, motion):
     """From the answer of a run whose motion was chosen in the form; no inline script is needed."""
     page = view()
     page.goto(f"{server.address}/study/small.toml")
-    card = page.locator(".verb", has=page.get_by_role("heading", name="simulate", exact=True))
-    card.get_by_text("Options").click()
-    card.get_by_label("motion").select_option(motion)
+    opened(page, "simulate").get_by_label("motion").select_option(motion)
     run(page, "simulate")
     page.get_by_role("link", name="Show the answer").first.click()  # of the newest job
-    page.get_by_role("link", name="Watch the cage move").click()
+    page.get_by_role("link", name="The moving cage").click()
     plays(page)
-    expect(page.locator("h1")).to_have_text("The moving cage: A small ensemble")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from conftest import PATIENCE, run
+from conftest import PATIENCE, opened, run
 from playwright.sync_api import expect
 
 SIZES = {
@@ -39,13 +39,13 @@ def views(folder, server, browser) -> list[str]:
     page.goto(f"{server.address}/study/small.toml")
     run(page, "stability")
     page.context.close()
-    own = ("study", "answer/rank", "answer/stability", "answer/simulate", "cage")
+    own = ("study", "answer/rank", "answer/stability", "answer/simulate", "files")
     views = [
         "",
         *(f"{one}/small.toml" for one in own),
         *(f"study/{one}.toml" for one in studies),
     ]
-    return [*views, "cage/tilting.toml", "study/none.toml"]
+    return [*views, "answer/simulate/tilting.toml", "logs", "study/none.toml"]
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -80,5 +80,4 @@ def test_a_study_without_a_cage_says_what_it_needs(view, server, folder):
     (folder / "cageless.toml").write_text('extends = "ball-218"\n', encoding="utf-8")
     page = view()
     page.goto(f"{server.address}/study/cageless.toml")
-    card = page.locator(".verb", has=page.get_by_role("heading", name="simulate", exact=True))
-    expect(card).to_contain_text("Needs the section")
+    expect(opened(page, "simulate")).to_contain_text("Needs the section")

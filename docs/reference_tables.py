@@ -23,9 +23,8 @@ from separatrix.study import study
 from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import answer_records as answers
-from separatrix.verbs.parts.comparison import Difference, Row
+from separatrix.verbs.parts.comparison import Row
 from separatrix.verbs.parts.quantities import QUANTITIES
-from separatrix.verbs.reproduce import Agreement
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study
@@ -187,11 +186,11 @@ COMPARISON = (
     Line("of", meaning="verb of the two answers"),
     Line("answers", meaning="the two in the order given: `path`, `title`, `seed`, `complete`"),
     *(Line(name, meaning=f"of an answer: {what}") for name, what in ANSWERS),
-    Line("same_seed", meaning="whether both have the same seed"),
     Line("environment", meaning="the bearing's own, where both agree; else null"),
     Line("shared_verdicts", meaning="number of verdicts that both have; null where neither has one"),
-    Line("inputs", meaning="inputs that differ"),
-    Line("rows", meaning="results that differ, at most 2000; those that a reader decides by come first"),
+    Line("inputs", meaning="inputs that differ, `first` and `second`"),
+    Line("key", meaning="of an input: key of the study, or option"),
+    Line("rows", meaning="results that differ, at most 500; those that a reader decides by come first"),
     Line("left_out", meaning="number of rows beyond these"),
     Line("also", meaning="other verbs of both folders"),
     Line("curves", meaning="points of both stability curves, for the picture; null without"),
@@ -203,8 +202,16 @@ REPRODUCED = (
     Line("same", meaning="whether an answer is the same, to rounding; at the top, whether all of them are"),
     Line("answers", meaning="each answer that was computed again"),
     Line("result", meaning="how well it agrees"),
+    Line("agreement", meaning="bit for bit, to rounding, or different"),
+    Line("largest_difference", "-", meaning="of two numbers, relative; null if no number differs"),
+    Line("largest_at", meaning="its key"),
+    Line(
+        "differences",
+        meaning="the first keys that differ beyond rounding: `key`, `stored`, `computed`, `relative`",
+    ),
+    Line("count", "-", meaning="number of keys that do"),
     Line("versions", meaning="versions that differ here: `name`, `stored`, `here`"),
-    Line("stored", meaning="of a version: that of the answer"),
+    Line("stored", meaning="value of the saved answer"),
     Line("here", meaning="of a version: the one here"),
 )
 REPORTED = (
@@ -252,8 +259,8 @@ VERBS = {
             Line("case", meaning="number of the case"),
         ),
     ),
-    "compare": Verb((Difference, Row), COMPARISON),
-    "reproduce": Verb((Agreement,), REPRODUCED),
+    "compare": Verb((Row,), COMPARISON),
+    "reproduce": Verb((), REPRODUCED),
     "report": Verb((), REPORTED),
     "tribometer": Verb((RawLog, ColumnRead, TestFriction, TestCourse), TRIBOMETER),
 }

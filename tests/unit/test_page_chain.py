@@ -10,7 +10,6 @@ from separatrix.study.reading import read_study
 from separatrix.verbs import computed, verb_named
 from separatrix.verbs.answer_files import document
 from separatrix.verbs.parts.bearing_drawing import bearing_picture, shape_of
-from separatrix.verbs.parts.study_facts import contact_words
 
 SHIPPED = "cryogenic-turbopump"
 
@@ -111,19 +110,10 @@ def test_the_drawing_dashes_what_the_study_does_not_state(restitution):
     study = restitution.values["study"]
     shape = shape_of(study)
     assert shape.guessed == {"rings", "cage"}
-    assert shape.outer_land - shape.cage[1] == pytest.approx(shape.land_clearance / 2)  # rounding
-    assert "the cage's section" in bearing_picture(restitution, None).caption
-    _, view, _ = bearing_picture(restitution, restitution).figure().panels
+    gap = study["cage"]["land_clearance"]["value"]
+    assert shape.lands[1] - shape.cage[1] == pytest.approx(gap / 2)  # rounding
+    picture = bearing_picture(restitution, restitution)
+    assert "the cage's section" in picture.caption
+    _, view = picture.figure().panels
     balls = [one for one in view.marks if isinstance(one, Trace) and one.face == "#eef1f5"]
-    assert len(balls) == shape.count
-
-
-def test_what_is_worn_is_told():
-    """Which race, how wide, and what is left there."""
-    entry = {"value": "inner"}
-    film = {"wear.races": entry, "wear.across": {"value": []}, "wear.width": {"value": 1e-4, "unit": "m"}}
-    film |= {"wear.thickness": {"value": 0.0, "unit": "m"}, "wear.friction": {"value": 0.3, "unit": "-"}}
-    asked = {"model": "strips", "pressure": "hertz", "pressure_slip": "neglected"}
-    study = {"traction": {key: {"value": one} for key, one in asked.items()}, "film": film}
-    words = contact_words(study)
-    assert words.endswith("film of the inner race worn over 100 \N{MICRO SIGN}m, bare, friction 0.3")
+    assert len(balls) == len(shape.angles) == study["bearing"]["ball_count"]["value"]

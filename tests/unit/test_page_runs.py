@@ -35,15 +35,12 @@ def run(samples=4, *, count=5, guidance="outer", play=0.6e-3, space=False, whirl
         "ball_lead": np.zeros((samples, count)),
         "contact_force": force,
         "land_force": np.where(np.arange(samples) % 4 == 1, 7.0, 0.0),
-        "kinetic_energy": 1e-3 + time,
         "pocket_angle": 2 * np.pi * np.arange(count) / count,
         "half_play": np.full(count, 0.5 * play),
     }
     if space:
         values |= {"axial_place": 1e-5 * around[:, 0], "lean": 5e-3 * around, "ball_axial": 0.0 * force}
-        values |= {"lean_rate": 5e-3 * whirl * around[:, ::-1] * [-1.0, 1.0]}
     document = {name: value.tolist() for name, value in values.items()}
-    document["work"] = {"pocket_friction": (3.0 * time).tolist(), "land_friction": (0.0 * time).tolist()}
     document |= {"judged_from": 0.0, "followed": 0.0, "force_limit": None, "whirl_frequency": None}
     document["study"] = {"cage": {"width": {"value": None}}}
     document["cage"] = {
@@ -87,13 +84,13 @@ def drawn_at(seen, frame):
 def test_any_run_has_panels_and_a_gif(answer):
     """Each sample is a frame here, reported one by one."""
     reported, seen, lean = [], scene(answer), "lean" in answer
-    panels = [(run_panels.orbit(answer), seen.centre)]
-    panels += [(run_panels.lean(answer), seen.lean)] if lean else []
-    kinds = (run_panels.offset, run_panels.forces, run_panels.energy, *[run_panels.tilt] * lean)
-    every = [*(panel for panel, _ in panels), *(one(answer, "a") for one in kinds)]
-    for panel in (*every, run_panels.spectrum(answer, title="b")):
+    kinds = (run_panels.orbit, run_panels.spectrum, run_panels.offset, run_panels.forces)
+    panels = [one(answer) for one in (*kinds, *[run_panels.tilt] * lean)]
+    for panel in panels:
         draw.draw_panel(Figure().add_subplot(), panel)
-    made = animation.animation(seen, panels, ("a $1$",), progress=lambda *args: reported.append(args))
+    made = animation.animation(
+        seen, [(panels[0], seen.centre)], ("a $1$",), progress=lambda *args: reported.append(args)
+    )
     with Image.open(io.BytesIO(made)) as found:
         assert (found.n_frames, found.format) == (len(answer.time), "GIF")
     assert reported == [(i + 1, seen.time.size) for i in range(seen.time.size)]
@@ -178,18 +175,6 @@ def test_a_course_in_time_keeps_its_extremes():
     assert places.size <= run_panels.SHOWN + 2
 
 
-def test_works_end_with_the_judged_part():
-    """The engine adds up no work beyond it: a picture that went on would fall back to 0."""
-    answer = run(101)
-    answer.values["followed"] = answer.time[40]
-    panel = run_panels.energy(answer, "e")
-    assert panel.x.high == answer.time[40]
-    work = next(
-        one for one, name in zip(panel.marks[-2:], panel.labels, strict=True) if "pocket" in name.text
-    )
-    assert (work.x[-1], work.y[-1]) == (answer.time[40], answer.work.pocket_friction[40])
-
-
 def test_the_pockets_bound_the_path_by_a_polygon():
     """Half way between the normals of two of six lines the centre goes farther, by 1 over cos 30 deg."""
     found = cage_scene.pocket_boundary(run(count=3))
@@ -199,6 +184,7 @@ def test_the_pockets_bound_the_path_by_a_polygon():
     assert AROUND.size == found.size
 
 
+MICRON = "\N{MICRO SIGN}m"
 FILM = {
     "restitution_factor": 0.5,
     "is_any_allowed": False,
@@ -211,7 +197,7 @@ FILM = {
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, [">= 1 \N{MICRO SIGN}m", "see figure", "any", "none"]),
+        ({}, [f"1 {MICRON} to 10 {MICRON}", f"100 nm, 10 {MICRON}", "any", "none"]),
         ({"restitution_factor": None, "is_any_allowed": True}, ["any"] * 4),
         ({"restitution_factor": None, "reason": "more or less in words"}, ["none"] * 4),
     ],
@@ -220,7 +206,7 @@ def test_allowed_films_are_told_from_the_flag(changes, words):
     """Not from the sentence of the reason."""
     answer = Part({}, {"film_thickness_here": "m"})
     film = Part(FILM | changes, {})
-    assert [sensitivity._thicknesses(answer, place)(film) for place in range(4)] == words
+    assert [sensitivity.thicknesses(answer, place)(film) for place in range(4)] == words
 
 
 @pytest.mark.parametrize(("complete", "said"), [(True, "No case is undecided"), (False, "No finished case")])

@@ -16,7 +16,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Estimate
 from separatrix.present import html
 from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View
-from separatrix.present.draw import svg
+from separatrix.present.draw import save
 from separatrix.present.hover import plotly
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
@@ -142,7 +142,7 @@ def test_every_medium_shows_every_page(verb, answers):
     for one in page.blocks:
         if isinstance(one, Picture):
             spec = one.figure()
-            assert svg(spec).svg.startswith("<svg")
+            assert save(spec).svg.startswith("<svg")
             json.dumps(plotly(spec), allow_nan=False)
             assert spec.alt
             assert all(
@@ -193,11 +193,9 @@ def test_blocks_are_where_their_level_says(answers):
     assert sum(isinstance(one, Note) and one.kind == "lead" for one in brief) == 1
     for level in LEVELS:
         blocks = page.at(level).blocks
-        assert not [
-            a
-            for a, b in zip(blocks, [*blocks[1:], Heading("end")])
-            if isinstance(a, Heading) and isinstance(b, Heading) and b.depth <= a.depth
-        ]
+        pairs = zip(blocks, [*blocks[1:], Heading("end")], strict=True)
+        heads = [(a.depth, b.depth) for a, b in pairs if isinstance(a, Heading) and isinstance(b, Heading)]
+        assert all(inner > outer for outer, inner in heads)
     assert "--full" not in text(page, Level.REPORT)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from separatrix.cage import rows
+from separatrix.cage import rows, run
 from separatrix.cage.disturbance import Starts, ball_places, chosen, random_starts, start_states
 from separatrix.cage.ensemble import (
     Ensemble,
@@ -257,16 +257,24 @@ def _angles(cage: MovingCage, along: Array, across: Array, places: Array) -> Arr
 
 
 def _works(record: Array, state: Array, numbers: Numbers, raw: Raw) -> dict[str, Array]:
-    """Work of each source since the start: of the looks before, and since."""
+    """Work of each source since the start: of the looks before, and since.
+
+    A run that had grown too far was judged within a look, where its works began anew.
+    """
     look = np.minimum(
         (record[:, 0] / numbers.numbers[of(rows.STEP)] / numbers.kind.steps + 1e-9).astype(int),
         raw.looks.shape[1],
     )
     looks = raw.looks[0].astype(np.float64)
     before = np.concatenate([np.zeros((1, looks.shape[1])), np.cumsum(looks, axis=0)])
+    judged = raw.evidence[0, run.JUDGED] * numbers.numbers[of(rows.STEP)] * numbers.kind.steps
+    later = record[:, 0] > judged * (1.0 + 1e-9)
+    cut = int(np.count_nonzero(~later)) - 1
     works = {}
     for name, (row, column) in SOURCES.items():
         works[name] = before[look, of(column)] + state[:, of(row)]
+        if later.any() and raw.evidence[0, run.JUDGED] % 1.0:
+            works[name] += later * state[cut, of(row)]
     return works
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
-from matplotlib.patheffects import withStroke, withTickedStroke
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator
 from matplotlib.transforms import Bbox, offset_copy
 
@@ -30,6 +30,7 @@ from separatrix.present.figure import (
     Cells,
     Figure,
     Hatched,
+    Mark,
     Numbers,
     Panel,
     Trace,
@@ -69,14 +70,7 @@ NOTHING: dict[str, dict[str, None]] = {
 """Endings of pictures, and what is left out of each so that the same data make the same bytes."""
 
 DASHES: dict[str, Any] = {"-": "-", "": "", ":": ":", "--": (0, (5, 2)), "-.": (0, (6, 1.5, 1, 1.5))}
-SYMBOLS = {
-    "eta": r"\eta",
-    "mu": r"\mu",
-    "zeta": r"\zeta",
-    "alpha": r"\alpha",
-    "xi": r"\xi",
-    "dxi": r"\delta\xi",
-}
+SYMBOLS = {name: rf"\{name}" for name in ("eta", "mu", "zeta", "alpha", "xi")} | {"dxi": r"\delta\xi"}
 SIDES: dict[str, dict[str, Any]] = {
     "right": {"xytext": (4, 0), "ha": "left", "va": "center"},
     "left": {"xytext": (-4, 0), "ha": "right", "va": "center"},
@@ -84,7 +78,8 @@ SIDES: dict[str, dict[str, Any]] = {
     "below": {"xytext": (0, -4), "ha": "center", "va": "top"},
     "on": {"xytext": (0, 0), "ha": "center", "va": "center"},
 }
-
+BESIDE: dict[str, Any] = {"xycoords": "axes fraction", "fontsize": 7.0, "annotation_clip": False}
+"""How words stand beside their place, and labels beside a panel."""
 
 MOST_NAMED = 3000.0
 """Ratio of the ends of a logarithmic axis below which 2 and 5 are named, too."""
@@ -131,11 +126,6 @@ MOST_TARGETS, MOST_CELLS, MANY = 400, 900, 5000
 """Targets of a trace, and of cells; points of a line from which it is drawn as pixels."""
 
 
-def svg(spec: Figure) -> Drawing:
-    """Return a figure as SVG, its texts drawn, and where its points with a text are."""
-    return save(spec)
-
-
 def _svg(figure: Canvas, spec: Figure) -> Drawing:
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", metadata=NOTHING[".svg"])
@@ -151,18 +141,14 @@ def _places(axes: Axes, panel: Panel) -> Iterator[tuple[float, float, str]]:
     for mark in panel.marks:
         if not isinstance(mark, Trace | Cells) or not mark.hover:
             continue
-        xs, ys, most = _scaled(mark.x, panel.x), _scaled(mark.y, panel.y), MOST_TARGETS
-        texts: Sequence[str]
+        xs, ys, most, texts = _scaled(mark.x, panel.x), _scaled(mark.y, panel.y), MOST_TARGETS, [*mark.hover]
         if isinstance(mark, Cells):
             xs, ys, most = np.tile(xs, ys.size), np.repeat(ys, xs.size), MOST_CELLS
             texts = [text for row in mark.hover for text in row]
-        else:
-            texts = mark.hover
         for x, y, text in [*zip(xs, ys, texts, strict=True)][:: -(-len(texts) // most)]:
-            inside = axes.viewLim.contains(x, y) if np.isfinite([x, y]).all() else False
-            if inside:
+            if np.isfinite([x, y]).all() and axes.viewLim.contains(x, y):
                 across, up = axes.transData.transform((x, y))
-                yield round(across * scale, 2), round(height - up * scale, 2), text
+                yield round(across * scale, 2), round(height - up * scale, 2), str(text)
 
 
 def formula(latex: str) -> Drawing:
@@ -174,8 +160,6 @@ def formula(latex: str) -> Drawing:
 
 
 _COMMENT = re.compile(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*", re.DOTALL)
-
-
 _LONG = re.compile(r"-?\d+\.\d{3,}(?!\d*e)")
 _SIZE = re.compile(r'<svg[^>]*?viewBox="0 0 ([\d.]+) ([\d.]+)"', re.DOTALL)
 
@@ -197,7 +181,7 @@ def drawn(spec: Figure) -> Canvas:
 
 
 def _drawn(spec: Figure) -> Canvas:
-    below = 0.14 * -(-len({one.name for one in _named(spec)}) // 2)
+    below = 0.14 * -(-len({one.name for one in spec.named}) // 2)
     height = spec.height * len(spec.rows) + below + LINE * len(spec.heading)
     figure = Canvas(figsize=(PAGE, height), layout="constrained")
     if spec.heading:
@@ -206,9 +190,8 @@ def _drawn(spec: Figure) -> Canvas:
     parts = figure.subfigures(len(spec.rows), 1, squeeze=False)[:, 0]
     for part, row in zip(parts, spec.rows, strict=True):
         widths = spec.widths if len(spec.widths) == len(row) else None
-        for axes, panel in zip(
-            part.subplots(1, len(row), squeeze=False, width_ratios=widths)[0], row, strict=True
-        ):
+        across = part.subplots(1, len(row), squeeze=False, width_ratios=widths)[0]
+        for axes, panel in zip(across, row, strict=True):
             draw_panel(axes, panel)
     for one in spec.legend:
         _trace(figure.axes[0], one, spec.panels[0])
@@ -226,41 +209,13 @@ def _drawn(spec: Figure) -> Canvas:
     return figure
 
 
-def _named(spec: Figure) -> list[Any]:
-    marks = [one for panel in spec.panels for one in panel.marks]
-    return [one for one in (*marks, *spec.legend) if getattr(one, "name", "")]
-
-
 def draw_panel(axes: Axes, panel: Panel) -> None:
     """Draw title, marks, axes and labels of a panel."""
     axes.set_title(symbols(panel.title))
-    for way, one in (("x", panel.x), ("y", panel.y)):
-        if one.is_log:
-            getattr(axes, f"set_{way}scale")("log")
+    x, y = ("log" if one.is_log else "linear" for one in (panel.x, panel.y))
+    axes.set(xscale=x, yscale=y)
     for mark in panel.marks:
-        match mark:
-            case Trace():
-                _trace(axes, mark, panel)
-            case Band():
-                low, high = (_scaled(end, panel.y) for end in (mark.low, mark.high))
-                look: Any = {"color": mark.colour, "alpha": mark.opacity, "lw": 0}
-                axes.fill_between(
-                    _scaled(mark.x, panel.x), low, high, **look, label=symbols(mark.name) or None
-                )
-            case Across():
-                size, draw = (
-                    (panel.x.size, axes.axvline) if mark.axis == "x" else (panel.y.size, axes.axhline)
-                )
-                look = {"color": mark.colour, "ls": DASHES[mark.line], "lw": 1.0}
-                draw(mark.at / size, **look, label=symbols(mark.name) or None)
-            case Cells():
-                _cells(axes, mark, panel)
-            case Hatched():
-                _hatched(axes, mark, panel)
-            case Words():
-                place = mark.x / panel.x.size, mark.y / panel.y.size
-                look = {"textcoords": "offset points", "fontsize": 7.0, "annotation_clip": False}
-                axes.annotate(symbols(mark.text), place, color=mark.colour, **look, **SIDES[mark.side])
+        _mark(axes, mark, panel)
     _axis(axes, "x", panel.x)
     _axis(axes, "y", panel.y)
     if not panel.has_frame:
@@ -273,31 +228,48 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
         _labels(axes, panel)
 
 
+def _mark(axes: Axes, mark: Mark, panel: Panel) -> None:
+    look: Any
+    match mark:
+        case Trace():
+            _trace(axes, mark, panel)
+        case Band():
+            low, high = (_scaled(end, panel.y) for end in (mark.low, mark.high))
+            look = {"color": mark.colour, "alpha": mark.opacity, "lw": 0, "label": symbols(mark.name) or None}
+            axes.fill_between(_scaled(mark.x, panel.x), low, high, **look)
+        case Across():
+            along = panel.x if mark.axis == "x" else panel.y
+            look = {"color": mark.colour, "ls": DASHES[mark.line], "lw": 1.0}
+            draw = axes.axvline if mark.axis == "x" else axes.axhline
+            draw(mark.at / along.size, **look, label=symbols(mark.name) or None)
+        case Cells():
+            _cells(axes, mark, panel)
+        case Hatched():
+            _hatched(axes, mark, panel)
+        case Words():
+            place = mark.x / panel.x.size, mark.y / panel.y.size
+            look = {"textcoords": "offset points", "fontsize": 7.0, "annotation_clip": False}
+            axes.annotate(symbols(mark.text), place, color=mark.colour, **look, **SIDES[mark.side])
+
+
 def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
+    ends = [None if end is None else end / one.size for end in (one.low, one.high)]
     getattr(axes, f"set_{way}label")(symbols(one.label))
-    ends = {
-        end: value / one.size
-        for end, value in (
-            ({"x": "left", "y": "bottom"}[way], one.low),
-            ({"x": "right", "y": "top"}[way], one.high),
-        )
-        if value is not None
-    }
-    if ends:
-        getattr(axes, f"set_{way}lim")(**ends)
+    if ends != [None, None]:
+        getattr(axes, f"set_{way}lim")(*ends)
+    ticks = getattr(axes, f"set_{way}ticks")
     if one.is_log:
         _log_ticks(axes.xaxis if way == "x" else axes.yaxis)
-    if one.names:
-        getattr(axes, f"set_{way}ticks")(range(len(one.names)), [_literal(name) for name in one.names])
-        axes.tick_params(axis=way, length=0)
     if one.most_ticks:
         axes.locator_params(axis=way, nbins=one.most_ticks)
+    if one.names:
+        axes.tick_params(axis=way, length=0)
+        ticks(range(len(one.names)), [_literal(name) for name in one.names])
     if one.ticks:
-        places, names = zip(*one.ticks, strict=True)
-        getattr(axes, f"set_{way}ticks")([at / one.size for at in places], [_literal(name) for name in names])
-        getattr(axes, f"set_{way}ticks")([], minor=True)
+        ticks([at / one.size for at, _ in one.ticks], [_literal(name) for _, name in one.ticks])
+        ticks([], minor=True)
     if not one.has_ticks:
-        getattr(axes, f"set_{way}ticks")([])
+        ticks([])
 
 
 def _log_ticks(axis: Any) -> None:
@@ -320,21 +292,13 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     if one.face:
         axes.fill(x, y, facecolor=one.face, lw=0, zorder=2)
     if one.low:
-        low, high = (
-            _scaled(end, panel.x if one.ends_along == "x" else panel.y) for end in (one.low, one.high)
-        )
+        along = panel.x if one.ends_along == "x" else panel.y
         draw, place = (axes.hlines, y) if one.ends_along == "x" else (axes.vlines, x)
-        draw(place, low, high, color=one.colour, lw=1.4, zorder=3)
+        draw(place, _scaled(one.low, along), _scaled(one.high, along), color=one.colour, lw=1.4, zorder=3)
     marker = f"${one.marker}$" if one.marker == "*" else one.marker
     look: Any = {"color": one.colour, "ls": DASHES[one.line], "lw": one.width, "marker": marker or None}
-    look |= {"alpha": one.opacity, "rasterized": len(x) > MANY}
-    if one.has_ticks:
-        look["path_effects"] = [withTickedStroke(angle=90, spacing=9, length=0.5)]
-    look |= {
-        "ms": one.size,
-        "mfc": "white" if one.is_open else one.colour,
-        "label": symbols(one.name) or None,
-    }
+    look |= {"alpha": one.opacity, "rasterized": len(x) > MANY, "label": symbols(one.name) or None}
+    look |= {"ms": one.size, "mfc": "white" if one.is_open else one.colour}
     if one.has_halo:
         look["path_effects"] = [withStroke(linewidth=one.width + 1.6, foreground="white")]
     axes.plot(x, y, zorder=2 if one.line else 4, clip_on=bool(one.line) or not len(x), **look)
@@ -387,22 +351,14 @@ def _labels(axes: Axes, panel: Panel) -> None:
     for one, at, place in zip(panel.labels, wanted, places, strict=True):
         if one.marker:
             axes.plot(1.02, at, one.marker, color=one.colour, ms=5, transform=axes.transAxes, clip_on=False)
-        tie: Any = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 1.0, "shrinkB": 0.0, "color": one.colour}
-        axes.annotate(
-            symbols(one.text),
-            (1.0, at),
-            xycoords="axes fraction",
-            xytext=(1.0, place),
-            textcoords=aside,
-            va="center",
-            fontsize=7.0,
-            color=one.colour,
-            annotation_clip=False,
-            arrowprops={**tie, "relpos": (0.0, 0.5)} if moved and not one.marker else None,
-        )
+        look: Any = {"textcoords": aside, "xytext": (1.0, place), "va": "center", "color": one.colour}
+        if moved and not one.marker:
+            tie = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 1.0, "shrinkB": 0.0, "color": one.colour}
+            look["arrowprops"] = {**tie, "relpos": (0.0, 0.5)}
+        axes.annotate(symbols(one.text), (1.0, at), **look, **BESIDE)
     if panel.head:
-        look: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 7, "color": GREY}
-        axes.annotate(symbols(panel.head), (1, 1), xytext=(8, 5), **look)
+        look = {"textcoords": "offset points", "xytext": (8, 5), "color": GREY}
+        axes.annotate(symbols(panel.head), (1, 1), **look, **BESIDE)
 
 
 def _legend(figure: Canvas) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 PURPLE, SKY, BLACK, GREY = "#CC79A7", "#56B4E9", "#000000", "#6b6b6b"
@@ -44,8 +45,7 @@ class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
     `fill` is the opacity inside a closed line, `face` a colour there that hides what was drawn before,
-    `has_halo` a white edge above colours. A line `has_ticks` on its left where one side of it is meant. A
-    trace without points stands only in the legend.
+    `has_halo` a white edge above colours. A trace without points stands only in the legend.
     """
 
     x: Numbers
@@ -62,7 +62,6 @@ class Trace:
     ends_along: str = "y"
     fill: float = 0.0
     opacity: float = 1.0
-    has_ticks: bool = False
     has_halo: bool = False
     face: str = ""
     hover: tuple[str, ...] = ()
@@ -145,7 +144,7 @@ Mark = Trace | Band | Across | Cells | Hatched | Words
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
-    """Marks over two axes; `head` is above its labels.
+    """Marks over two axes, that of y with both ends where there are `labels`; `head` is above these.
 
     A drawing has no frame: the label of x is what stands below it.
     """
@@ -179,6 +178,12 @@ class Figure:
     def panels(self) -> list[Panel]:
         """All of them, row by row."""
         return [panel for row in self.rows for panel in row]
+
+    @property
+    def named(self) -> list[Any]:
+        """What has a name in the legend."""
+        marks = [one for panel in self.panels for one in panel.marks]
+        return [one for one in (*marks, *self.legend) if getattr(one, "name", "")]
 
 
 def sign(marker: str, colour: str, name: str, *, line: str = "", is_open: bool = False) -> Trace:

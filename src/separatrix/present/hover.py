@@ -30,7 +30,7 @@ Json = dict[str, Any]
 SIGNS = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triangle-down", "X": "x", "D": "diamond"}
 SIGNS |= {"x": "x-thin-open", "P": "cross", "*": "star", "p": "pentagon", "+": "cross-thin-open"}
 SIGNS |= {"|": "line-ns-open", "_": "line-ew-open", ".": "circle"}
-LINES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
+LINES = {"": "solid", "-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 SIDES: dict[str, Json] = {
     "right": {"xanchor": "left", "xshift": 5, "yanchor": "middle"},
     "left": {"xanchor": "right", "xshift": -5, "yanchor": "middle"},
@@ -51,9 +51,9 @@ def plotly(spec: Figure) -> Json:
     `meta` has, for each panel, the sizes of the units of its axes: what a reader points at times these is
     in SI.
     """
-    names = [one.name for one in _named(spec)]
-    keys = KEY * ceil(sum(len(one) + 9 for one in dict.fromkeys(names)) / LINE) + 14 if names else 6
-    slot = HEAD + FOOT + INCH * spec.height
+    names = dict.fromkeys(one.name for one in spec.named)
+    keys = KEY * ceil(sum(len(one) + 9 for one in names) / LINE) + 14 if names else 6
+    inside, slot = INCH * spec.height, HEAD + FOOT + INCH * spec.height
     layout: Json = {
         "hovermode": "closest",
         "height": slot * len(spec.rows) + keys,
@@ -65,43 +65,35 @@ def plotly(spec: Figure) -> Json:
     }
     data: list[Json] = []
     known: set[str] = set()
+    ends = iter(["", *map(str, range(2, len(spec.panels) + 1))])
     for row, panels in enumerate(spec.rows):
         top = 1 - (row + HEAD / slot) / len(spec.rows)
-        across = _shares(panels, spec.widths)
-        for panel, ends in zip(panels, across, strict=True):
-            end = str(n) if (n := len([one for one in layout if one.startswith("xaxis")]) + 1) > 1 else ""
-            height = [top - INCH * spec.height / slot / len(spec.rows), top]
-            _panel(layout, data, panel, end, known, {"x": ends, "y": height})
+        height = [top - inside / slot / len(spec.rows), top]
+        for panel, across in zip(panels, _shares(panels, spec.widths), strict=True):
+            _panel(layout, data, panel, next(ends), known, {"x": across, "y": height})
     data += [_once(_trace(one, spec.panels[0], ""), one.name, known) for one in spec.legend]
     return {"data": data, "layout": layout}
 
 
-def _named(spec: Figure) -> list[Any]:
-    marks = [one for panel in spec.panels for one in panel.marks]
-    return [one for one in (*marks, *spec.legend) if getattr(one, "name", "")]
-
-
 def _shares(panels: tuple[Panel, ...], widths: tuple[float, ...]) -> Iterator[list[float]]:
     """Yield the ends of each panel of a row, with room for what stands beside it."""
-    given = widths if len(widths) == len(panels) else (1.0,) * len(panels)
-    at = 0.0
-    for place, (panel, width) in enumerate(zip(panels, given, strict=True)):
+    given, at = widths if len(widths) == len(panels) else (1.0,) * len(panels), 0.0
+    for panel, width in zip(panels, given, strict=True):
         share = width / sum(given)
-        letters = [len(one.text) + 3 * bool(one.marker) for one in panel.labels]
-        beside = 0.01 + LETTER * max(letters, default=0)
+        beside = 0.01 + LETTER * max(
+            (len(one.text) + 3 * bool(one.marker) for one in panel.labels), default=0
+        )
         beside += BAR if any(isinstance(one, Cells) for one in panel.marks) else 0.0
-        yield [
-            at + (ASIDE * share * len(panels) / 2 if place else 0.0),
-            at + share - min(beside, 0.6 * share),
-        ]
+        before = ASIDE * share * len(panels) / 2 if at else 0.0
+        yield [at + before, at + share - min(beside, 0.6 * share)]
         at += share
 
 
 def _panel(layout: Json, data: list[Json], panel: Panel, end: str, known: set[str], place: Json) -> None:
     x, y, axes = f"x{end}", f"y{end}", {"xaxis": f"x{end}", "yaxis": f"y{end}"}
     bare = {} if panel.has_frame else {"showgrid": False, "showticklabels": False, "ticks": ""}
-    layout[f"xaxis{end}"] = _axis(panel.x, _values(panel, "x")) | {"domain": place["x"], "anchor": y} | bare
-    layout[f"yaxis{end}"] = _axis(panel.y, _values(panel, "y")) | {"domain": place["y"], "anchor": x} | bare
+    layout[f"xaxis{end}"] = _axis(panel.x) | {"domain": place["x"], "anchor": y} | bare
+    layout[f"yaxis{end}"] = _axis(panel.y) | {"domain": place["y"], "anchor": x} | bare
     if panel.is_to_scale:
         layout[f"yaxis{end}"] |= {"scaleanchor": x}
         layout[f"xaxis{end}"].pop("range", None)
@@ -119,7 +111,9 @@ def _panel(layout: Json, data: list[Json], panel: Panel, end: str, known: set[st
                 layout["shapes"].append(_once(_across(mark, panel, x, y), mark.name, known))
             case Words():
                 at = {"x": _placed(mark.x, panel.x), "y": _placed(mark.y, panel.y), "xref": x, "yref": y}
-                layout["annotations"].append(_words(mark.text, mark.colour) | at | SIDES[mark.side])
+                font = {"size": 12, "color": mark.colour}
+                words = {"text": _text(mark.text), "showarrow": False, "font": font, "align": "left"}
+                layout["annotations"].append(words | at | SIDES[mark.side])
     layout["annotations"] += _beside(panel, layout[f"yaxis{end}"], place, y)
 
 
@@ -130,40 +124,20 @@ def _once(found: Json, name: str, known: set[str]) -> Json:
     return found | {"name": _text(name), "legendgroup": name, "showlegend": is_new}
 
 
-def _axis(one: Axis, values: list[float]) -> Json:
+def _axis(one: Axis) -> Json:
     grid = {"zeroline": False, "gridcolor": "rgba(128,128,128,0.22)", "linecolor": GREY, "ticks": "outside"}
-    found: Json = {"title": {"text": _text(one.label), "standoff": 8}, "type": "linear", **grid}
-    if one.is_log:
-        found |= {"type": "log", "dtick": "D1" if len({*map(round, map(log10, values))}) < 2 else 1}
+    found: Json = {"title": {"text": _text(one.label), "standoff": 8}, **grid}
+    found["type"] = "log" if one.is_log else "linear"
     if one.low is not None or one.high is not None:
-        ends = [min(values, default=0.0), max(values, default=1.0)]
-        given = [own if own is not None else end for own, end in zip((one.low, one.high), ends, strict=True)]
-        found["range"] = [_placed(value, one) for value in given]
-    if one.ticks:
-        found["tickvals"] = [at / one.size for at, _ in one.ticks]
-        found["ticktext"] = [_text(name) for _, name in one.ticks]
+        found["range"] = [None if end is None else _placed(end, one) for end in (one.low, one.high)]
+    ticks = [(at / one.size, name) for at, name in one.ticks] or [*enumerate(one.names)]
+    if ticks:
+        found |= {"tickvals": [at for at, _ in ticks], "ticktext": [_text(name) for _, name in ticks]}
+    if one.names:
+        found |= {"automargin": True, "showgrid": False}
     if one.most_ticks:
         found["nticks"] = one.most_ticks
-    if one.names:
-        found |= {"tickvals": [*range(len(one.names))], "ticktext": [*map(_text, one.names)]}
-        found |= {"automargin": True, "showgrid": False}
     return found | ({} if one.has_ticks else {"showticklabels": False, "ticks": ""})
-
-
-def _values(panel: Panel, way: str) -> list[float]:
-    """Return every number that a panel shows along an axis [SI]."""
-    axis: Axis = getattr(panel, way)
-    found: list[float | None] = []
-    for mark in panel.marks:
-        match mark:
-            case Trace() | Cells() | Hatched():
-                found += getattr(mark, way)
-                found += [*mark.low, *mark.high] if isinstance(mark, Trace) and mark.ends_along == way else []
-            case Band():
-                found += mark.x if way == "x" else [*mark.low, *mark.high]
-            case Across() if mark.axis == way:
-                found.append(mark.at)
-    return [one for one in found if one is not None and (one > 0.0 or not axis.is_log)]
 
 
 def _placed(value: float, axis: Axis) -> float:
@@ -175,36 +149,28 @@ def _scaled(values: Numbers, axis: Axis) -> list[float | None]:
     return [None if one is None else one / axis.size for one in values]
 
 
-def _words(text: str, colour: str) -> Json:
-    return {"text": _text(text), "showarrow": False, "font": {"size": 12, "color": colour}, "align": "left"}
-
-
 def _beside(panel: Panel, axis: Json, place: Json, y: str) -> Iterator[Json]:
     """Yield the title above a panel and the labels at its right, apart where they would overlap."""
-    fixed: Json = {"showarrow": False, "xref": "paper", "xanchor": "left"}
-    above = fixed | {"yref": f"{y} domain", "y": 1.0, "yanchor": "bottom"}
+    fixed: Json = {"showarrow": False, "xref": "paper", "xanchor": "left", "yref": f"{y} domain"}
+    above, right = fixed | {"y": 1.0, "yanchor": "bottom"}, place["x"][1] + 0.008
     yield above | {"x": place["x"][0], "text": f"<b>{_text(panel.title)}</b>", "font": {"size": 13}}
-    right = fixed | {"x": place["x"][1] + 0.008, "yref": f"{y} domain", "yanchor": "middle"}
     if panel.head:
-        yield (
-            right | above | {"x": right["x"], "text": _text(panel.head), "font": {"size": 11, "color": GREY}}
-        )
+        yield above | {"x": right, "text": _text(panel.head), "font": {"size": 11, "color": GREY}}
     if not panel.labels:
         return
-    values = [_placed(one, panel.y) for one in _values(panel, "y")]
-    room = 0.06 * (max(values) - min(values) or 1.0)
-    low, high = axis.setdefault("range", [min(values) - room, max(values) + room])
+    low, high = axis["range"]
     wanted = [(_placed(one.y, panel.y) - low) / (high - low or 1.0) for one in panel.labels]
     for one, at in zip(panel.labels, apart(wanted, 0.075), strict=True):
+        look: Json = {"yanchor": "middle", "font": {"size": 12, "color": one.colour}}
         sign = "\N{BLACK CIRCLE} " if one.marker else ""
-        yield right | {"y": at, "text": sign + _text(one.text), "font": {"size": 12, "color": one.colour}}
+        yield fixed | look | {"x": right, "y": at, "text": sign + _text(one.text)}
 
 
 def _trace(one: Trace, panel: Panel, end: str) -> Json:
     x, y = _scaled(one.x, panel.x) or [None], _scaled(one.y, panel.y) or [None]
     mode = "+".join(["lines"] * bool(one.line) + ["markers"] * bool(one.marker)) or "none"
     found: Json = {"x": x, "y": y, "mode": mode, "xaxis": f"x{end}", "yaxis": f"y{end}"}
-    found["line"] = {"color": one.colour, "width": 1.4 * one.width, "dash": LINES.get(one.line, "solid")}
+    found["line"] = {"color": one.colour, "width": 1.4 * one.width, "dash": LINES[one.line]}
     if one.marker:
         sign, inside, edge = SIGNS.get(one.marker, "circle"), one.colour, one.colour
         if one.has_halo:  # above colours
@@ -222,12 +188,11 @@ def _trace(one: Trace, panel: Panel, end: str) -> Json:
         found["hovertemplate"] = _template(panel)
     if one.low:
         way, axis = one.ends_along, panel.x if one.ends_along == "x" else panel.y
-        ends = _scaled(one.low, axis), _scaled(one.high, axis)
         look = {"type": "data", "symmetric": False, "color": one.colour, "thickness": 1.6, "width": 0}
-        found[f"error_{way}"] = look | {
-            "array": [*map(_less, ends[1], found[way])],
-            "arrayminus": [*map(_less, found[way], ends[0])],
-        }
+        for key, ends, sense in (("array", one.high, 1), ("arrayminus", one.low, -1)):
+            pairs = zip(_scaled(ends, axis), found[way], strict=True)
+            look[key] = [None if a is None or b is None else sense * (a - b) for a, b in pairs]
+        found[f"error_{way}"] = look
     return found
 
 
@@ -235,10 +200,6 @@ def _template(panel: Panel) -> str:
     """Return what the pointer shows of a point without a text of its own: both values with their labels."""
     labels = (_text(one.label).replace("{", "(").replace("}", ")") for one in (panel.x, panel.y))
     return "<br>".join(f"{label}: %{{{way}:.4~g}}" for way, label in zip("xy", labels, strict=True))
-
-
-def _less(a: float | None, b: float | None) -> float | None:
-    return None if a is None or b is None else a - b
 
 
 def _band(one: Band, panel: Panel) -> Iterator[Json]:
@@ -250,32 +211,19 @@ def _band(one: Band, panel: Panel) -> Iterator[Json]:
 
 def _across(one: Across, panel: Panel, x: str, y: str) -> Json:
     """Return a line over a whole panel, with its name in the legend."""
-    way, other = ("x", "y") if one.axis == "x" else ("y", "x")
-    at = one.at / getattr(panel, way).size
-    refs = {"xref": x, "yref": y} | {f"{other}ref": f"{y if way == 'x' else x} domain"}
-    line = {"color": one.colour, "width": 1.6, "dash": LINES.get(one.line, "solid")}
-    return {
-        "type": "line",
-        **refs,
-        f"{way}0": at,
-        f"{way}1": at,
-        f"{other}0": 0,
-        f"{other}1": 1,
-        "line": line,
-    }
+    at = one.at / getattr(panel, one.axis).size
+    ends = {"x0": at, "x1": at, "y0": 0, "y1": 1, "xref": x, "yref": f"{y} domain"}
+    if one.axis == "y":
+        ends = {"y0": at, "y1": at, "x0": 0, "x1": 1, "yref": y, "xref": f"{x} domain"}
+    return {"type": "line", "line": {"color": one.colour, "width": 1.6, "dash": LINES[one.line]}, **ends}
 
 
 def _hatched(one: Hatched, panel: Panel) -> Json:
     """Return cells with a thin veil: Plotly has no strokes there."""
-    veil = one.fill or one.colour
     found: Json = {"type": "heatmap", "x": _scaled(one.x, panel.x), "y": _scaled(one.y, panel.y)}
-    found["z"] = [[1 if is_one else None for is_one in row] for row in one.where]
-    return found | {
-        "colorscale": [[0, veil], [1, veil]],
-        "showscale": False,
-        "opacity": 0.4,
-        "hoverinfo": "skip",
-    }
+    found |= {"z": [[1 if is_one else None for is_one in row] for row in one.where], "showscale": False}
+    shades = [[end, one.fill or one.colour] for end in (0, 1)]
+    return found | {"colorscale": shades, "opacity": 0.4, "hoverinfo": "skip"}
 
 
 def _cells(one: Cells, panel: Panel, place: Json) -> Json:

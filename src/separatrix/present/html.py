@@ -182,7 +182,7 @@ def _meant(cell: Cell, text: str) -> str:
 
 def _picture(one: Picture) -> str:
     spec = one.figure()
-    return picture_html(one, draw.svg(spec), spec.alt)
+    return picture_html(one, draw.save(spec), spec.alt)
 
 
 def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:

@@ -62,7 +62,7 @@ def _block(block: Block) -> dict[str, Any]:
         case Picture():
             spec = block.figure()
             found = {"kind": "picture", "alt": spec.alt, "caption": _spans(block.caption)}
-            return found | _drawn(draw.svg(spec))
+            return found | _drawn(draw.save(spec))
         case _:
             raise TypeError(type(block).__name__)
 

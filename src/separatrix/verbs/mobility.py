@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
@@ -19,10 +20,10 @@ from separatrix.present.blocks import (
     facts,
     text_column,
 )
-from separatrix.present.figure import BLACK, BLUE, GREEN, GREY, VERMILION, Across, Figure, Panel, Trace
+from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.refused import push, refused, rolling
-from separatrix.verbs.parts.telling import axis, cell, named, number_of, place_column, quantity, said, told
+from separatrix.verbs.parts.telling import axis, cell, named, place_column, quantity, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -41,7 +42,6 @@ SMALL = (
     "slip_speed_inner",
     "slip_speed_outer",
 )
-SHOWN_PUSHES = 8
 
 
 def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
@@ -68,11 +68,7 @@ def page(answer: Part) -> Page:
         "{damping}, and carry at most {capacity}."
     )
     law = answer.traction
-    pushes = range(len(answer.speed))
-    shown = tuple(pushes[:: -max(1, len(pushes) // SHOWN_PUSHES)][::-1])
-    columns = tuple(
-        place_column(answer, name) for name in ("speed", "force_forward", "force_backward", "force_law")
-    )
+    columns = map(partial(place_column, answer), ("speed", "force_forward", "force_backward", "force_law"))
     return page_of(
         answer,
         Note(said(answer, lead), "lead"),
@@ -92,8 +88,7 @@ def page(answer: Part) -> Page:
             ("Largest error of the law", said(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", said(answer, "up to {asymmetry} of the capacity")),
         ),
-        Table("pushes", columns, shown, level=Level.ALWAYS),
-        Table("all pushes", columns, tuple(pushes), level=Level.SHEET),
+        Table("pushes", tuple(columns), tuple(range(len(answer.speed))), level=Level.SHEET),
         Picture(
             "mobility",
             lambda: push_figure(answer),
@@ -114,61 +109,35 @@ def small_motion(answer: Part) -> Table:
 
 def modes(answer: Part) -> Table:
     """Return the modes of a pushed ball, by rising rate."""
-    count = len(answer.rates)
-    rigid = answer.rigid.rates
-    other = Column(
-        "rate, rigid",
-        lambda i: Cell(rigid[i] if i < len(rigid) else None, quantity("rates"), answer.rigid.unit("rates")),
-    )
+    rigid = dict(enumerate(answer.rigid.rates))
+    unit = answer.rigid.unit("rates")
     columns = [text_column("mode", lambda i: str(i + 1)), place_column(answer, "rates")]
     columns += [place_column(answer, "oscillations")] if any(answer.oscillations) else []
-    return Table("modes", (*columns, place_column(answer, "shares"), other), tuple(range(count)))
+    columns += [place_column(answer, "shares")]
+    columns += [Column("rate, rigid", lambda i: Cell(rigid.get(i), quantity("rates"), unit))]
+    return Table("modes", tuple(columns), tuple(range(len(answer.rates))))
 
 
 def push_figure(answer: Part) -> Figure:
     """Return F(u) of the slip fields both ways, the law, its slope and the capacity."""
-    u = [0.0, *answer.speed]
-    capacity, damping = answer.capacity, answer.damping
-    look = {"forward": (BLUE, "-"), "backward": (VERMILION, "--"), "law": (GREEN, "-.")}
-    words = {"forward": "slip fields, pushed forward", "backward": "slip fields, pushed backward"}
-    marks = [
-        Trace(
-            x=u,
-            y=[0.0, *getattr(answer, f"force_{way}")],
-            name=words.get(way, "law of traction $F(u)$"),
-            colour=colour,
-            line=line,
-            hover=tuple(
-                f"{way}: {number_of(answer, 'speed', x)}, {number_of(answer, f'force_{way}', y)}"
-                for x, y in zip(u, [0.0, *getattr(answer, f"force_{way}")], strict=True)
-            ),
-        )
-        for way, (colour, line) in look.items()
+    u, capacity = [0.0, *answer.speed], answer.capacity
+    top, name = 1.15 * capacity, said(answer, "$C_f$ $u$, damping {damping}")
+    marks: list[Mark] = [
+        Across(at=capacity, axis="y", name=said(answer, "capacity {capacity}"), colour=GREY, line="--"),
+        Trace(x=[0.0, top / answer.damping], y=[0.0, top], name=name, line=":", width=1.0),
     ]
-    linear = Trace(
-        x=[0.0, 1.15 * capacity / damping],
-        y=[0.0, 1.15 * capacity],
-        name=said(answer, "$C_f$ $u$, damping {damping}"),
-        colour=BLACK,
-        line=":",
-        width=1.0,
-    )
-    bound = Across(at=capacity, axis="y", name=said(answer, "capacity {capacity}"), colour=GREY, line="--")
-    panel = Panel(
-        title="Ball pushed along its orbit",
-        x=axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1]),
-        y=axis(
-            "force_law",
-            answer.unit("capacity"),
-            [capacity],
-            label="force of the races $F$",
-            low=0.0,
-            high=1.25 * capacity,
-        ),
-        marks=(bound, linear, *marks),
-    )
+    for way, name, colour, line in (
+        ("forward", "slip fields, pushed forward", BLUE, "-"),
+        ("backward", "slip fields, pushed backward", VERMILION, "--"),
+        ("law", "law of traction $F(u)$", GREEN, "-."),
+    ):
+        force = [0.0, *getattr(answer, f"force_{way}")]
+        marks.append(Trace(x=u, y=force, name=name, colour=colour, line=line))
+    x = axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1])
+    label, most = "force of the races $F$", 1.25 * capacity
+    y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
     return Figure(
-        rows=((panel,),),
+        rows=((Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks)),),),
         heading=figure_heading(answer),
         height=3.2,
         alt="Force against speed: it rises with the damping, then levels off at the capacity of the races.",

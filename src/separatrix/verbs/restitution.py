@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from itertools import cycle
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_number
 from separatrix.present.blocks import Block, Cell, Column, Level, Note, Page, Picture, Table
-from separatrix.present.figure import BLACK, SEQUENCE, Figure, Mark, Panel, Trace
+from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import entry_words, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
 from separatrix.verbs.parts.refused import impact, refused, rolling
-from separatrix.verbs.parts.telling import axis, number_of, place_column, quantity, said, told
+from separatrix.verbs.parts.telling import axis, number_of, place_column, quantity, said
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -97,56 +98,32 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     )
 
 
-def this_bearing(answer: Part) -> str:
-    """Return the name of the star, with the race friction, which may be between the curves."""
-    return (
-        f"this bearing, race friction $f_BT$ = {entry_words(answer.values['study']['film']['race_friction'])}"
-    )
-
-
 def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:
     """Return a curve for each race friction; bare races are apart from the films, at the left."""
     thickness: Sequence[float] = curve.film_thickness
     films = [place for place, one in enumerate(thickness) if one > 0.0]
     bare = 0.2 * min(thickness[place] for place in films)
-    lines = ("-", "--", "-.", ":", "-")
     marks: list[Mark] = []
-    for place, (friction, eta) in enumerate(zip(curve.race_friction, getattr(curve, name), strict=True)):
-        said_friction = f"$f_BT$ = {number_of(curve, 'race_friction', friction)}"
-        look: dict[str, Any] = {"colour": SEQUENCE[place % len(SEQUENCE)], "line": lines[place % len(lines)]}
-        hover = tuple(
-            f"{said_friction.replace('$', '')}, {number_of(curve, 'film_thickness', thickness[i])}: eta "
-            f"{number_of(curve, name, eta[i])}"
-            for i in films
-        )
-        places, heights = [thickness[i] for i in films], [eta[i] for i in films]
-        marks.append(Trace(x=places, y=heights, name=f"race friction {said_friction}", hover=hover, **look))
+    looks = zip(cycle(SEQUENCE), cycle(("-", "--", "-.", ":")), strict=False)
+    for friction, eta, (colour, line) in zip(curve.race_friction, getattr(curve, name), looks, strict=False):
+        words = f"race friction $f_BT$ = {number_of(curve, 'race_friction', friction)}"
+        x, y = [thickness[i] for i in films], [eta[i] for i in films]
+        marks.append(Trace(x=x, y=y, name=words, colour=colour, line=line))
         at = [one for i, one in enumerate(eta) if i not in films]
-        marks.append(Trace(x=[bare] * len(at), y=at, marker="o", line="", colour=look["colour"], size=3.5))
+        marks.append(Trace(x=[bare] * len(at), y=at, marker="o", line="", colour=colour, size=3.5))
+    own = entry_words(answer.values["study"]["film"]["race_friction"])
+    words = f"this bearing, race friction $f_BT$ = {own}"
     here = answer.film_thickness_here or bare
-    own = getattr(answer, name)
-    star: dict[str, Any] = {"marker": "*", "line": "", "size": 9.0, "colour": BLACK}
-    marks.append(
-        Trace(
-            x=[here],
-            y=[own],
-            name=this_bearing(answer),
-            hover=(f"this bearing: eta {told(answer, name)}",),
-            **star,
-        )
-    )
-    x = axis("film_thickness", curve.unit("film_thickness"), [1e-6], is_log=True)
+    marks.append(Trace(x=[here], y=[getattr(answer, name)], name=words, marker="*", line="", size=9.0))
+    along = axis("film_thickness", curve.unit("film_thickness"), [1e-6], is_log=True)
     decades = [10.0**power for power in range(-9, -3) if bare < 10.0**power <= 1.001 * max(thickness)]
-    ticks = ((bare, "bare"), *((one, format_number(one / x.size)) for one in decades))
-    x = replace(x, low=0.5 * bare, high=1.3 * max(thickness), ticks=ticks)
-    y = axis("restitution_factor", curve.unit(name), [1.0], low=-0.02, high=1.0)
-    return Panel(title=title, x=x, y=y, marks=tuple(marks))
+    ticks = ((bare, "bare"), *((one, format_number(one / along.size)) for one in decades))
+    return Panel(
+        title=title,
+        x=replace(along, low=0.5 * bare, high=1.3 * max(thickness), ticks=ticks),
+        y=axis("restitution_factor", curve.unit(name), [1.0], low=-0.02, high=1.0),
+        marks=tuple(marks),
+    )
 
 
-VERB = Verb(
-    name="restitution",
-    compute=compute,
-    page=page,
-    needs=("cage",),
-    refusals=refusals,
-)
+VERB = Verb(name="restitution", compute=compute, page=page, needs=("cage",), refusals=refusals)

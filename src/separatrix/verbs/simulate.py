@@ -10,11 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
-from separatrix.ground.quantity import alone
 from separatrix.ground.units import NUMBER, printable
 from separatrix.present.blocks import (
-    Cell,
-    Column,
     Facts,
     Heading,
     Level,
@@ -26,11 +23,11 @@ from separatrix.present.blocks import (
     facts,
     text_column,
 )
-from separatrix.present.figure import Figure
+from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.refused import refused
-from separatrix.verbs.parts.telling import quantity, said, told
+from separatrix.verbs.parts.telling import number_of, place_column, said, told
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
@@ -69,7 +66,7 @@ class Options:
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
-    """Follow one run of the ensemble, by default the first from the reference kick."""
+    """Follow one run of the ensemble, by default the first from the reference disturbance."""
     from separatrix.cage import analyse, settings_for
     from separatrix.cage import simulate as follow
     from separatrix.chain.solution import solve
@@ -85,28 +82,19 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         raise InputError("--animate", "must be gif", got=printable(options.animate))
     if not 0 <= options.run <= MOST_RUNS:
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
-    given = None if options.kick is None else kick_speed(options.kick)
+    given, eta = None if options.kick is None else kick_speed(options.kick), given_factor(options)
     solution = solve(study)
     require_friction(study)
     cage = cage_of(solution)
     settings = settings_for(study.stability, cage)
-    eta = given_factor(options)
-    if eta is not None:
-        cage = cage_at(cage, eta, cage.ball_cage_friction)
+    cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
     speed = settings.middle_kick if given is None else given
-    history = follow(
-        cage,
-        kick=speed,
-        run=options.run,
-        seed=settings.seed,
-        duration=settings.duration,
-        ball_scatter=settings.ball_scatter,
-        samples=MOST_SHOWN,
-    )
-    made_of = cage_candidate(study)
+    asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
+    history = follow(cage, kick=speed, run=options.run, samples=MOST_SHOWN, **asked)
+    limit, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
     name = made_of.name if made_of else "The cage"
-    moved = [Moved(name, history.largest_contact_force, history.largest_offset)]
-    limit = force_limit(cage, transmitted_force(solution))
+    moved = Moved(name, history.largest_contact_force, history.largest_offset)
+    notes = *solution.notes, *cage.notes, *extrapolation_notes(solution), *beyond_motion(solution, [moved])
     return SimulationAnswer(
         solution=solution,
         cage=cage,
@@ -116,12 +104,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         run=options.run,
         given_restitution_factor=eta,
         force_limit=limit if isfinite(limit) else None,
-        notes=(
-            *solution.notes,
-            *cage.notes,
-            *extrapolation_notes(solution),
-            *beyond_motion(solution, moved),
-        ),
+        notes=notes,
     )
 
 
@@ -157,7 +140,7 @@ def page(answer: Part) -> Page:
         Heading("Forces, rubbing and work"),
         force_facts(answer),
         pockets(answer),
-        Picture("simulation", lambda: _figure(answer), _caption(answer)),
+        Picture("simulation", lambda: _figure(answer), CAPTION),
         View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
         *(clearance_blocks(clearances) if clearances else []),
         Note(SINGLE, "caveat"),
@@ -166,56 +149,44 @@ def page(answer: Part) -> Page:
 
 def run_facts(answer: Part) -> Facts:
     """Return what a run started from, and by what part it was judged."""
-    law = ["; by the linear law {drift_rate_law}"] if answer.drift_rate_law else []
+    cage = answer.values["study"]["cage"]
+    friction, damping = cage["ball_cage_friction"], None
+    of = f", {friction['candidate']} in {friction['environment']}" if friction["value"] is None else ""
+    if "given_restitution_factor" in answer:
+        damping = told(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
+        damping += said(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
+    law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
     return facts(
         ("Operation", "; ".join(figure_heading(answer)[1:])),
         ("Initial disturbance", said(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
-        ("Pocket friction", f"{told(answer.cage, 'ball_cage_friction')}{_of_whom(answer)}"),
-        ("Ball", _ball(answer.cage)),
-        ("Race damping", _damping(answer)),
+        ("Pocket friction", f"{told(answer.cage, 'ball_cage_friction')}{of}"),
+        ("Ball", cage["ball"]["value"]),
+        ("Race damping", damping),
         ("Judged", said(answer, "{judged_from} to {followed}; the run has {run_length}")),
-        ("Drift rate", said(answer, "".join(["{drift_rate}", *law]))),
+        ("Drift rate", said(answer, "{drift_rate}" + law)),
         ("Energy balance", said(answer, "closes to {energy_imbalance} of the work done")),
     )
 
 
-def _of_whom(answer: Part) -> str:
-    """Return the candidate and environment that a friction is of, if it is not the study's own."""
-    entry = answer.values["study"]["cage"]["ball_cage_friction"]
-    if entry["value"] is not None or not entry.get("candidate"):
-        return ""
-    return f", {entry['candidate']} in {entry['environment']}"
-
-
-def _ball(cage: Part) -> str:
-    if "free_ball" in cage:
-        return "free"
-    return "one state" if "traction" in cage else "damper"
-
-
-def _damping(answer: Part) -> str:
-    if "given_restitution_factor" not in answer:
-        return ""
-    eta = told(answer, "given_restitution_factor")
-    size = told(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
-    return f"{size}, for a restitution factor of {eta} in place of the study's"
-
-
 def motion_facts(answer: Part) -> Facts:
     """Return how the cage moves in the judged part."""
-    whirl = "none: the motion does not last"
+    whirl, slip = "none: the motion does not last", "the ball set is at rest"
     if "whirl_frequency" in answer:
         sense = DIRECTIONS[answer.whirl_direction] or "without direction"
-        seen = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
-        whirl = said(answer, seen)
+        whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
+    if "cage_slip" in answer:
+        size = number_of(answer, "cage_slip", abs(answer.cage_slip))
+        slip = f"{size} {'ahead of' if answer.cage_slip < 0.0 else 'behind'} the ball set"
     offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
+    orbit = "centre {orbit_speed}" + (", tilt {cone_speed}" if "cone_speed" in answer else "")
+    balls = number_of(answer, "orbit_speed", answer.cage.cage_speed)
     return facts(
         ("Offset", said(answer, offset)),
         ("Tilt", _tilt(answer)),
         ("Axial place", said(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
-        ("Whirl", whirl),
-        ("Orbit", _orbit(answer)),
-        ("Cage slip", _slip(answer)),
+        ("Whirl", said(answer, whirl)),
+        ("Orbit", f"{said(answer, orbit)}; the ball set turns at {balls}"),
+        ("Cage slip", slip),
         ("Clearance", _clearance(answer)),
     )
 
@@ -225,84 +196,55 @@ def _tilt(answer: Part) -> str:
         return ""
     cone = "without a steady phase to the offset"
     if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
-        cone = f"{told(answer, 'tilt_phase')} ahead of the offset (0: a forward cone)"
-    return f"{told(answer, 'largest_tilt')} at most; {cone}"
-
-
-def _orbit(answer: Part) -> str:
-    found = [
-        f"{part} {told(answer, name)}"
-        for part, name in (("centre", "orbit_speed"), ("tilt", "cone_speed"))
-        if name in answer
-    ]
-    turning = alone(answer.cage.cage_speed, quantity("orbit_speed"), answer.cage.unit("cage_speed"))
-    return f"{', '.join(found)}; the ball set turns at {turning}"
-
-
-def _slip(answer: Part) -> str:
-    if "cage_slip" not in answer:
-        return "the ball set is at rest"
-    size = alone(abs(answer.cage_slip), quantity("cage_slip"), answer.unit("cage_slip"))
-    return f"{size} {'ahead of' if answer.cage_slip < 0.0 else 'behind'} the ball set"
+        cone = "{tilt_phase} ahead of the offset (0: a forward cone)"
+    return said(answer, f"{{largest_tilt}} at most; {cone}")
 
 
 def _clearance(answer: Part) -> str:
-    pockets = f"pockets {told(answer.chain, 'half_play')} each way"
-    if "axial_half_play" in answer.cage:
-        pockets += f", {told(answer.cage, 'axial_half_play')} along the axis"
-    if _is_landless(answer):
-        return f"{pockets}; no land"
-    return f"{answer.cage.guidance} land {told(answer.cage, 'land_clearance')} in diameter; {pockets}"
+    cage = answer.cage
+    land = said(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
+    axial = said(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
+    return f"{land}; pockets {told(answer.chain, 'half_play')} each way{axial}"
 
 
-def _is_landless(answer: Part) -> bool:
-    return answer.cage.guidance == "ball" or "land_clearance" not in answer.cage
+def has_land(cage: Part) -> bool:
+    """Whether the ring guides the cage."""
+    return cage.guidance != "ball" and "land_clearance" in cage
+
+
+SIDES = {"front_share": "in front of the ball", "rear_share": "behind it"}
+SIDES |= {"axial_share": "at its axial sides"}
 
 
 def force_facts(answer: Part) -> Facts:
     """Return the largest forces, and what feeds and brakes the motion."""
-    pocket = told(answer, "largest_contact_force")
+    pocket = "{largest_contact_force}"
     if answer.force_exceeds_races:
-        limit = told(answer, "force_limit")
-        pocket = f"above what the races hold, {limit}: beyond it this model of a ball has no meaning "
+        pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
         pocket += "(`--ball free` has)"
-    land = "the cage has no land" if _is_landless(answer) else told(answer, "largest_land_force")
-    impacts = f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"
-    heat = alone(
-        sum(answer.pocket_rubbing_power),
-        quantity("pocket_rubbing_power"),
-        answer.unit("pocket_rubbing_power"),
-    )
+    shares = [f"{told(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
+    heat = number_of(answer, "pocket_rubbing_power", sum(answer.pocket_rubbing_power))
     return facts(
-        ("Pocket, largest", pocket),
-        ("Land, largest", land),
-        ("Impacts", impacts),
-        ("Impulse", _impulse(answer)),
+        ("Pocket, largest", said(answer, pocket)),
+        ("Land, largest", told(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
+        ("Impacts", f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"),
+        ("Impulse", ", ".join(shares)),
         *power_facts(answer),
         ("Rubbing in the pockets", f"{heat} of heat, mean of the run"),
         ("Work on the cage", _works(answer)),
     )
 
 
-def _impulse(answer: Part) -> str:
-    places = (
-        ("front_share", "in front of the ball"),
-        ("rear_share", "behind it"),
-        ("axial_share", "at its axial sides"),
-    )
-    return ", ".join(f"{told(answer, name)} {where}" for name, where in places if answer.get(name))
-
-
 def _works(answer: Part) -> str:
     """Return the work of each source up to the end of the judged part, beyond which it is not added up."""
     last = max((at for at, time in enumerate(answer.time) if time <= answer.followed), default=-1)
     each = (
-        f"{name.replace('_', ' ')} {alone(work[last], quantity('work'), answer.work.unit(name))}"
+        f"{name.replace('_', ' ')} {number_of(answer.work, name, work[last])}"
         for name, work in answer.work.values.items()
         if work[last]
     )
-    left = alone(answer.kinetic_energy[last], quantity("kinetic_energy"), answer.unit("kinetic_energy"))
-    until = "" if last == -1 else f"up to {told(answer, 'followed')}: "
+    left = number_of(answer, "kinetic_energy", answer.kinetic_energy[last])
+    until = "" if last == -1 else said(answer, "up to {followed}: ")
     return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
 
 
@@ -319,40 +261,29 @@ POCKET = {
 
 def pockets(answer: Part) -> Table:
     """Return a row for each pocket: its place, its clearance, its impacts and rubbing."""
-
-    def column(name: str, head: str) -> Column:
-        values, known, unit = answer.get(name), quantity(name), answer.unit(name)
-        return Column(head, lambda place: Cell(values[place], known, unit))
-
-    columns = (
-        text_column("pocket", lambda place: str(place + 1)),
-        *(column(name, head) for name, head in POCKET.items() if name in answer),
-    )
+    number = text_column("pocket", lambda place: str(place + 1))
+    level = Level.REPORT | Level.SHEET
+    numbers = (place_column(answer, name, head=head) for name, head in POCKET.items() if name in answer)
     rows = tuple(range(len(answer.pocket_angle)))
-    return Table("pockets", columns, rows, "Each pocket over the whole run.", Level.REPORT | Level.SHEET)
+    return Table("pockets", (number, *numbers), rows, "Each pocket over the whole run.", level)
 
 
-def _caption(answer: Part) -> str:
-    more = " tilt of its axis," if "lean" in answer else ""
-    return (
-        f"The run: path and whirl of the cage centre, its offset,{more} the forces; up to the end of "
-        "the judged part, which is shaded, kinetic energy and the work of each source since the start."
-    )
+CAPTION = (
+    "The run: path and whirl of the cage centre, its offset, the forces, in space the tilt of its axis; the "
+    "judged part is shaded."
+)
 
 
 def _figure(answer: Part) -> Figure:
-    """Return path and whirl of the centre; offset, in space tilt, forces and energy against time."""
+    """Return path and whirl of the centre; offset, forces and in space tilt against time."""
     from separatrix.verbs.parts import run_panels as panels
 
-    rows = [
-        (panels.orbit(answer), panels.spectrum(answer, title="b  Whirl: velocity of the centre")),
-        (panels.offset(answer, "c  Offset"), panels.forces(answer, "d  Forces")),
+    rows: list[tuple[Panel, ...]] = [
+        (panels.orbit(answer), panels.spectrum(answer)),
+        (panels.offset(answer), panels.forces(answer)),
     ]
-    if "lean" in answer:
-        rows.append((panels.tilt(answer, "e  Tilt"), panels.energy(answer, "f  Kinetic energy and work")))
-        return Figure(rows=tuple(rows), heading=figure_heading(answer), alt=_caption(answer), height=2.2)
-    last = (panels.energy(answer, "e  Kinetic energy and work"),)
-    return Figure(rows=(*rows, last), heading=figure_heading(answer), alt=_caption(answer), height=2.2)
+    rows += [(panels.tilt(answer),)] if "lean" in answer else []
+    return Figure(rows=tuple(rows), heading=figure_heading(answer), alt=CAPTION, height=2.2)
 
 
 def _view(answer: Part) -> str:
@@ -365,16 +296,15 @@ def _view(answer: Part) -> str:
 def files(
     answer: Part, options: Options | None, progress: Callable[[int, int], None] | None
 ) -> Iterator[tuple[str, bytes]]:
-    """Yield the moving cage as a GIF, beside the paths of centre and lean, if it is wanted."""
+    """Yield the moving cage as a GIF, beside the path of its centre, if it is wanted."""
     if options is None or options.animate is None:
         return
     from separatrix.present.animation import animation
     from separatrix.verbs.parts.cage_scene import scene
-    from separatrix.verbs.parts.run_panels import lean, orbit
+    from separatrix.verbs.parts.run_panels import orbit
 
     at = scene(answer)
-    panels = [(orbit(answer, title="Cage centre, turning frame"), at.centre)]
-    panels += [(lean(answer), at.lean)] if at.in_space else []
+    panels = [(orbit(answer), at.centre)]
     yield "simulation.gif", animation(at, panels, figure_heading(answer), progress=progress)
 
 

@@ -3,42 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from itertools import cycle
+from operator import itemgetter
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.ground.quantity import Quantity, alone
-from separatrix.ground.units import format_number
-from separatrix.present.blocks import (
-    Cell,
-    Column,
-    Equation,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Picture,
-    Table,
-)
-from separatrix.present.figure import (
-    BLUE,
-    GREY,
-    SEQUENCE,
-    Across,
-    Axis,
-    Band,
-    Figure,
-    Mark,
-    Panel,
-    Trace,
-)
+from separatrix.ground.quantity import Quantity
+from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, Note, Page, Picture, Table
+from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.chain_blocks import RACES
 from separatrix.verbs.parts.refused import compared, refused, rolling
-from separatrix.verbs.parts.telling import axis, by_race, cell, number_of, place_column, said, told
+from separatrix.verbs.parts.telling import (
+    axis,
+    by_race,
+    column,
+    number_of,
+    place_column,
+    said,
+    told,
+)
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import TractionAnswer
@@ -52,6 +39,7 @@ CONTACT = (
     "slope_error",
     "free_rolling_offset",
 )
+
 RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 
 
@@ -103,7 +91,6 @@ def page(answer: Part) -> Page:
         Picture("traction-curves", lambda: curves_figure(answer), CURVES),
         Heading("Slope at other pivoting to rolling ratios, by strips"),
         by_ratio(answer),
-        Picture("traction-slopes", lambda: slopes_figure(answer), SLOPES),
         Heading("Shear in free rolling, by strips"),
         Picture("traction-shear", lambda: shear_figure(answer), SHEAR),
         *([Heading("Range of the strips")] if answer.outside else []),
@@ -116,10 +103,6 @@ CURVES = (
     "Traction coefficient against creep increment for both races (the paper's Fig. 7): this bearing with its "
     "slope at the origin, and by strips at other pivoting to rolling ratios of the same sign."
 )
-SLOPES = (
-    "Slope of the traction curve at the origin against the size of the pivoting to rolling ratio: by strips, "
-    "and of this bearing by the model of the study."
-)
 SHEAR = (
     "Shear along rolling in three strips of each contact in free rolling (the paper's Fig. 6). Surfaces "
     "enter at the right; the grey area is what friction bears."
@@ -130,43 +113,35 @@ def by_ratio(answer: Part) -> Table:
     """Return the slopes at other ratios, whose signs are those of this bearing."""
     inner, outer = answer.inner.by_spin_roll_ratio, answer.outer.by_spin_roll_ratio
 
-    def slope(others: list[Part], race: str) -> Column:
-        return Column(f"slope, {race} race", lambda place: cell(others[place], "slope"))
+    def size(pair: tuple[Part, Part]) -> Cell:
+        return Cell(abs(pair[0].spin_roll_ratio), RATIO, pair[0].unit("spin_roll_ratio"))
 
-    ratio = Column(
-        "ratio",
-        lambda place: Cell(abs(inner[place].spin_roll_ratio), RATIO, inner[place].unit("spin_roll_ratio")),
+    columns = (
+        Column("ratio", size),
+        column("slope", of=itemgetter(0), head="slope, inner race"),
+        column("slope", of=itemgetter(1), head="slope, outer race"),
     )
-    return Table(
-        "other ratios", (ratio, slope(inner, "inner"), slope(outer, "outer")), tuple(range(len(inner)))
-    )
+    return Table("other ratios", columns, tuple(zip(inner, outer, strict=True)))
 
 
 def curve_table(part: Part, race: str) -> Table:
     """Return the points of the curves of a race, for the workbook."""
-    others = part.by_spin_roll_ratio
-
-    def other(one: Part) -> Column:
+    columns = [place_column(part, name) for name in ("creep_increment", "traction_coefficient")]
+    for one in part.by_spin_roll_ratio:
         head = f"traction coefficient at {told(one, 'spin_roll_ratio')}"
-        return place_column(one, "traction_coefficient", head=head)
-
-    columns = (place_column(part, "creep_increment"), place_column(part, "traction_coefficient"))
+        columns.append(place_column(one, "traction_coefficient", head=head))
     rows = tuple(range(len(part.creep_increment)))
-    return Table(f"curves, {race} race", (*columns, *map(other, others)), rows, level=Level.SHEET)
+    return Table(f"curves, {race} race", tuple(columns), rows, level=Level.SHEET)
 
 
 def curves_figure(answer: Part) -> Figure:
     """Return the curves of both races: the bearing's own with its tangent, and those at other ratios."""
-    high = 1.12 * max(
-        abs(one) for race in ("inner", "outer") for one in getattr(answer, race).traction_coefficient
-    )
+    races = answer.inner, answer.outer
+    high = 1.12 * max(abs(one) for part in races for one in part.traction_coefficient)
     y = axis("traction_coefficient", answer.inner.unit("traction_coefficient"), [], low=-high, high=high)
-    panels = tuple(
-        curves_panel(getattr(answer, race), f"{letter}  Ball on {race} race", y)
-        for race, letter in (("inner", "a"), ("outer", "b"))
-    )
+    titles = "a  Ball on inner race", "b  Ball on outer race"
     return Figure(
-        rows=(panels,),
+        rows=(tuple(curves_panel(part, title, y) for part, title in zip(races, titles, strict=True)),),
         heading=figure_heading(answer),
         height=2.9,
         alt="Traction coefficient against creep increment for both races; the table has their slopes.",
@@ -175,72 +150,22 @@ def curves_figure(answer: Part) -> Figure:
 
 def curves_panel(part: Part, title: str, y: Axis) -> Panel:
     """Return the curves of one race."""
-    increment: list[float] = part.creep_increment
+    x, own = part.creep_increment, part.traction_coefficient
     marks: list[Mark] = [Across(at=0.0, axis=way, colour="#c8c8c8") for way in ("x", "y")]
-    for place, one in enumerate(part.by_spin_roll_ratio):
-        ratio = alone(abs(one.spin_roll_ratio), RATIO, one.unit("spin_roll_ratio"))
-        colour = SEQUENCE[place % len(SEQUENCE)]
-        coefficient = one.traction_coefficient
-        marks.append(
-            Trace(x=increment, y=coefficient, colour=colour, width=0.9, name=f"ratio {ratio}, by strips")
-        )
-    own: list[float] = part.traction_coefficient
-    hover = tuple(
-        f"creep increment {number_of(part, 'creep_increment', x)}: "
-        f"{number_of(part, 'traction_coefficient', c)}"
-        for x, c in zip(increment, own, strict=True)
-    )
-    marks.append(Trace(x=increment, y=own, width=1.8, name="this bearing", hover=hover))
+    for colour, one in zip(cycle(SEQUENCE), part.by_spin_roll_ratio, strict=False):
+        name = f"ratio {number_of(one, 'ratio', abs(one.spin_roll_ratio))}, by strips"
+        marks.append(Trace(x=x, y=one.traction_coefficient, colour=colour, width=0.9, name=name))
     rise = 0.85 * max(map(abs, own))
-    tangent: dict[str, Any] = {"line": "--", "width": 0.9, "name": "slope $alpha$ at the origin"}
-    marks.append(Trace(x=[-rise / part.slope, rise / part.slope], y=[-rise, rise], **tangent))
-    here = said(part, "{spin_roll_ratio}; $alpha$ = {slope}")
+    run = rise / part.slope
+    marks.append(Trace(x=x, y=own, width=1.8, name="this bearing"))
+    tangent = "slope $alpha$ at the origin"
+    marks.append(Trace(x=[-run, run], y=[-rise, rise], line="--", width=0.9, name=tangent))
     return Panel(
-        title=f"{title}: ratio {here}",
-        x=axis("creep_increment", part.unit("creep_increment"), [], low=increment[0], high=increment[-1]),
+        title=said(part, title + ": ratio {spin_roll_ratio}; $alpha$ = {slope}"),
+        x=axis("creep_increment", part.unit("creep_increment"), [], low=x[0], high=x[-1]),
         y=y,
         marks=tuple(marks),
     )
-
-
-def slopes_figure(answer: Part) -> Figure:
-    """Return slopes against the size of the ratio, by strips, and those of this bearing."""
-    marks: list[Mark] = []
-    for race, colour, marker, _ in RACES:
-        part = getattr(answer, race)
-        others = part.by_spin_roll_ratio
-        look: dict[str, Any] = {"colour": colour, "marker": marker}
-        hover = tuple(said(one, f"{race} race, ratio {{spin_roll_ratio}}: slope {{slope}}") for one in others)
-        x, y = [abs(one.spin_roll_ratio) for one in others], [one.slope for one in others]
-        marks.append(Trace(x=x, y=y, line="", name=f"{race} race, by strips", hover=hover, **look))
-        said_own = said(part, f"{race} race of this bearing, ratio {{spin_roll_ratio}}: slope {{slope}}")
-        own: dict[str, Any] = {"x": [abs(part.spin_roll_ratio)], "y": [part.slope], "hover": (said_own,)}
-        marks.append(
-            Trace(**own, line="", size=7.0, is_open=True, name=f"{race} race of this bearing", **look)
-        )
-    races = (answer.inner, answer.outer)
-    slopes = [one.slope for part in races for one in (part, *part.by_spin_roll_ratio)]
-    panel = Panel(
-        title="Slope of the traction curve at the origin",
-        x=axis("spin_roll_ratio", "-", [], label=RATIO.label, low=-0.02),
-        y=slope_axis(answer, slopes),
-        marks=tuple(marks),
-    )
-    return Figure(
-        rows=((panel,),),
-        heading=figure_heading(answer),
-        height=2.8,
-        alt="Slope against the pivoting to rolling ratio: it falls with the ratio for both races.",
-    )
-
-
-def slope_axis(answer: Part, slopes: Sequence[float]) -> Axis:
-    """Return the axis of the slopes, which differ by powers of ten, with ticks at 1, 2 and 5."""
-    low, high = 0.8 * min(slopes), 1.25 * max(slopes)
-    places = [step * 10.0**power for power in range(-3, 5) for step in (1.0, 2.0, 5.0)]
-    ticks = tuple((one, format_number(one)) for one in places if low <= one <= high)
-    found = axis("slope", answer.inner.unit("slope"), slopes, low=low, high=high, is_log=True)
-    return replace(found, ticks=ticks)
 
 
 def shear_figure(answer: Part) -> Figure:
@@ -248,62 +173,30 @@ def shear_figure(answer: Part) -> Figure:
     rows = []
     for race, letters in (("inner", "abc"), ("outer", "def")):
         field = getattr(answer, race).shear
-        middle = len(field.across) // 2
-        strips = (middle // 2, middle, len(field.across) - 1 - middle // 2)
-        bound = max(one for strip in strips for one in field.bound[strip])
-        y = axis(
-            "shear",
-            field.unit("shear"),
-            [bound],
-            low=-1.6 * bound,
-            high=1.6 * bound,
-            label=f"{race} race: shear",
-        )
-        rows.append(
-            tuple(
-                strip_panel(field, strip, letter, y if letter in "ad" else bare_axis(y))
-                for strip, letter in zip(strips, letters, strict=True)
-            )
-        )
-    return Figure(
-        rows=tuple(rows),
-        heading=figure_heading(answer),
-        height=2.1,
-        alt="Six panels: shear along rolling in three strips of each contact, within what friction bears.",
-    )
-
-
-def bare_axis(one: Axis) -> Axis:
-    """Return an axis without its label, beside one that has it."""
-    return replace(one, label="")
+        last = len(field.across) - 1
+        strips = (last // 4, last // 2, last - last // 4)
+        high = 1.6 * max(one for strip in strips for one in field.bound[strip])
+        label = f"{race} race: shear"
+        y = axis("shear", field.unit("shear"), [high], low=-high, high=high, label=label)
+        axes = y, replace(y, label=""), replace(y, label="")
+        rows.append(tuple(map(strip_panel, [field] * 3, strips, letters, axes)))
+    alt = "Six panels: shear along rolling in three strips of each contact, within what friction bears."
+    return Figure(rows=tuple(rows), heading=figure_heading(answer), height=2.1, alt=alt)
 
 
 def strip_panel(field: Part, strip: int, letter: str, y: Axis) -> Panel:
     """Return one strip across a contact."""
-    x, bound, shear = field.along[strip], field.bound[strip], field.shear[strip]
-    friction = Band(x=x, low=[-one for one in bound], high=bound, colour=GREY, opacity=0.15, name=BOUND)
-    hover = tuple(
-        f"x {number_of(field, 'along', a)}: {number_of(field, 'shear', q)}"
-        for a, q in zip(x, shear, strict=True)
-    )
+    x, bound = field.along[strip], field.bound[strip]
     place, creep = (number_of(field, name, getattr(field, name)[strip]) for name in ("across", "creep_ratio"))
-    return Panel(
-        title=f"{letter}  y = {place}, creep {creep}",
-        x=axis("along", field.unit("along"), x),
-        y=y,
-        marks=(
-            friction,
-            Trace(x=x, y=field.shear_without_slip[strip], line="--", width=0.8, name="without slip"),
-            Trace(x=x, y=shear, colour=BLUE, name="with slip", hover=hover),
-        ),
+    marks = (
+        Band(x=x, low=[-one for one in bound], high=bound, colour=GREY, opacity=0.15, name=BOUND),
+        Trace(x=x, y=field.shear_without_slip[strip], line="--", width=0.8, name="without slip"),
+        Trace(x=x, y=field.shear[strip], colour=BLUE, name="with slip"),
     )
+    along = axis("along", field.unit("along"), x)
+    return Panel(title=f"{letter}  y = {place}, creep {creep}", x=along, y=y, marks=marks)
 
 
 BOUND = "within $f_BT$ $p$"
 
-VERB = Verb(
-    name="traction",
-    compute=compute,
-    page=page,
-    refusals=refusals,
-)
+VERB = Verb(name="traction", compute=compute, page=page, refusals=refusals)

@@ -150,6 +150,7 @@ def _cards(study: Study | None) -> list[dict[str, Any]]:
     return [
         {
             "verb": verb,
+            "help": VERBS[verb.name],
             "lacks": [one for one in verb.needs if study and getattr(study, one) is None],
             "options": {
                 name: (_kind(hint), about, default)

@@ -16,26 +16,19 @@ AROUND = np.linspace(0.0, 2 * np.pi, 721)
 FINE, LAST = 6, 5
 """Points drawn for a sample of the path, and turns at its end that are drawn darker."""
 
-BEYOND = 2.0
-"""Half the play over the land's gap from which the pockets are left out of the picture."""
+BEYOND, NEVER = 2.0, 1e3
+"""Half the play over the land's gap from which the pockets are left out of the picture; over the play, along
+the radius of one ball, from which a boundary does not exist."""
 
-NEVER = 1e3
-"""A boundary farther away than this multiple of the play, along the radius of one ball, does not exist."""
+SHORTEST, STRONG, PRESENT = 8, 0.3, 0.05
+"""Least samples of a spectrum; shares of its largest amplitude from which a whirl is strong, and is shown."""
 
-SHORTEST = 8
-"""Least samples of a spectrum."""
-
-STRONG, PRESENT = 0.3, 0.05
-"""Shares of the largest amplitude from which a whirl is strong, and is shown."""
-
-MOST_FRAMES, A_TURN = 240, 6
-"""Most frames of a GIF; least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
+MOST_FRAMES, A_TURN, GAP = 240, 6, 1.5
+"""Most frames of a GIF; least frames in a turn of the fastest strong whirl: fewer may reverse its sense;
+steps over the usual one from which frames have a gap."""
 
 PAGE_FRAMES, PAGE_NUMBERS = 1200, 75_000
 """Most frames of a page, and most numbers in all: they keep it under 1 MB."""
-
-GAP = 1.5
-"""Steps over the usual one from which frames have a gap."""
 
 BAR_SHARE, FARTHEST = 0.4, 0.25
 """Least share of the bar in the room between two balls; largest movement drawn over the pitch radius."""
@@ -47,17 +40,6 @@ THICK, WIDE = 0.28, 1.35
 def array(part: Part, name: str) -> Array:
     """Return numbers of a document as an array."""
     return np.asarray(part.get(name), dtype=float)
-
-
-def is_in_space(answer: Part) -> bool:
-    """Whether the cage of a run tilts and moves along the axis."""
-    return "lean" in answer
-
-
-def judged_samples(answer: Part) -> int:
-    """Return how many samples lie before the end of the judged part; all if none is judged."""
-    time = array(answer, "time")
-    return int(np.searchsorted(time, answer.followed * (1.0 + 1e-9), side="right")) or time.size
 
 
 def pocket_boundary(answer: Part) -> Array:
@@ -88,7 +70,7 @@ def largest_play(answer: Part) -> Metre | None:
     return play if land is None or play <= BEYOND * max(far, float(land.max())) else None
 
 
-def axial_play(answer: Part) -> Metre:
+def axial_half_play(answer: Part) -> Metre:
     """Return half the clearance of the pockets along the axis [m]; 0 for none."""
     return float(answer.cage.axial_half_play or 0.0)
 
@@ -190,25 +172,26 @@ def scene(answer: Part, most: int = MOST_FRAMES) -> Scene:
     two pockets, the pockets within the cage, and the cage in the picture.
     """
     moments, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
-    plays, land, count = array(answer, "half_play"), land_boundary(answer), moments.size
-    in_space, radius, balls = is_in_space(answer), float(cage.pitch_radius), plays.size
-    pitch = 2.0 * np.pi * radius / max(3, balls)
+    plays, land, in_space = array(answer, "half_play"), land_boundary(answer), "lean" in answer
+    radius, pitch = float(cage.pitch_radius), 2.0 * np.pi * cage.pitch_radius / max(3, plays.size)
     ball = 0.5 * (float(cage.ball_diameter) or 0.75 * pitch)
     stated = answer.values["study"]["cage"]["width"]["value"]
-    half_width = max(0.5 * float(stated or 0.0), WIDE * ball)
-    centre = array(answer, "position")[moments]
-    lean = array(answer, "lean")[moments] if in_space else np.zeros((count, 2))
-    axial = array(answer, "axial_place")[moments] if in_space else np.zeros(count)
-    side = 0 if land is None else (-1 if cage.guidance == "inner" else 1)
+    half_width, axial_play = max(0.5 * float(stated or 0.0), WIDE * ball), axial_half_play(answer)
+
+    def at(name: str, *shape: int) -> Array:
+        return array(answer, name)[moments] if name in answer else np.zeros((moments.size, *shape))
+
+    centre, lean, axial = at("position"), at("lean", 2), at("axial_place")
     peaks = [array(answer, name) for name in ("contact_force", "land_force")]
     force, land_force = (_largest_since(one, moments) for one in peaks)
     ways = (np.hypot(*centre.T), radius * np.hypot(*lean.T), axial)
     limits = [
         (0.5 * (1.0 - BAR_SHARE) * (pitch - 2.0 * ball), float(plays.max())),
-        (RIM * half_width - ball, axial_play(answer) if in_space else 0.0),
+        (RIM * half_width - ball, axial_play),
         (FARTHEST * radius, max(float(np.abs(one).max(initial=0.0)) for one in ways)),
     ]
     enlarged = min((largest / size for largest, size in limits if size > 0.0), default=1.0)
+    side = 0 if land is None else (-1 if cage.guidance == "inner" else 1)
     return Scene(
         radius=radius,
         ball=ball,
@@ -216,7 +199,7 @@ def scene(answer: Part, most: int = MOST_FRAMES) -> Scene:
         half_thickness=2.0 * THICK * ball,
         angles=array(answer, "pocket_angle"),
         plays=plays,
-        axial_play=limits[1][1],
+        axial_play=axial_play,
         is_square=cage.pocket_shape == "square",
         land=radius + side * 2.0 * THICK * ball,
         side=side,
@@ -229,9 +212,9 @@ def scene(answer: Part, most: int = MOST_FRAMES) -> Scene:
         centre=centre,
         lean=lean,
         axial=axial,
-        rotation=array(answer, "rotation")[moments],
-        lead=array(answer, "ball_lead")[moments],
-        ball_axial=array(answer, "ball_axial")[moments] if in_space else np.zeros((count, balls)),
+        rotation=at("rotation"),
+        lead=at("ball_lead"),
+        ball_axial=at("ball_axial", plays.size),
         force=force,
         land_force=land_force,
         largest=(float(peaks[0].max()), float(peaks[1].max())),

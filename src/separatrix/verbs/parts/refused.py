@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from separatrix.chain.solution import Solution
-    from separatrix.study.study import Study
+    from separatrix.study.study import Study, TractionSettings
 
 COARSE = 8
 """Cells along and across in which an exact contact is put for its refusals."""
@@ -33,43 +33,42 @@ def refused(study: Study, *steps: Step) -> Iterator[str]:
 
 def rolling(solution: Solution) -> None:
     """Refuse what no traction is computed of: a bearing that does not roll, contacts out of their range."""
-    from separatrix.chain.contacts import race_tracks, require_rolling
-    from separatrix.chain.exact import rolling_contact
-    from separatrix.chain.race_curve import contact_problem
+    from separatrix.chain.contacts import require_rolling
     from separatrix.study.study import TractionModel
 
     asked = solution.study
     require_rolling(asked)
-    tracks = race_tracks(asked.bearing, asked.film, solution.bearing)
     if asked.traction.model is TractionModel.STRIPS:
         _ = solution.slopes
-        return
-    for track in tracks:
-        if not track.is_idle:
-            rolling_contact(contact_problem(track, asked.traction), columns=COARSE, rows=COARSE)
+    else:
+        _coarse(solution, asked.traction, has_idle=False)
 
 
 def compared(solution: Solution) -> None:
     """Refuse a film whose own pressure an exact contact bears, but not Hertz's: `traction` compares both."""
-    from separatrix.chain.contacts import race_tracks
-    from separatrix.chain.exact import rolling_contact
-    from separatrix.chain.race_curve import contact_problem
     from separatrix.ground.errors import SeparatrixError
     from separatrix.study.study import ContactPressure, TractionModel
 
-    asked = solution.study
-    if asked.traction.pressure is not ContactPressure.COATED:
+    asked = solution.study.traction
+    if asked.pressure is not ContactPressure.COATED:
         return
-    tracks = race_tracks(asked.bearing, asked.film, solution.bearing)
-    exact = asked.traction.by(TractionModel.EXACT)
     try:
-        for track in tracks:
-            rolling_contact(contact_problem(track, exact), columns=COARSE, rows=COARSE)
+        _coarse(solution, asked.by(TractionModel.EXACT))
     except SeparatrixError:
         return  # then there is nothing to compare with, and `traction` says so
-    for track in tracks:
-        problem = contact_problem(track, exact.by(TractionModel.EXACT, ContactPressure.HERTZ))
-        rolling_contact(problem, columns=COARSE, rows=COARSE)
+    _coarse(solution, asked.by(TractionModel.EXACT, ContactPressure.HERTZ))
+
+
+def _coarse(solution: Solution, by: TractionSettings, *, has_idle: bool = True) -> None:
+    """Compute the contacts in a few cells: enough for what refuses them."""
+    from separatrix.chain.contacts import race_tracks
+    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.race_curve import contact_problem
+
+    asked = solution.study
+    for track in race_tracks(asked.bearing, asked.film, solution.bearing):
+        if has_idle or not track.is_idle:
+            rolling_contact(contact_problem(track, by), columns=COARSE, rows=COARSE)
 
 
 def impact(solution: Solution) -> None:

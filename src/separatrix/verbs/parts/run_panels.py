@@ -10,12 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.ground.document import Part
-from separatrix.ground.quantity import alone
 from separatrix.ground.units import Array
 from separatrix.present.figure import (
     BLACK,
     BLUE,
-    CYCLE,
     GREEN,
     GREY,
     SKY,
@@ -33,9 +31,7 @@ from separatrix.verbs.parts.cage_scene import (
     AROUND,
     LAST,
     array,
-    axial_play,
-    is_in_space,
-    judged_samples,
+    axial_half_play,
     land_boundary,
     land_heights,
     largest_play,
@@ -45,7 +41,7 @@ from separatrix.verbs.parts.cage_scene import (
     spectrum_reach,
     whirl_spectrum,
 )
-from separatrix.verbs.parts.telling import axis, quantity, told
+from separatrix.verbs.parts.telling import axis, told
 
 SHOWN = 1600
 """Points of a course in time, at most."""
@@ -58,172 +54,99 @@ NEAR = 2.5
 """Limits within this multiple of the largest value are drawn."""
 
 
-class Limit(NamedTuple):
-    """A value at which a cage touches, with its name and colour."""
-
-    value: float
-    name: str
-    colour: str
+Limit = tuple[float, str, str]
+"""A value at which a cage touches, with its name and colour."""
 
 
-def orbit(answer: Part, *others: Part, title: str = "a  Cage centre, turning frame") -> Panel:
-    """Return the centre's path between its boundaries, on a scale that has room for the other runs."""
-    most, lines = max(map(_orbit_reach, (answer, *others))), []
+def orbit(answer: Part) -> Panel:
+    """Return the centre's path between its boundaries, darker in its last turns."""
+    land, play = land_boundary(answer), largest_play(answer)
+    path = smooth_path(*(array(answer, name) for name in ("time", "position", "velocity")))
+    reach = (np.abs(path).max(), play or 0.0, 0.0 if land is None else land.max(), 1e-9)
+    marks, most, first = [], 1.12 * float(max(reach)), last_turns(path)
     for radius, look, name in (
-        (land_boundary(answer), LAND, "land clearance"),
-        (pocket_boundary(answer) if largest_play(answer) else None, POCKETS, "pocket clearance"),
+        (land, LAND, "land clearance"),
+        (None if play is None else pocket_boundary(answer), POCKETS, "pocket clearance"),
     ):
         if radius is not None and radius.max() > 0.0:
-            lines.append(_ring(np.where(np.isfinite(radius), radius, np.nan), look, name))
-    path = smooth_path(*(array(answer, name) for name in ("time", "position", "velocity")))
-    return _path_panel(answer, "position", title, ("x", "y"), path, most, lines)
-
-
-def _orbit_reach(answer: Part) -> float:
-    """Return the least half width of a picture of the orbit [m]."""
-    land, far = land_boundary(answer), float(np.abs(array(answer, "position")).max())
-    return 1.12 * max(far, largest_play(answer) or 0.0, 0.0 if land is None else float(land.max()), 1e-9)
-
-
-def lean(answer: Part, title: str = "Lean of the cage's axis") -> Panel:
-    """Return where the axis of the cage leans to, with the tilts at which a centred cage touches."""
-    path = smooth_path(*(array(answer, name) for name in ("time", "lean", "lean_rate")))
-    far = float(np.abs(path).max(initial=0.0)) or 1e-3
-    near = [one for one in tilt_limits(answer) if one.value <= 2.0 * far]
-    looks = {"land": LAND, "pockets": POCKETS}
-    lines = [_ring(one.value, looks[one.name], f"{one.name}, if centred") for one in near]
-    most = 1.12 * max([far, *(one.value for one in near)])
-    return _path_panel(answer, "largest_tilt", title, ("lean along x", "lean along y"), path, most, lines)
-
-
-def _ring(radius: Array | float, look: dict[str, Any], name: str) -> Trace:
-    return Trace(
-        x=(radius * np.cos(AROUND)).tolist(), y=(radius * np.sin(AROUND)).tolist(), name=name, **look
-    )
-
-
-def _path_panel(
-    answer: Part,
-    name: str,
-    title: str,
-    labels: tuple[str, str],
-    path: Array,
-    most: float,
-    boundaries: Sequence[Trace],
-) -> Panel:
-    """Return a path about the axis, darker in its last turns, within boundaries."""
-    marks, first = [*boundaries], last_turns(path)
+            around = np.where(np.isfinite(radius), radius, np.nan)
+            ring = np.stack([around * np.cos(AROUND), around * np.sin(AROUND)], axis=1)
+            marks.append(_line(ring, name=name, **look))
     if first:
         marks.append(_line(path, colour=SKY, width=0.35, opacity=0.8, name="path"))
-    last = path[first:]
-    width, words = (0.8, f"last {LAST} turns") if first else (0.6, "path")
-    marks.append(_line(last, colour=BLUE, width=width, name=words))
-    for place, marker, words in ((path[0], "o", "start"), (path[-1], "s", "end")):
-        look: dict[str, Any] = {"line": "", "marker": marker, "size": 3.5, "is_open": marker == "s"}
-        marks.append(_line(place[np.newaxis], name=words, **look))
-    x, y = (axis(name, answer.unit(name), [most], label=one, low=-most, high=most) for one in labels)
-    return Panel(title=title, x=x, y=y, marks=tuple(marks), is_to_scale=True)
+    marks.append(_line(path[first:], colour=BLUE, width=0.7, name=f"last {LAST} turns" if first else "path"))
+    for place, marker, words in ((path[:1], "o", "start"), (path[-1:], "s", "end")):
+        marks.append(_line(place, name=words, line="", marker=marker, size=3.5, is_open=marker == "s"))
+    unit = answer.unit("position")
+    x, y = (axis("position", unit, [most], label=one, low=-most, high=most) for one in "xy")
+    return Panel(title="a  Cage centre, turning frame", x=x, y=y, marks=tuple(marks), is_to_scale=True)
 
 
 def _line(path: Array, **look: Any) -> Trace:
     return Trace(x=path[:, 0].tolist(), y=path[:, 1].tolist(), **look)
 
 
-def offset(answer: Part, title: str) -> Panel:
+def offset(answer: Part) -> Panel:
     """Return the offset of the centre against time, in space with the axial place of the cage."""
-    far = np.hypot(*array(answer, "position").T)
     land, play = land_boundary(answer), largest_play(answer)
-    limits = [] if play is None else [Limit(play, "pockets", BLACK)]
-    limits += [] if land is None else [Limit(float(land.max()), "land", VERMILION)]
-    if not is_in_space(answer):
-        return _course(answer, title, [Course("largest_offset", far, "", BLUE)], limits, label="offset")
-    courses = [
-        Course("largest_offset", far, "offset", BLUE),
-        Course("axial_place", array(answer, "axial_place"), "axial place", GREEN),
-    ]
-    return _course(answer, title, courses, limits, label="offset, axial place")
+    limits = [] if play is None else [(play, "pockets", BLACK)]
+    limits += [] if land is None else [(float(land.max()), "land", VERMILION)]
+    courses = [Course("offset", np.hypot(*array(answer, "position").T), BLUE)]
+    courses += [Course("axial place", array(answer, "axial_place"), GREEN)] if "lean" in answer else []
+    return _course(answer, "largest_offset", "c  Offset", courses, limits)
 
 
-def tilt(answer: Part, title: str) -> Panel:
-    """Return the angle between the axes of cage and bearing against time."""
-    found = np.hypot(*array(answer, "lean").T)
-    return _course(
-        answer, title, [Course("largest_tilt", found, "", BLUE)], tilt_limits(answer), label="tilt"
-    )
-
-
-def tilt_limits(answer: Part) -> list[Limit]:
-    """Return the tilts at which a centred cage touches balls and lands [rad]."""
-    play, land = axial_play(answer) / answer.cage.pitch_radius, land_boundary(answer)
-    found = [Limit(play, "pockets", BLACK)] if play > 0.0 else []
+def tilt(answer: Part) -> Panel:
+    """Return the angle between the axes of cage and bearing; limits are those of a centred cage."""
+    play, land = axial_half_play(answer) / answer.cage.pitch_radius, land_boundary(answer)
     reach = float(land_heights(answer).max(initial=0.0)) + 0.5 * answer.cage.land_width
-    return found + (
-        [Limit(float(land.max()) / reach, "land", VERMILION)] if land is not None and reach else []
-    )
+    limits = [(play, "pockets", BLACK)] if play > 0.0 else []
+    limits += [(float(land.max()) / reach, "land", VERMILION)] if land is not None and reach else []
+    courses = [Course("tilt", np.hypot(*array(answer, "lean").T), BLUE)]
+    return _course(answer, "largest_tilt", "e  Tilt", courses, limits)
 
 
-def forces(answer: Part, title: str) -> Panel:
+def forces(answer: Part) -> Panel:
     """Return the largest force of any pocket, and that of the lands, against time."""
     pocket, land = array(answer, "contact_force").max(axis=1), array(answer, "land_force")
-    courses = [Course("contact_force", pocket, "pocket, largest", BLUE)]
-    if np.any(land):
-        courses.append(Course("land_force", land, "land", VERMILION, "--"))
-    limit = answer.get("force_limit")
-    limits = [] if limit is None else [Limit(limit, "races hold", GREY)]
-    return _course(answer, title, courses, limits, label="force")
-
-
-def energy(answer: Part, title: str) -> Panel:
-    """Return the kinetic energy of the cage, and the work of each source since the start.
-
-    Up to the end of the judged part: the engine adds up no work beyond it.
-    """
-    end = judged_samples(answer)
-    courses = [Course("kinetic_energy", array(answer, "kinetic_energy")[:end], "kinetic energy", BLACK)]
-    done = {name: array(answer.work, name)[:end] for name in answer.work.values}
-    for (name, values), colour in zip(done.items(), CYCLE, strict=False):
-        if np.any(values):
-            courses.append(Course("work", values, name.replace("_", " "), colour))
-    return _course(answer, title, courses, [], label="energy, work")
+    courses = [Course("pocket, largest", pocket, BLUE)]
+    courses += [Course("land", land, VERMILION, "--")] if np.any(land) else []
+    limits = [(float(answer.force_limit), "races hold", GREY)] if "force_limit" in answer else []
+    return _course(answer, "contact_force", "d  Forces", courses, limits, label="force")
 
 
 class Course(NamedTuple):
-    """A quantity against time: its name, its values at the samples, its label, and how its line looks."""
+    """What is shown against time: its label, its values at the samples, and how its line looks."""
 
-    quantity: str
-    values: Array
     label: str
+    values: Array
     colour: str
     line: str = "-"
 
 
 def _course(
-    answer: Part, title: str, courses: Sequence[Course], limits: Sequence[Limit], *, label: str
+    answer: Part, name: str, title: str, courses: Sequence[Course], limits: Sequence[Limit], label: str = ""
 ) -> Panel:
-    """Return quantities of one unit against time, with the limits near to them and the judged part."""
-    time, unit = array(answer, "time")[: courses[0].values.size], answer.unit(courses[0].quantity)
+    """Return courses of one quantity against time, with the limits near to them and the judged part."""
+    time, unit, label = array(answer, "time"), answer.unit(name), label or ", ".join(c.label for c in courses)
     every = np.concatenate([one.values for one in courses])
-    near = [one for one in limits if one.value <= NEAR * float(np.abs(every).max())]
-    high = 1.12 * max([0.0, float(every.max()), *(one.value for one in near)]) or 1e-12
+    near = [one for one in limits if one[0] <= NEAR * float(np.abs(every).max())]
+    high = 1.12 * max([0.0, float(every.max()), *(value for value, _, _ in near)]) or 1e-12
     low, first, until = min(0.0, 1.1 * float(every.min())), answer.judged_from, answer.followed
     marks: list[Mark] = []
     if until > first:
         look: dict[str, Any] = {"colour": GREY, "opacity": 0.2, "name": "judged part"}
         marks.append(Band(x=[first, until], low=[low, low], high=[high, high], **look))
-    marks += [Across(at=one.value, axis="y", colour=one.colour, line="--") for one in near]
-    labels = [Label(y=one.value, text=one.name, colour=one.colour) for one in near]
+    marks += [Across(at=value, axis="y", colour=colour, line="--") for value, _, colour in near]
+    labels = [Label(y=value, text=text, colour=colour) for value, text, colour in near]
     for one in courses:
         at = thinned(one.values)
-        hover = tuple(
-            f"{alone(t, quantity('time'), answer.unit('time'))}: "
-            f"{one.label or label} {alone(v, quantity(one.quantity), unit)}"
-            for t, v in zip(time[at].tolist(), one.values[at].tolist(), strict=True)
-        )
-        shape: dict[str, Any] = {"colour": one.colour, "line": one.line, "width": 0.8, "hover": hover}
-        marks.append(Trace(x=time[at].tolist(), y=one.values[at].tolist(), **shape))
-        labels += [Label(y=float(one.values[-1]), text=one.label, colour=one.colour)] if one.label else []
+        look = {"colour": one.colour, "line": one.line, "width": 0.8}
+        marks.append(Trace(x=time[at].tolist(), y=one.values[at].tolist(), **look))
+        if len(courses) > 1:
+            labels.append(Label(y=float(one.values[-1]), text=one.label, colour=one.colour))
     x = axis("time", answer.unit("time"), [time[-1]], low=0.0, high=float(time[-1]) or 1e-3)
-    y = axis(courses[0].quantity, unit, [high], label=label, low=low, high=high)
+    y = axis(name, unit, [high], label=label, low=low, high=high)
     return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
 
 
@@ -236,30 +159,20 @@ def thinned(values: Array, most: int = SHOWN) -> NDArray[np.intp]:
     return np.unique([0, *ends, values.size - 1])
 
 
-def spectrum(answer: Part, *others: Part, title: str) -> Panel:
+def spectrum(answer: Part) -> Panel:
     """Return the two-sided spectrum of the centre's velocity; forward whirl turns as the balls do."""
-    most = max(map(spectrum_reach, (answer, *others)))
-    frequency, share = whirl_spectrum(answer)
+    most, (frequency, share) = spectrum_reach(answer), whirl_spectrum(answer)
     seen = np.flatnonzero(np.abs(frequency) <= most)
     at = seen[thinned(share[seen])]
-    unit = answer.unit("whirl_frequency")
-    label = "frequency; backward < 0 < forward"
-    whirl: list[Mark] = []
+    marks: list[Mark] = [Across(at=0.0, colour=GREY)]
     if "whirl_frequency" in answer and answer.whirl_direction:
         place = answer.whirl_direction * answer.whirl_frequency
         text, is_outward = told(answer, "whirl_frequency"), abs(place) < 0.4 * most
         side = "right" if (place > 0.0) == is_outward else "left"  # across neither zero nor the panel's end
-        whirl = [
-            Across(at=place, colour=VERMILION, line="--"),
-            Words(x=place, y=1.1, text=f"judged part: {text}", colour=VERMILION, side=side),
-        ]
-    return Panel(
-        title=title,
-        x=axis("whirl_frequency", unit, [most], label=label, low=-most, high=most),
-        y=Axis(label="relative amplitude [-]", low=0.0, high=1.18),
-        marks=(
-            Across(at=0.0, colour=GREY),
-            *whirl,
-            Trace(x=frequency[at].tolist(), y=share[at].tolist(), colour=BLUE, width=0.8),
-        ),
-    )
+        marks.append(Across(at=place, colour=VERMILION, line="--"))
+        marks.append(Words(x=place, y=1.1, text=f"judged part: {text}", colour=VERMILION, side=side))
+    marks.append(Trace(x=frequency[at].tolist(), y=share[at].tolist(), colour=BLUE, width=0.8))
+    label, unit = "frequency; backward < 0 < forward", answer.unit("whirl_frequency")
+    x = axis("whirl_frequency", unit, [most], label=label, low=-most, high=most)
+    y = Axis(label="relative amplitude [-]", low=0.0, high=1.18)
+    return Panel(title="b  Whirl: velocity of the centre", x=x, y=y, marks=tuple(marks))

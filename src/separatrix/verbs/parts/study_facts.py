@@ -43,13 +43,12 @@ def bearing_facts(answer: Part) -> Facts:
 
 def operation_words(study: Json) -> str:
     """Return speeds, loads and medium of a study."""
-    speeds = [f"inner ring {entry_words(study['operation']['inner_speed'])}"]
-    outer = stated(study, "operation", "outer_speed")
-    speeds += [f"outer ring {outer}"] if outer else []
+    outer, inner = stated(study, "operation", "outer_speed"), study["operation"]["inner_speed"]
+    speeds = [f"inner ring {entry_words(inner)}", outer and f"outer ring {outer}"]
     keys = (("axial_load", "axial"), ("radial_load", "radial"), ("moment", "moment"))
     loads = [f"{load} {way}" for key, way in keys if (load := stated(study, "operation", key))]
-    around = [one for key in ("fluid", "temperature") if (one := stated(study, "operation", key))]
-    return ", ".join([*speeds, *loads]) + (f"; {' at '.join(around)}" if around else "")
+    around = " at ".join(filter(None, (stated(study, "operation", key) for key in ("fluid", "temperature"))))
+    return ", ".join(filter(None, [*speeds, *loads])) + (f"; {around}" if around else "")
 
 
 def film_words(study: Json) -> str:
@@ -57,25 +56,15 @@ def film_words(study: Json) -> str:
     film = study["film"]
     name = (film.get("material") or {}).get("name") or "film"
     coat = "none: bare races" if film["is_bare"] else f"{name}, {entry_words(film['thickness'])}"
-    return f"{coat}; friction {entry_words(film['race_friction'])}"
+    worn = stated(study, "film", "wear.races")
+    where = f"; worn on {'both races' if worn == 'both' else f'the {worn} race'}" if worn else ""
+    return f"{coat}; friction {entry_words(film['race_friction'])}{where}"
 
 
 def contact_words(study: Json) -> str:
-    """Return how the contacts are computed, and what of the film is worn."""
-    asked, film = study["traction"], study["film"]
+    """Return how the contacts are computed."""
+    asked = study["traction"]
     words = f"{MODELS[asked['model']['value']]}, {PRESSURES[asked['pressure']['value']]}"
-    if asked["pressure_slip"]["value"] == "included":
-        words += ", slip by the pressure included"
-    if "wear.races" not in film:
-        return words
-    races = film["wear.races"]["value"]
-    words += "; film worn" if races == "both" else f"; film of the {races} race worn"
-    places = film["wear.across"]["value"]
-    if places:
-        return f"{words} by a measured profile of {len(places)} places"
-    width, share = stated(study, "film", "wear.width"), stated(study, "film", "wear.share")
-    left = stated(study, "film", "wear.thickness")
-    bare = f"bare, friction {entry_words(film['wear.friction'])}"
-    return (
-        f"{words} over {width or f'{share} of the width of the contact'}, {f'{left} left' if left else bare}"
+    return words + (
+        ", slip by the pressure included" if asked["pressure_slip"]["value"] == "included" else ""
     )
