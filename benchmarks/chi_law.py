@@ -3,8 +3,8 @@
     python benchmarks/chi_law.py --out FILE.png --csv FILE.csv [--runs 128]
 
 chi = v0 sqrt(M/k)/c_p is how far a disturbance presses a pocket in, over the clearance. The cage: 11 balls,
-50 g, 3e6 N/m, c_p 0.3 mm, a thin ring free to turn, ball set at rest, no land. Only the disturbance changes; a change of
-the clearance would give the same, since nothing else has a length. A run lasts 0.3 s, or 250 crossings of the
+50 g, 3e6 N/m, c_p 0.3 mm, a thin ring free to turn, ball set at rest, no land. Only the disturbance
+changes; a change of the clearance would give the same, since nothing else has a length. A run lasts 0.3 s, or 250 crossings of the
 clearance if that is longer.
 
 Points already in the CSV are not computed again, so a complete one is only drawn; Ctrl-C keeps what is
