@@ -4,8 +4,8 @@
 
 chi = v0 sqrt(M/k)/c_p is how far a disturbance presses a pocket in, over the clearance. The cage: 11 balls,
 50 g, 3e6 N/m, c_p 0.3 mm, a thin ring free to turn, ball set at rest, no land. Only the disturbance
-changes; a change of the clearance would give the same, since nothing else has a length. A run lasts 0.3 s, or 250 crossings of the
-clearance if that is longer.
+changes; a change of the clearance would give the same, since nothing else has a length. A run lasts 0.3 s,
+or 250 crossings of the clearance if that is longer.
 
 Points already in the CSV are not computed again, so a complete one is only drawn; Ctrl-C keeps what is
 finished and draws it. In the CSV chi = inf stands for the linear limit in closed form, and chi = 0 for hard
