@@ -190,7 +190,7 @@ def strip_panel(field: Part, strip: int, letter: str, y: Axis) -> Panel:
         Trace(x=x, y=field.shear[strip], colour=BLUE, name="with slip"),
     )
     along = axis("along", field.unit("along"), x)
-    return Panel(title=f"{letter}  y = {place}, creep {creep}", x=along, y=y, marks=marks)
+    return Panel(title=f"{letter}  y = {place}, $xi$ = {creep}", x=along, y=y, marks=marks)
 
 
 BOUND = "within $f_BT$ $p$"
