@@ -32,7 +32,6 @@ _PUBLIC = {
     "chain.film_compliance": "film_compliance",
     "chain.shear": "ShearField shear_field",
     "chain.traction_curve": "TractionCurve traction_curve traction_slope",
-    "comparing.records": "Comparison",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError",
     "verdict.swept_cases": "Sweep SweptCase",
     "friction.logs": "read_log",

@@ -58,7 +58,7 @@ LONG = ("traction", "simulate", "rank", "sensitivity")
 """Verbs that are not computed a second time for their document: `test_reproduce` and others do."""
 
 KEPT = {verb.name: {NAME} for verb in VERBS if verb.keeps_runs}
-KEPT["simulate"] = {"simulation.html"}
+KEPT["simulate"] = {"moving-cage.html"}
 KEPT["sweep"] = {NAME, "sweep.csv"}
 """Files beside the answer."""
 
@@ -223,7 +223,7 @@ def test_the_default_folder_is_named_after_the_study(capsys):
     """Without `--out` the files are in a folder beside, with the study's name."""
     assert main(["bearing", "le7"]) == 0
     assert (Path("le7") / "bearing.png").exists() or list(Path("le7").glob("*.png"))
-    assert "Figures and data are in le7/" in capsys.readouterr().out
+    assert "Text, figures and data are in le7/" in capsys.readouterr().out
 
 
 def test_jobs_do_not_change_the_answer(folder, capsys):

@@ -171,28 +171,15 @@ def test_a_film_without_thickness_is_bare_races(capsys):
     assert coated[0.0] != coated[2.5e-6]
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(12, 12), (25, 9)])
-def test_no_column_is_left_out_in_silence(columns, rows, capsys):
-    """A dozen are all printed; of more the text says how many are, and where the others stand."""
-    axes = ("--x", f"film.race_friction=0.05..0.2:{columns}", "--y", "ball_cage_friction=0..0.2:2")
-    assert main(["map", "small.toml", *axes, "--runs", "1", "--out", "m", "--quiet"]) == 0
-    text = capsys.readouterr().out
-    body = text.split("Where the cage begins to whirl")[1].split("\n\n")[0].splitlines()[4:]
-    assert len(body) == rows
-    assert (f"{rows} of {columns} columns of the map are shown" in text) == (rows < columns)
-
-
-def test_the_dataset_stands_on_x_and_y(capsys):
-    """Points have the dimensions (y, x) with the parameters' names and units."""
+def test_the_dataset_has_axes_and_points(capsys):
+    """The axes with their units; a row for each point, as in the document."""
     clearance = "cage.pocket_clearance=0.2..1mm:3"
     found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
     data = separatrix.load("m/map.json")
-    assert data["probability_whirl"].dims == ("y", "x")
-    assert data["x"].attrs == {"units": "m", "long_name": "cage.pocket_clearance"}
-    for point in found["points"]:
-        there = data.sel(x=point["x"], y=point["y"])
-        assert float(there["probability_whirl"]) == point["probability_whirl"]
-        assert str(there["decision"].values) == point["decision"]
+    assert data["x_values"].attrs == {"units": "m"}
+    for name in ("x", "y", "probability_whirl", "decision"):
+        assert data[f"point_{name}"].dims == ("point",)
+        assert data[f"point_{name}"].values.tolist() == [point[name] for point in found["points"]]
 
 
 def test_a_second_call_takes_finished_runs_and_says_so(capsys):

@@ -141,7 +141,7 @@ def test_code_that_was_compiled_from_other_sources_is_not_used(tmp_path):
         (package / name).write_text(source.replace(old, new))
 
     assert value_hits_misses() == [16, 0, 1]
-    edit("present/text/tables.py", '"""', '"""Edited. ')
+    edit("present/text.py", '"""', '"""Edited. ')
     assert value_hits_misses() == [16, 1, 0]
     edit("cage/rows.py", "LANES = 16", "LANES = 32")
     assert value_hits_misses() == [32, 0, 1]

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from separatrix.ground.document import part_of
+from separatrix.ground.document import Part, part_of
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Band, Trace
@@ -13,6 +13,7 @@ from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, materials, reproduce, tribometer
 from separatrix.verbs.answer_files import document
+from separatrix.verbs.parts.comparison import compared as compared_answers
 from separatrix.verbs.parts.comparison import difference_interval, differing, results
 from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
 from separatrix.verdict.judgement import wilson_interval
@@ -97,9 +98,8 @@ def test_noise_is_judged_by_counts_intervals_and_errors():
         ends = {"restitution_threshold_low": threshold - 0.1, "restitution_threshold_high": threshold + 0.1}
         shares = {"probability_stable": count / 64, "probability_low": low, "probability_high": high}
         chain = {"restitution_factor": eta, "restitution_threshold": threshold, "margin": threshold - eta}
-        return results(
-            {**ends, **shares, **chain, "friction": 0.1 + error, "friction_error": 0.01, "verdict": "A"}, {}
-        )
+        rest = {"friction": 0.1 + error, "friction_error": 0.01, "verdict": "A"}
+        return results(Part({**ends, **shares, **chain, **rest}, {}))
 
     rows = {row.name: row for row in differing("rank", node(32, 0.3, 0.5, 0.0), node(48, 0.4, 0.55, 0.05))}
     assert {name: row.noise.name for name, row in rows.items()} == {
@@ -125,29 +125,34 @@ def test_balls_that_changed_alike_are_one_row(tmp_path):
     words = text(compare.page(part_of(found)))
     assert f"balls 0 and {len(balls) - 1} more  load on the inner race" in words
     assert "500 nm  300 nm" in words
-    again = compare.compared({"bearing": ANSWER}, {"bearing": ANSWER}, names=("a", "b"))
+    again = compared_answers({"bearing": ANSWER}, {"bearing": ANSWER}, names=("a", "b"))
     assert "The two answers are equal in every result." in text(compare.page(part_of(again)))
 
 
-def test_two_rankings_are_drawn_over_the_same_axes(tmp_path):
-    """Curves with their bands and margins with their intervals, first and second."""
-    points = [
-        {"restitution_factor": x, "critical_friction": 0.3 - 0.2 * x, "scatter_low": 0.1, "scatter_high": 0.3}
-        for x in (0.1, 0.9)
-    ]
-    margins = [{"name": name, "margin": 0.1, "low": 0.0, "high": 0.2} for name in ("A", "B")]
-    found = compared(tmp_path, seed=2) | {"curves": [points] * 2, "margins": [margins, margins[:1]]}
+def test_what_is_decided_by_is_drawn_for_both_answers():
+    """Margins of the own environment with their intervals, the largest on top; not those of another one."""
+
+    def ranked(**margins):
+        rows = [
+            {"name": name, "restitution_factor": 0.2, "restitution_threshold": one + 0.2, "margin": one,
+             "restitution_threshold_low": one + 0.1, "restitution_threshold_high": one + 0.3}
+            for name, one in margins.items()
+        ]  # fmt: skip
+        each = [{"name": at, "materials": rows} for at in ("E", "F")]
+        return {"rank": ANSWER | {"verb": "rank", "environment": "E", "environments": each}}
+
+    sides = ranked(A=0.1, B=0.4, C=0.2), ranked(A=0.0, B=0.5, C=0.2)
+    found = json.loads(json.dumps(compared_answers(*sides, names=("a", "b"))))
     (picture,) = [one for one in compare.page(part_of(found)).blocks if isinstance(one, Picture)]
-    curves, dots = picture.figure().panels
-    assert [type(one) for one in curves.marks] == [Band, Trace] * 2
-    assert dots.y.names == ("B", "A")
-    assert [list(one.x) for one in dots.marks if isinstance(one, Trace)] == [[0.1, 0.1], [0.1]]
+    (panel,) = picture.figure().panels
+    assert panel.y.names == ("A", "B")
+    assert [list(one.x) for one in panel.marks if isinstance(one, Trace)] == [[0.1, 0.4], [0.0, 0.5]]
 
 
 def test_what_cannot_be_compared_is_refused(tmp_path):
     """Two verbs, and an answer whose parts are not those of one: a line with its file."""
     with pytest.raises(InputError, match="b must be an answer of bearing, as a is; got check"):
-        compare.compared({"bearing": ANSWER}, {"check": ANSWER}, names=("a", "b"))
+        compared_answers({"bearing": ANSWER}, {"check": ANSWER}, names=("a", "b"))
     with pytest.raises(InputError, match=r"bearing\.json is damaged|did not write"):
         compared(tmp_path, study={"ranking": {"candidates": [1]}})
 
@@ -198,7 +203,7 @@ def tests_of_logs(tmp_path_factory):
 
 
 def test_each_test_is_drawn_with_its_cut_and_its_steady_part(tests_of_logs):
-    """Grey before the end of running-in; the mean over the steady part; shares of the rows sum to 1."""
+    """Grey before the end of running-in; the mean over the steady part."""
     page = tribometer.page(part_of(tests_of_logs))
     pictures = [one for one in page.blocks if isinstance(one, Picture)]
     assert [one.name for one in pictures] == ["a.csv", "b.csv"]
@@ -208,7 +213,6 @@ def test_each_test_is_drawn_with_its_cut_and_its_steady_part(tests_of_logs):
     assert tuple(cut.x) == (0.0, test["run_in_end"])
     (mean,) = [one for one in course.marks if getattr(one, "name", "").startswith("steady mean")]
     assert tuple(mean.x) == (test["run_in_end"], test["steady_end"])
-    assert sum(test["course"]["row_share"]) == pytest.approx(1.0)
     assert len(test["course"]["along"]) == 600
 
 

@@ -254,8 +254,7 @@ def test_a_kept_study_reaches_no_other_file(stored, put, capsys):
         ("[]", "is not the document"),
         ('{"verb": "rank"}', "is not the document"),
         ('{"verb": "new", "study": {}}', "must be an answer of"),
-        ('{"verb": "rank", "study": {}}', "has no provenance"),
-        ('{"verb": "rank", "study": {}, "provenance": {"study": {}}}', "has no provenance"),
+        ('{"verb": "rank", "study": {}}', "lacks separatrix_version"),
     ],
 )
 def test_what_is_not_an_answer_is_refused(put, capsys, content, said):

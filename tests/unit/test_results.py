@@ -16,9 +16,11 @@ from separatrix.ground.units import Newton, Ratio, Rows
 from separatrix.present.dataset import dataset
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
+from separatrix.verbs import Computed, verb_named
 from separatrix.verbs import answer_records as answers
 from separatrix.verbs.answer_files import document
 from separatrix.verbs.shapes import to_dataframe, to_xarray
+from separatrix.verbs.verb import NoOptions
 from separatrix.verdict import swept_cases as sweep
 from separatrix.verdict.ranking_records import NotMeasured, Ranked
 
@@ -123,7 +125,8 @@ def test_a_number_that_is_not_finite_is_a_fault_with_its_place(bad):
 def test_a_document_leaves_out_a_number_that_is_not_finite_with_a_warning(bad):
     """Null and a reason, not a traceback after a long computation; missing in the dataset, too."""
     record = Outer(Inner(bad), np.array([[bad, 1.0]]))
-    found = document("bearing", record, replace(STUDY, notes=("A note.",)))
+    study = replace(STUDY, notes=("A note.",))
+    found = document(verb_named("bearing"), made(record, study))
     assert (found["inner"]["load"], found["values"]) == (None, [[None, 1.0]])
     note, reason = found["warnings"]
     assert note == "A note."
@@ -148,6 +151,11 @@ def test_a_row_that_was_not_measured_has_all_keys():
     assert given == {"name": "A", "reason": "not measured", "extrapolation": []}
 
 
+def made(record, study):
+    """Return a record as a verb computes it."""
+    return Computed(record=record, study=study, options=NoOptions(), is_complete=True)
+
+
 ROWS = (Row("A", 0.1, ("too fast", "too hot"), (0.25, 0.75)), Row("B", None))
 
 
@@ -155,7 +163,8 @@ ROWS = (Row("A", 0.1, ("too fast", "too hot"), (0.25, 0.75)), Row("B", None))
 def test_materials_are_aligned_by_name(rows):
     """In a dataset a material has one place whatever its rank; what a row lacks is missing, texts are one."""
     answer = Places(0.3, (Place("x", rows), Place("y", rows[::-1])))
-    data = dataset(document("rank", answer, replace(STUDY, notes=("one",))))
+    found = document(verb_named("rank"), made(answer, replace(STUDY, notes=("one",))))
+    data = dataset(found)
     assert data["material"].values.tolist() == ["A", "B"]
     np.testing.assert_array_equal(data["material_friction"], [[0.1, np.nan]] * 2)
     assert data["material_extrapolation"].values.tolist() == [["too fast; too hot", ""]] * 2

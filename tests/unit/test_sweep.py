@@ -109,7 +109,7 @@ def test_every_value_goes_with_every_other(capsys):
     assert head[:3] == ["case", "cage.mass [kg]", "film.thickness [m]"]
     at = head.index("restitution_factor [-]")
     assert [float(row[at]) for row in rows] == [case["restitution_factor"] for case in found["cases"]]
-    sheet = openpyxl.load_workbook("s/sweep.xlsx")["Sweep"]
+    sheet = openpyxl.load_workbook("s/sweep.xlsx")["cases"]
     assert [cell.value for cell in sheet[1]] == head
     assert sheet.cell(2, at + 1).value == found["cases"][0]["restitution_factor"]
 

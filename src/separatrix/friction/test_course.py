@@ -1,4 +1,4 @@
-"""Series of one friction test for its plots: friction along it, its distribution, its correlation."""
+"""Series of one friction test for its plots: friction along it, and what its log has beside it."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.friction.reduction import Reduction
-from separatrix.ground.units import Array, Ratio
+from separatrix.ground.units import Array
 
-COLUMNS, BINS = 600, 60
-"""Columns into which the rows of a log are gathered, and bins of a histogram at most."""
+COLUMNS = 600
+"""Columns into which the rows of a log are gathered."""
 
 Shares = Annotated[Array, "-"]
 
@@ -38,23 +38,13 @@ class TestCourse:
     span_along: Array  # centres of the spans of the steady part from whose means its error comes
     span_mean: Shares  # those means
     span_cycles: float  # whole cycles of a span; 0 where none are known
-    edges: Shares  # frictions between which rows and cycles are counted
-    row_share: Shares  # share of the rows of the steady part in each bin
-    cycle_share: Annotated[Array | None, "-"]  # the same of means of whole cycles; null without cycles
-    lag: Array  # distance of two spans along the test
-    correlation: Shares  # of spans at that distance, about their straight line
-    correlation_length: float  # from the spectrum of the spans
-    noise_correlation: Ratio  # 95 % of the correlations of white noise are below this, in magnitude
 
 
 def course(one: Reduction) -> TestCourse:
     """Return the series of a test."""
-    log, spans, test = one.log, one.spans, one.test
+    log, spans = one.log, one.spans
     starts = np.linspace(0, log.rows, min(COLUMNS, log.rows) + 1).astype(np.int64)[:-1]
-    along = np.asarray(getattr(log, test.run_in_axis), dtype=float)
-    edges = np.histogram_bin_edges(one.steady_friction, min(BINS, max(8, int(one.steady_friction.size**0.5))))
-    lag, correlation = autocorrelation(spans.means)
-    length, whole = test.steady_end - test.run_in_end, one.cycle_means
+    along = np.asarray(getattr(log, one.test.run_in_axis), dtype=float)
 
     def beside(name: str) -> list[float | None] | None:
         column = getattr(log, name)
@@ -71,28 +61,8 @@ def course(one: Reduction) -> TestCourse:
         slip_speed=beside("slip_speed"),
         span_along=np.array([one.stretch.place(float(centre)) for centre in spans.centres]),
         span_mean=spans.means,
-        span_cycles=float(spans.width) if whole.size else 0.0,
-        edges=edges,
-        row_share=np.histogram(one.steady_friction, edges)[0] / one.steady_friction.size,
-        cycle_share=np.histogram(whole, edges)[0] / whole.size if whole.size else None,
-        lag=lag * (length / spans.means.size),
-        correlation=correlation,
-        correlation_length=one.mean.correlation * length,
-        noise_correlation=2.0 / float(spans.means.size) ** 0.5,
+        span_cycles=float(spans.width) if one.cycle_means.size else 0.0,
     )
-
-
-def autocorrelation(values: Array) -> tuple[Array, Array]:
-    """Return lags and autocorrelation of a series around its straight line, up to a quarter of its length."""
-    n = values.size
-    x = np.arange(n) - (n - 1) / 2
-    level = values - values.mean()
-    level = level - x * (x @ level) / (x @ x)
-    level[np.abs(level) < 1e-12 * np.abs(values).max()] = 0.0  # rounding is no noise
-    lags = np.arange(max(2, n // 4))
-    total = float(level @ level) or 1.0
-    found = [float(level[: n - lag] @ level[lag:]) / total for lag in lags.tolist()]
-    return np.asarray(lags, dtype=float), np.array(found)
 
 
 def _means(values: Array, starts: NDArray[np.int64]) -> list[float | None]:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool
@@ -160,13 +161,10 @@ class ToolAnswer(Shown):
         return self.tool.page(part_of(self.found))
 
     def to_dataframe(self) -> pd.DataFrame:
-        """One row for each test, record or result: the first list of the document that has rows."""
+        """One row for each test, record or result."""
         import pandas as pd
 
-        rows = (
-            one for one in self.found.values() if isinstance(one, list) and one and isinstance(one[0], dict)
-        )
-        return pd.json_normalize(next(rows, []))
+        return pd.json_normalize(self.found[self.tool.rows])
 
 
 def _answer(verb: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
@@ -328,7 +326,7 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     InputError
         One of them is not an answer, or they are of different verbs.
     """
-    from separatrix.verbs.compare import compared
+    from separatrix.verbs.parts.comparison import compared
     from separatrix.verbs.saved_answers import read_answers
 
     sides = [
@@ -357,7 +355,7 @@ def load(path: str | Path) -> xr.Dataset:
 def tribometer(
     paths: str | Path | Sequence[str | Path],
     *,
-    column_map: str | Path | None = None,
+    column_map: ColumnMap | str | Path | None = None,
     run_in: str | None = None,
     join: bool = False,
     complete: bool = False,
@@ -370,7 +368,7 @@ def tribometer(
     ----------
     paths : path or sequence of paths
         Logs, each of one or several tests, or folders of them.
-    column_map : path, optional
+    column_map : ColumnMap or path, optional
         What the files do not state themselves.
     run_in : str, optional
         Where running-in ends in all of them, such as ``"10 min"``; else as in the map, else as detected.
@@ -391,7 +389,7 @@ def tribometer(
     from separatrix.verbs.tribometer import Options, document, reduced
 
     files = (paths,) if isinstance(paths, str | Path) else tuple(paths)
-    given = None if column_map is None else Path(column_map)
+    given: Any = Path(column_map) if isinstance(column_map, str) else column_map
     options = Options(files=tuple(Path(one) for one in files), column_map=given, run_in=run_in, join=join)
     found = reduced(options, jobs, progress, complete=complete)
     return ToolAnswer(tool_named("tribometer"), document(found), found)

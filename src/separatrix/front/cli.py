@@ -371,13 +371,20 @@ COMMANDS = {"new": OTHERS["new"], **VERBS, **TOOLS, **OTHERS}
 class _Commands(typer.core.TyperGroup):
     """The commands by name, each made when it is asked for: the list of them loads none."""
 
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self.commands = dict.fromkeys(COMMANDS)  # type: ignore[assignment] # names alone, to suggest one
+
     def list_commands(self, ctx: Any) -> list[str]:
+        """Return their names."""
         return [*COMMANDS]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return one of them, None of another name."""
         return _command(cmd_name) if cmd_name in COMMANDS else None
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write their lines of help."""
         with formatter.section("Commands"):
             formatter.write_dl([*COMMANDS.items()])
 

@@ -186,6 +186,9 @@ def run(verb: Verb, given: Mapping[str, Any]) -> int:
     models = {name: given[name] for name in ("motion", "ball") if given.get(name) is not None}
     is_kept = verb.keeps_runs and not (json and place is None)
 
+    if given.get("animate") is not None and json and place is None:
+        raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
+
     @interruptible("runs that were finished are kept." if is_kept else "no file was written.")
     def work() -> int:
         options = options_of(verb, given)

@@ -18,7 +18,7 @@ from separatrix.present.blocks import (
     spans,
 )
 
-WIDTH, TABLE, LABEL = 96, 110, 40
+WIDTH, TABLE, LABEL = 96, 100, 40
 """Most letters of a line of words, of a table, and of a label."""
 
 LEAST = 24

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 from separatrix.ground.document import Document, Part
-from separatrix.ground.errors import InputError
-from separatrix.ground.quantity import ABSENT, Estimate, Quantity, alone
+from separatrix.ground.quantity import ABSENT, Estimate, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable
 from separatrix.present.blocks import (
@@ -26,25 +25,11 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.present.figure import BLUE, GREY, VERMILION, Across, Axis, Band, Figure, Panel, Trace
-from separatrix.verbs.parts.comparison import (
-    MAIN,
-    UNCOUNTED_VERBS,
-    Input,
-    Node,
-    Noise,
-    Plain,
-    differences,
-    differing,
-    inputs_of_answer,
-    is_decision,
-    is_number,
-    order,
-    results,
-    value_of,
-)
-from separatrix.verbs.parts.quantities import QUANTITIES
-from separatrix.verbs.saved_answers import AGAIN, VERBS, read_answers, refusing_damage
+from separatrix.present.figure import BLUE, GREY, VERMILION, Across, Axis, Figure, Mark, Panel, Trace
+from separatrix.verbs.parts.answer_page import value_words
+from separatrix.verbs.parts.comparison import MAIN, UNCOUNTED_VERBS, Noise, compared, is_decision
+from separatrix.verbs.parts.telling import quantity
+from separatrix.verbs.saved_answers import is_number, read_answers
 from separatrix.verbs.verb import Option, Tool
 
 
@@ -56,108 +41,16 @@ class Options:
     second: Annotated[Path, Option("Another one of the same verb.", "B", True)]
 
 
-MOST_ROWS, ON_A_SCREEN, IN_A_REPORT = 2000, 8, 40
-
-
 def compute(options: Options) -> Document:
     """Compare two saved answers: verdicts, ranks, inputs, and each result with its counting noise."""
     sides = [read_answers(one) for one in (options.first, options.second)]
     return compared(*sides, names=(path_text(options.first), path_text(options.second)))
 
 
-def compared(
-    first: Mapping[str, Document], second: Mapping[str, Document], *, names: tuple[str, str]
-) -> Document:
-    """Compare the answers of the first verb that both have; `names` stand for them in messages.
-
-    Raises
-    ------
-    InputError
-        They share no verb, or one is not as separatrix writes it.
-    """
-    from separatrix import __version__
-    from separatrix.ground.plain_data import plain
-
-    shared = [verb for verb in VERBS if verb in first and verb in second]
-    if not shared:
-        rule = f"must be an answer of {' or '.join(first)}, as {names[0]} is"
-        raise InputError(names[1], rule, got=", ".join(second))
-    verb = shared[0]
-    sides = [_read(name, by_verb[verb]) for name, by_verb in zip(names, (first, second), strict=True)]
-    one, other = sides
-    rows = sorted(differing(verb, one.nodes, other.nodes), key=order)
-    any_verdict, shared_verdicts = one.verdicts | other.verdicts, one.verdicts & other.verdicts
-    return {
-        "separatrix_version": __version__,
-        "verb": "compare",
-        "of": verb,
-        "answers": [side.named for side in sides],
-        "same_seed": one.named["seed"] == other.named["seed"],
-        "environment": one.environment if one.environment == other.environment else None,
-        "shared_verdicts": len(shared_verdicts) if any_verdict else None,
-        "inputs": plain(tuple(differences(one.inputs, other.inputs)), left_out=[]),
-        "rows": plain(tuple(rows[:MOST_ROWS]), left_out=[]),
-        "left_out": max(0, len(rows) - MOST_ROWS),
-        "also": shared[1:],
-        "curves": [one.curve, other.curve] if one.curve and other.curve else None,
-        "margins": [one.margins, other.margins] if one.margins and other.margins else None,
-    }
-
-
-class _Side(NamedTuple):
-    """What is compared of an answer; its verdicts by place and name."""
-
-    named: Document
-    environment: str | None
-    nodes: dict[tuple[str, ...], Node]
-    verdicts: set[tuple[tuple[str, ...], str]]
-    inputs: dict[str, Input]
-    curve: list[Document]
-    margins: list[Document]
-
-
-def _read(name: str, one: Document) -> _Side:
-    """Take from an answer what is compared; one that is damaged is refused under its name."""
-    with refusing_damage(name):
-        nodes, inputs, own = results(one, one["units"]), inputs_of_answer(one), one.get("environment")
-        places = ((place, key) for place, node in nodes.items() for key in node.values)
-        verdicts = {(place, key) for place, key in places if is_decision(key) and key != "rank"}
-        environment = own if isinstance(own, str) else None
-        side = _Side(_named(name, one), environment, nodes, verdicts, inputs, _curve(one), _margins(one))
-    if not inputs:
-        raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
-    return side
-
-
-def _named(path: str, one: Document) -> Document:
-    title, complete = printable(one["title"], 200), one.get("complete") is not False
-    return {"path": path, "title": title, "seed": one["seed"], "complete": complete}
-
-
-def _curve(one: Document) -> list[Document]:
-    """Return the points of the stability curve of an answer, for the picture; none if it has no curve."""
-    curve = one.get("curve") if one["verb"] == "stability" else (one.get("stability") or {}).get("curve")
-    names = ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
-    points = [{name: row.get(name) for name in names} for row in curve or ()]
-    return [row for row in points if all(map(is_number, row.values()))]
-
-
-def _margins(one: Document) -> list[Document]:
-    """Return the margin of each candidate in the bearing's own environment, in the order of their ranks."""
-    if one["verb"] != "rank":
-        return []
-    rows: list[Document] = next(
-        (env["materials"] for env in one["environments"] if env["name"] == one["environment"]), []
-    )
-    found = []
-    for row in rows:
-        value = value_of("margin", row)
-        if is_number(value.value):
-            found.append({"name": row["name"], "margin": value.value, "low": value.low, "high": value.high})
-    return found
-
-
 # --- the page -----------------------------------------------------------------------------------
+Columns = tuple[Column, ...]
+ON_A_SCREEN, MOST_DRAWN = 8, 20
+
 LEGEND = (
     "noise: MORE, or within: whether the 95 % interval of the change excludes 0 (shares of runs: Newcombe's "
     "interval). exact: not counted in runs, exact up to the model. ?: from runs, without an interval."
@@ -168,72 +61,40 @@ ONE_RUN = "A single run of each is not evidence: repeated runs of the same cages
 
 def page(answer: Part) -> Page:
     """Return the page of `compare`: what a reader decides first, then inputs, then the largest changes."""
-    rows = _alike([_Shown(one, answer.get("environment") or "") for one in answer.rows])
-    decisions = sorted((one for one in rows if is_decision(one.row.name)), key=lambda one: not one.is_short)
-    others = [one for one in rows if not is_decision(one.row.name)]
-    named = [
-        f"{one.title} ({printable(one.path, 80)}, seed {one.seed})"
-        + ("" if one.complete else ", interrupted")
-        for one in answer.answers
-    ]
-    largest = "Results that differ", ", the largest changes first"
+    rows, own = _alike(answer.rows), f"{answer.environment} / "
+    decisions = [one for one in rows if is_decision(one.name)]
+    others = [one for one in rows if not is_decision(one.name)]
+    named = [f"{one.title} ({printable(one.path, 80)}, seed {one.seed})" for one in answer.answers]
+    ends = ["" if one.complete else ", interrupted" for one in answer.answers]
     return Page(
         f"Two answers of {answer.of}",
         f"Compared by separatrix {answer.separatrix_version}",
         (
-            facts(("First", named[0]), ("Second", named[1])),
+            facts(("First", named[0] + ends[0]), ("Second", named[1] + ends[1])),
             Note(" ".join(_lead(answer)), "lead"),
-            *_long(("Verdicts and ranks that changed", ""), _decided(), _decided(is_brief=True), decisions),
-            *_long(("Inputs that differ", ""), _inputs(), _inputs(), answer.get("inputs") or []),
-            *_long(largest, _changes(), _changes(is_brief=True), others),
-            *_pictures(answer),
+            *_tables("Verdicts and ranks that changed", lambda _: PLACE + SIDES, decisions, own),
+            *_tables("Inputs that differ", lambda _: INPUTS, answer.inputs or (), own),
+            *_tables("Results that differ", _changes, others, own),
+            *_picture(answer, own),
             *(Note(text, "legend") for text in _notes(answer)),
         ),
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Shown:
-    """A row, with the environment that is left out before its place, and how many others are like it."""
-
-    row: Part
-    own: str
-    others: int = 0
-
-    @property
-    def place(self) -> str:
-        """Where it is, among the rows of a screen."""
-        more = f" and {self.others} more" if self.others else ""
-        return str(self.row.place).removeprefix(f"{self.own} / ") + more
-
-    @property
-    def is_short(self) -> bool:
-        """Whether it is for a screen: of the own environment, and not kick by kick."""
-        place = self.row.place
-        is_own = not self.own or place.startswith(f"{self.own} / ")
-        return (is_own or place.partition(" ")[0] in ("", "chain")) and place.count(" / ") < 2
-
-    @property
-    def is_main(self) -> bool:
-        """Whether a reader decides by it."""
-        return self.row.name in MAIN and self.of_runs
-
-    @property
-    def of_runs(self) -> bool:
-        """Whether it is not one of the chain's results, which other verbs have too."""
-        return not self.row.place.startswith("chain")
-
-
-def _alike(rows: Sequence[_Shown]) -> list[_Shown]:
+def _alike(rows: Sequence[Part]) -> list[Part]:
     """Return rows of which those that say the same of numbered parts, such as balls, are one."""
-    alike = grouped((_likeness(one), one) for one in rows)
-    return [_Shown(same[0].row, same[0].own, len(same) - 1) for same in alike.values()]
+
+    def likeness(row: Part) -> tuple[str, ...]:
+        stem, _, number = row.place.rpartition(" ")
+        place = stem if number.isdigit() else row.place
+        return place, row.name, *(_side(which)(row).text for which in ("first", "second"))
+
+    alike = grouped((likeness(row), row) for row in rows).values()
+    return [_at(f"{one.place} and {len(more)} more" if more else one.place, one) for one, *more in alike]
 
 
-def _likeness(one: _Shown) -> tuple[str, ...]:
-    row, (stem, _, number) = one.row, one.row.place.rpartition(" ")
-    place = stem if number.isdigit() else row.place
-    return place, row.name, *(_side(which)(one).text for which in ("first", "second"))
+def _at(place: str, row: Part) -> Part:
+    return Part({**row.values, "place": place}, row.units, row.where)
 
 
 def _lead(answer: Part) -> Iterator[str]:
@@ -242,110 +103,68 @@ def _lead(answer: Part) -> Iterator[str]:
     if not rows:
         yield "The two answers are equal in every result."
         return
-    changed = sum(is_decision(row.name) and row.name != "rank" for row in rows)
-    if shared == 0:
-        yield "The two answers have no verdict in common."
-    elif shared is not None:
-        yield (
-            f"{changed} of {shared} verdicts changed."
-            if changed
-            else f"No verdict changed ({shared} compared)."
-        )
-    ranks = [row for row in rows if row.name == "rank" and row.place.startswith(f"{answer.environment} / ")]
-    was, now = (
-        " and ".join(row.place.rpartition(" / ")[2] for row in ranks if row.get(which).value == 1)
-        for which in ("first", "second")
-    )
-    if was and now:
-        yield f"First in {answer.environment}: {was} in the first answer, {now} in the second."
-    main = [row.name for row in rows if row.name in MAIN and row.noise == "BEYOND"]
-    for name in dict.fromkeys(main):
-        count = main.count(name)
-        yield f"{count} value{'s'[: count != 1]} of {_words(name)} changed by more than counting noise."
+    changed = [row.name == "rank" for row in rows if is_decision(row.name)]
+    ranks = f"; ranks: {sum(changed)}" if any(changed) else ""
+    if shared is not None:
+        yield f"Verdicts changed: {changed.count(False)} of {shared} that both have{ranks}."
+    beyond = [_words(row.name) for row in rows if row.name in MAIN and row.noise == "BEYOND"]
+    if beyond:
+        counts = ", ".join(f"{name} ({beyond.count(name)})" for name in dict.fromkeys(beyond))
+        yield f"Changed by more than counting noise: {counts}."
 
 
-Columns = tuple[Column, ...]
-
-
-def _long(title: tuple[str, str], whole: Columns, brief: Columns, rows: Sequence[Any]) -> Iterator[Block]:
-    """Yield a table under its title: what fits a screen there, all of it elsewhere."""
-    if not rows:
-        return
-    name, own = title[0].lower(), ""
-    short = [one for one in rows if isinstance(one, _Shown) and one.is_short]
-    if short:
-        own = f" in {short[0].own}" if short[0].own else ""
-        short = [one for one in short if one.is_main] or [one for one in short if one.of_runs] or short
-    shown = tuple((short or rows)[:ON_A_SCREEN])
+def _tables(
+    title: str, columns: Callable[[bool], Columns], rows: Sequence[Part], own: str
+) -> Iterator[Block]:
+    """Yield a table under its title: what fits a screen there, of the own environment; else all."""
+    ours = [_at(row.place.removeprefix(own), row) for row in rows if (row.get("place") or "").startswith(own)]
+    shown = (ours or rows)[:ON_A_SCREEN]
     more = f"{len(rows) - len(shown)} more differ: `--full`." if len(rows) > len(shown) else ""
-    yield Heading(f"{title[0]}{own}{title[1]}", Level.BRIEF)
-    yield Table(name, brief, shown, more, Level.BRIEF)
-    yield Heading("".join(title), Level.LONG)
-    yield Table(name, whole, tuple(rows[:IN_A_REPORT]), "", Level.LONG)
-    if len(rows) > IN_A_REPORT:
-        yield Note(f"{len(rows) - IN_A_REPORT} more differ: `--full`.", "legend", Level.REPORT)
-    yield Table(f"{name}, more", whole, tuple(rows[IN_A_REPORT:]), "", Level.FULL | Level.SHEET)
+    yield Heading(f"{title} in {own.removesuffix(' / ')}" if ours else title, Level.BRIEF)
+    yield Table(title, columns(False), tuple(shown), more, Level.BRIEF)
+    yield Heading(title, Level.LONG)
+    yield Table(title, columns(True), tuple(rows), "", Level.LONG)
 
 
 def _words(name: str) -> str:
-    if not name:
-        return "in the answer"
-    known = QUANTITIES.get(name)
-    return known.label if known else name.replace("_", " ")
+    return quantity(name).label if name else "in the answer"
 
 
-def _told(row: Part, value: Plain, low: float | None, high: float | None) -> Cell:
+def _told(row: Part, value: Any, low: float | None = None, high: float | None = None) -> Cell:
     """Return a value of a row as a cell; a text or a truth as words."""
     if not is_number(value):
         return Cell(ABSENT if value is None else str(value))
-    known = QUANTITIES.get(row.name)
-    unit, form = known.unit if known else "", ".0f" if isinstance(value, int) else ""
-    return Cell(Estimate(value, low, high), Quantity(label=row.name, unit=unit, form=form), row.get("unit"))
+    form = ".0f" if isinstance(value, int) else ""
+    known = Quantity(label=row.name, unit=quantity(row.name).unit, form=form)
+    return Cell(Estimate(value, low, high), known, row.get("unit"))
 
 
-def _side(which: str) -> Callable[[_Shown], Cell]:
-    def cell(one: _Shown) -> Cell:
-        side = one.row.get(which)
-        return _told(one.row, side.value, side.low, side.high)
+def _side(which: str) -> Callable[[Part], Cell]:
+    def cell(row: Part) -> Cell:
+        side = row.get(which)
+        return _told(row, side.value, side.low, side.high)
 
     return cell
 
 
-def _decided(*, is_brief: bool = False) -> Columns:
-    return (
-        text_column("where", lambda one: one.place if is_brief else one.row.place),
-        text_column("what", lambda one: _words(one.row.name)),
-        Column("first", _side("first"), is_text=True),
-        Column("second", _side("second"), is_text=True),
-    )
+SIDES = tuple(Column(which, _side(which), is_text=True) for which in ("first", "second"))
+PLACE = text_column("where", lambda row: row.place), text_column("what", lambda row: _words(row.name))
 
 
-def _changes(*, is_brief: bool = False) -> Columns:
-    def change(one: _Shown) -> Cell:
-        ends = (None, None) if is_brief else (one.row.change_low, one.row.change_high)
-        return _told(one.row, one.row.change, *ends)
-
-    noise = text_column("noise", lambda one: Noise[one.row.noise].value)
-    return *_decided(is_brief=is_brief), Column("change", change, is_text=True), noise
+def _changes(has_ends: bool) -> Columns:
+    ends = ("change_low", "change_high") if has_ends else ()
+    change = Column("change", lambda row: _told(row, row.change, *map(row.get, ends)), is_text=True)
+    return *PLACE, *SIDES, change, text_column("noise", lambda row: Noise[row.noise].value)
 
 
-def _inputs() -> Columns:
-    def value(which: str) -> Callable[[Part], str]:
-        return lambda row: input_words(row.get(which), row.get("unit"))
+def _input(which: str) -> Column:
+    def words(row: Part) -> str:
+        return printable(value_words(row.values[which], row.get("unit") or ""), 120)
 
-    key = text_column("input", lambda row: row.key)
-    return key, text_column("first", value("first")), text_column("second", value("second"))
+    return text_column(which, words)
 
 
-def input_words(value: Any, unit: str | None) -> str:
-    """Return the value of an input in one of the answers."""
-    if isinstance(value, Part):
-        return "given"
-    if isinstance(value, list):
-        return printable(", ".join(input_words(one, unit) for one in value), 120) or ABSENT
-    if is_number(value):
-        return alone(float(value), Quantity(label="", digits=5), unit or "-")
-    return ABSENT if value is None else printable(str(value), 120)
+INPUTS = text_column("input", lambda row: row.key), _input("first"), _input("second")
 
 
 def _notes(answer: Part) -> Iterator[str]:
@@ -355,8 +174,9 @@ def _notes(answer: Part) -> Iterator[str]:
         yield ONE_RUN
     elif answer.rows:
         yield LEGEND
-        if answer.same_seed:
-            same = f"Both draw the same disturbances (seed {answer.answers[0].seed})"
+        seeds = {one.seed for one in answer.answers}
+        if len(seeds) == 1:
+            same = f"Both draw the same disturbances (seed {seeds.pop()})"
             yield f"{same}; the intervals take their runs as independent."
     if answer.left_out:
         yield f"{answer.left_out} more results differ: too many to list."
@@ -365,67 +185,34 @@ def _notes(answer: Part) -> Iterator[str]:
 
 
 # --- the picture --------------------------------------------------------------------------------
-def _pictures(answer: Part) -> Iterator[Picture]:
-    """Yield one picture with both answers: the curves, the margins, or both side by side."""
-    makers = [maker for name, maker in (("curves", _curves), ("margins", _dots)) if name in answer]
-    if not makers:
-        return
-    titles = [one.title for one in answer.answers]
-    names = titles if titles[0] != titles[1] else [one.path for one in answer.answers]
+DRAWN = ("margin", "critical_friction", "probability_stable")
+"""Results by which a reader decides: the first of them that differs is drawn."""
 
-    def figure() -> Figure:
-        return Figure(
-            rows=(tuple(maker(answer, letter) for maker, letter in zip(makers, "ab", strict=False)),),
-            heading=tuple(f"{which}: {name}" for which, name in zip(("First", "Second"), names, strict=True)),
-            alt="Both answers over the same axes; the tables have the numbers that differ.",
-            height=2.9,
-        )
-
-    yield Picture("comparison", figure, "Both answers over the same axes, with 95 % intervals.")
+LOOKS = (("first", 0.14, BLUE, "o"), ("second", -0.14, VERMILION, "s"))
 
 
-LOOKS = ((BLUE, "o", "-", "first"), (VERMILION, "s", "--", "second"))
+def _picture(answer: Part, own: str) -> Iterator[Picture]:
+    """Yield what is decided by, of the own environment, in both answers, the largest value on top."""
+    rows = [row for row in answer.rows if row.name in DRAWN and row.change_low is not None]
+    ours = [row for row in rows if row.place.startswith(own)] or rows
+    if ours:
+        name = min((row.name for row in ours), key=DRAWN.index)
+        rows = sorted((row for row in ours if row.name == name), key=lambda row: row.first.value)
+        label, titles = _words(name), [printable(one.path, 80) for one in answer.answers]
+        caption = f"{label[:1].upper()}{label[1:]} where it differs, with 95 % intervals."
+        yield Picture("comparison", lambda: _figure(label, rows[-MOST_DRAWN:], titles), caption)
 
 
-def _curves(answer: Part, letter: str) -> Panel:
-    """Return critical friction against the restitution factor, of both."""
-    marks: list[Any] = []
-    for points, (colour, _, line, name) in zip(answer.values["curves"], LOOKS, strict=True):
-        x, y, low, high = (
-            [one[key] for one in points]
-            for key in ("restitution_factor", "critical_friction", "scatter_low", "scatter_high")
-        )
-        marks += [Band(x=x, low=low, high=high, colour=colour, opacity=0.2)]
-        marks += [Trace(x=x, y=y, colour=colour, line=line, name=name)]
-    return Panel(
-        title=f"{letter}  Critical friction",
-        x=Axis(label="restitution factor $eta$ [-]"),
-        y=Axis(label="critical friction $f_BC$ [-]", low=0.0),
-        marks=tuple(marks),
-    )
-
-
-def _dots(answer: Part, letter: str) -> Panel:
-    """Return the margin of each candidate with its interval, of both."""
-    sides = answer.values["margins"]
-    every = list(dict.fromkeys(one["name"] for side in sides for one in side))[::-1]
-    marks: list[Any] = [Across(at=0.0, colour=GREY, line=":")]
-    for side, shift, (colour, marker, _, name) in zip(sides, (0.14, -0.14), LOOKS, strict=True):
-        values = [one["margin"] for one in side]
-        low, high = (_known(side, end) for end in ("low", "high"))
-        y = [every.index(one["name"]) + shift for one in side]
-        look: dict[str, Any] = {"colour": colour, "marker": marker, "line": "", "name": name}
-        marks.append(Trace(x=values, y=y, low=low, high=high, ends_along="x", **look))
-    return Panel(
-        title=f"{letter}  Margin in {answer.environment or 'the own environment'}",
-        x=Axis(label="margin of the restitution factor [-]"),
-        y=Axis(label="", names=tuple(every), low=-0.6, high=len(every) - 0.4),
-        marks=tuple(marks),
-    )
-
-
-def _known(side: Sequence[Mapping[str, Any]], end: str) -> list[float]:
-    return [one[end] if one[end] is not None else one["margin"] for one in side]
+def _figure(label: str, rows: Sequence[Part], titles: Sequence[str]) -> Figure:
+    marks: list[Mark] = [Across(at=0.0, colour=GREY, line=":")]
+    for (which, shift, colour, marker), title in zip(LOOKS, titles, strict=True):
+        x, low, high = ([getattr(row.get(which), end) for row in rows] for end in ("value", "low", "high"))
+        look: dict[str, Any] = {"colour": colour, "marker": marker, "line": "", "name": f"{which}: {title}"}
+        y = [at + shift for at in range(len(rows))]
+        marks.append(Trace(x=x, y=y, low=low, high=high, ends_along="x", **look))
+    places = Axis(label="", names=tuple(row.place.rpartition(" / ")[2] for row in rows))
+    panel = Panel(title="", x=Axis(label=f"{label} [-]"), y=places, marks=tuple(marks))
+    return Figure(rows=((panel,),), alt="Both answers; the tables have the numbers.", height=3.2)
 
 
 VERB = Tool(
@@ -434,5 +221,6 @@ VERB = Tool(
     compute=compute,
     page=page,
     options=Options,
+    rows="rows",
     has_full=True,
 )

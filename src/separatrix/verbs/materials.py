@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
-from separatrix.ground.quantity import ABSENT, Quantity, alone
+from separatrix.ground.quantity import Quantity, alone
+from separatrix.ground.toml import nearest
 from separatrix.ground.units import Kelvin, parse, shown
 from separatrix.present.blocks import (
     Block,
     Cell,
     Column,
     Heading,
-    Level,
     Note,
     Page,
     Table,
@@ -24,26 +24,32 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
+from separatrix.verbs.parts.answer_page import friction_words
+from separatrix.verbs.parts.telling import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
     from separatrix.study.library import Library
     from separatrix.study.library.records import AnyRecord
 
-KIND = "bearing material, cage material, film, fluid, friction table."
-LIBRARY = "A library file or folder to read too; may be repeated."
 EPILOG = (
     "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
     "are read, as they are for a study there."
 )
 
 
+Kind = Annotated[str | None, Option("bearing material, cage material, film, fluid, friction table.", "KIND")]
+Libraries = Annotated[
+    tuple[str, ...], Option("A library file or folder to read too; may be repeated.", "PATH")
+]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ListOptions:
     """What `materials list` takes."""
 
-    kind: Annotated[str | None, Option(KIND, "KIND")] = None
-    library: Annotated[tuple[str, ...], Option(LIBRARY, "PATH")] = ()
+    kind: Kind = None
+    library: Libraries = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,9 +57,9 @@ class ShowOptions:
     """What `materials show` takes."""
 
     name: Annotated[str, Option("A material, film, fluid or friction table.", "NAME", True)]
-    kind: Annotated[str | None, Option(KIND, "KIND")] = None
+    kind: Kind = None
     temperature: Annotated[str | None, Option('For instance "77 K": the data that serve there.', "T")] = None
-    library: Annotated[tuple[str, ...], Option(LIBRARY, "PATH")] = ()
+    library: Libraries = ()
 
 
 WORDS = {
@@ -66,10 +72,8 @@ WORDS = {
 POINTS = ("triple_temperature", "boiling_temperature", "critical_temperature", "critical_pressure")
 """Properties that do not depend on temperature."""
 
-PROPERTY = Quantity(label="", digits=5)
-LISTED = Quantity(label="", digits=4)
+PROPERTY, LISTED = Quantity(label="", digits=5), Quantity(label="", digits=4)
 RATIO = Quantity(label="", form=".3f")
-SCATTER = Quantity(label="", digits=2)
 
 
 # --- the records --------------------------------------------------------------------------------
@@ -87,7 +91,6 @@ def read_library(libraries: Sequence[str | Path]) -> Library:
 
 def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
     """Return the records of a kind, in any spelling and in the plural too; without one all of them."""
-    from separatrix.ground.toml import nearest
     from separatrix.study.library.records import KINDS
 
     kinds: tuple[str, ...] = KINDS
@@ -101,8 +104,6 @@ def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
 
 def records_named(library: Library, records: Sequence[AnyRecord], name: str) -> list[AnyRecord]:
     """Return the records of a name, a fluid also by another name of it; refused if there is none."""
-    from separatrix.ground.toml import nearest
-
     found = [one for one in records if one.name == name]
     fluid = library.fluid(name) if any(one.kind == "fluid" for one in records) else None
     if found or fluid is not None:
@@ -121,7 +122,9 @@ def list_records(options: ListOptions) -> Document:
 
 def show_records(options: ShowOptions) -> Document:
     """Records of a name, whole; at a temperature with what serves there."""
-    at = None if options.temperature is None else _temperature(options.temperature)
+    at = None if options.temperature is None else parse(options.temperature, "K", "--temperature")
+    if at is not None and not 1e-3 <= at <= 5000.0:
+        raise InputError("--temperature", "must lie between 0.001 K and 5000 K", shown(options.temperature))
     library = read_library(options.library)
     found = records_named(library, records_of(library, options.kind), options.name)
     return _document("show", records=[_served(library, one, at) for one in found])
@@ -131,13 +134,6 @@ def _document(which: str, **content: object) -> Document:
     from separatrix import __version__
 
     return {"separatrix_version": __version__, "verb": f"materials {which}", **content}
-
-
-def _temperature(text: str) -> Kelvin:
-    value = parse(text, "K", "--temperature")
-    if not 1e-3 <= value <= 5000.0:
-        raise InputError("--temperature", "must lie between 0.001 K and 5000 K", shown(text))
-    return value
 
 
 def _served(library: Library, record: AnyRecord, at: Kelvin | None) -> Document:
@@ -156,56 +152,19 @@ def _served(library: Library, record: AnyRecord, at: Kelvin | None) -> Document:
 
 # --- the pages ----------------------------------------------------------------------------------
 def list_page(answer: Part) -> Page:
-    """Return the page of `materials list`: a table for each kind."""
+    """Return the page of `materials list`: a table for each kind, of what its records have."""
     blocks: list[Block] = []
-    for kind, records in grouped((one.kind, one) for one in answer.materials).items():
-        blocks += [Heading(f"{kind.capitalize()}s"), Table(f"{kind}s", _columns(kind), tuple(records))]
-    several = "Where a record has several data of one property the first is listed; `show NAME` has all."
+    for kind, rows in grouped((one.kind, one) for one in answer.materials).items():
+        known = known_columns(COLUMNS, rows)
+        blocks += [Heading(f"{kind.capitalize()}s"), Table(f"{kind}s", known, tuple(rows))]
+    several = (
+        "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
+    )
     return Page("Library of materials", _subtitle(answer), (*blocks, Note(several)))
 
 
 def _subtitle(answer: Part) -> str:
     return f"Library of separatrix {answer.separatrix_version}"
-
-
-def _columns(kind: str) -> tuple[Column, ...]:
-    """Return the columns of the records of a kind."""
-    name, library = (
-        text_column("name", lambda one: one.name),
-        text_column("library", lambda one: one.library.file),
-    )
-    if kind == "friction table":
-        return (
-            name,
-            text_column("materials", lambda one: str(len(one.friction.values))),
-            text_column("environments", lambda one: str(len(one.environments))),
-            text_column("confidence", lambda one: one.confidence.partition(";")[0]),
-            library,
-        )
-    if kind == "fluid":
-        return (
-            name,
-            text_column("also", lambda one: ", ".join(one.aliases or ()) or ABSENT),
-            text_column("phase", lambda one: one.phase),
-            _first("boils at", "boiling_temperature"),
-            _first("critical", "critical_temperature"),
-            library,
-        )
-    return (
-        name,
-        _first("E", "elastic_modulus", Quantity(label="")),
-        _first("nu", "poisson_ratio", RATIO),
-        _first("density", "density"),
-        text_column("E at", lambda one: _at(_data(one, "elastic_modulus")[0]) or ABSENT),
-        text_column(
-            "confidence in E", lambda one: _data(one, "elastic_modulus")[0].confidence.partition(";")[0]
-        ),
-        library,
-    )
-
-
-def _data(record: Part, key: str) -> list[Part]:
-    return record.data.get(key) or []
 
 
 def _first(head: str, key: str, quantity: Quantity = LISTED) -> Column:
@@ -219,112 +178,95 @@ def _first(head: str, key: str, quantity: Quantity = LISTED) -> Column:
     return Column(head, cell)
 
 
-def _at(datum: Part) -> str:
-    """Return the temperatures of a datum; empty if its source states none."""
-    return "" if datum.temperature is None else _span(datum.temperature, "K")
+def _data(record: Part, key: str = "elastic_modulus") -> list[Part]:
+    return (record.get("data") or Part({}, {})).get(key) or []
 
 
-def _span(bounds: Sequence[float], unit: str) -> str:
-    low, high = (alone(bound, LISTED, unit) for bound in bounds)
-    return low if low == high else f"{low} to {high}"
+def _sure(record: Part) -> str:
+    """Return how sure a friction table or an elastic modulus is."""
+    known = [one.confidence for one in _data(record)] or [record.get("confidence") or ""]
+    return str(known[0]).partition(";")[0]
+
+
+COLUMNS = (
+    text_column("name", lambda one: one.name),
+    text_column("also", lambda one: ", ".join(one.get("aliases") or ())),
+    text_column("phase", lambda one: one.get("phase")),
+    _first("E", "elastic_modulus", Quantity(label="", form=".3g")),
+    _first("nu", "poisson_ratio", RATIO),
+    _first("boils at", "boiling_temperature"),
+    _first("critical", "critical_temperature"),
+    text_column("E at", lambda one: "".join(_span(at.temperature, "K") for at in _data(one)[:1])),
+    text_column("confidence", _sure),
+    text_column("library", lambda one: one.library.file),
+)
+
+
+def _span(bounds: Sequence[float] | None, unit: str) -> str:
+    """Return a range in words; empty if there is none."""
+    return " to ".join(dict.fromkeys(alone(bound, LISTED, unit) for bound in bounds or ()))
 
 
 def show_page(answer: Part) -> Page:
     """Return the page of `materials show`: each record whole."""
-    names = dict.fromkeys(f"{one.name} ({one.kind})" for one in answer.records)
-    several = len(answer.records) > 1
+    names = [f"{one.name} ({one.kind})" for one in answer.records]
     blocks: list[Block] = []
-    for one in answer.records:
-        blocks += [Heading(f"{one.name} ({one.kind})")] if several else []
-        blocks += _whole(one)
-    return Page(", ".join(names), _subtitle(answer), tuple(blocks))
+    for name, one in zip(names, answer.records, strict=True):
+        blocks += [Heading(name), *_whole(one)] if names[1:] else _whole(one)
+    return Page(", ".join(dict.fromkeys(names)), _subtitle(answer), tuple(blocks))
 
 
 def _whole(record: Part) -> Iterator[Block]:
-    file, keys = (
-        record.library,
-        ("title", "composition", "substance", "phase", "remark", "source", "confidence"),
-    )
+    file, conditions = record.library, record.get("conditions") or Part({}, {})
+    known = {key: conditions.get(key) for key in conditions.values}
     origin = "shipped" if file.shipped else "of the user"
+    keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
     yield facts(
         *((key.capitalize(), record.get(key)) for key in keys),
-        *_conditions(record),
+        *(
+            (key.replace("_", " ").capitalize(), _span(one.value, one.get("unit")))
+            for key, one in known.items()
+        ),
         ("Also", ", ".join(record.get("aliases") or ())),
         ("Library", f"{file.file}, {origin}, sha256 {file.sha256[:12]}..."),
     )
     if record.kind == "friction table":
-        yield Heading("Friction", depth=3)
         yield _frictions(record)
     else:
         yield Heading("Data", depth=3)
-        yield from _properties(record)
+        yield facts(*_properties(record))
+        if "taken_at" in record and record.taken.values:
+            yield Note(f"*: serves at {alone(record.taken_at, LISTED, 'K')}.", "legend")
     yield from (Note(one, "caveat") for one in record.get("cautions") or ())
 
 
-def _conditions(record: Part) -> Iterator[tuple[str, str]]:
-    for key in record.get("conditions").values if "conditions" in record else ():
-        one = record.conditions.get(key)
-        if one.value is not None:
-            yield key.replace("_", " ").capitalize(), _span(one.value, one.get("unit"))
-
-
 def _frictions(record: Part) -> Table:
-    def friction(place: str) -> Any:
-        def words(row: tuple[str, Any]) -> str:
-            found = row[1].get(place)
-            if found is None:
-                return "not measured"
-            spread = found.standard_deviation
-            more = f" \N{PLUS-MINUS SIGN} {alone(spread, SCATTER, '-')}" if spread is not None else ""
-            return alone(found.mean, RATIO, "-") + more
-
-        return text_column(place, words)
+    def friction(place: str) -> Column:
+        return text_column(place, lambda row: friction_words(row[1].get(place)))
 
     columns = text_column("material", lambda row: row[0]), *map(friction, record.environments)
-    rows = tuple((name, record.friction.get(name)) for name in record.friction.values)
-    return Table("friction", columns, rows, "Mean friction, with its standard deviation where it is known.")
+    caption = "Mean friction, with its standard deviation where it is known."
+    return Table("friction", columns, tuple(record.values["friction"].items()), caption)
 
 
-def _properties(record: Part) -> Iterator[Block]:
-    """Yield every datum: as lines, its source is long, and as a table; those that serve with a mark."""
-    taken = record.get("taken").values if "taken" in record else {}
-    rows = [
-        (key, place, datum) for key in record.data.values for place, datum in enumerate(record.data.get(key))
-    ]
-
-    def words(row: tuple[str, int, Part]) -> str:
-        mark = " *" if row[1] == taken.get(row[0]) else ""
-        return WORDS.get(row[0], row[0].replace("_", " ")) + mark
-
-    pairs = ((words(row), f"{', '.join(_stated(row))}; {row[2].confidence}: {row[2].source}") for row in rows)
-    yield facts(*pairs, level=Level.PRINTED)
-    columns = (
-        text_column("property", words),
-        Column("value", lambda row: Cell(row[2].value, PROPERTY, row[2].get("unit"))),
-        text_column("range, conditions", lambda row: ", ".join(_stated(row)[1:]) or ABSENT),
-        text_column("confidence", lambda row: row[2].confidence),
-        text_column("source", lambda row: row[2].source),
-    )
-    yield Table(f"data of {record.name}", columns, tuple(rows), "", Level.REPORT | Level.SHEET)
-    if taken:
-        yield Note(f"*: serves at {alone(record.taken_at, LISTED, 'K')}.", "legend")
+def _properties(record: Part) -> Iterator[tuple[str, str]]:
+    """Yield every datum with its range, conditions, confidence and source; those that serve with a mark."""
+    taken = record.values.get("taken") or {}
+    for key in record.data.values:
+        for place, datum in enumerate(_data(record, key)):
+            mark = " *" if place == taken.get(key) else ""
+            words = f"{', '.join(filter(None, _stated(key, datum)))}; {datum.confidence}: {datum.source}"
+            yield WORDS.get(key, key.replace("_", " ")) + mark, words
 
 
-def _stated(row: tuple[str, int, Part]) -> list[str]:
-    """Return value, range and conditions of a datum in words."""
-    key, _, datum = row
-    is_point = key in POINTS
-    at = "" if is_point else "at no stated temperature"
+def _stated(key: str, datum: Part) -> Iterator[str | None]:
+    """Yield value, range and conditions of a datum in words."""
     unit = datum.get("unit")
-    value = alone(datum.value, PROPERTY, unit)
-    found = [
-        f"{value} ({_span(datum.range, unit)})" if datum.range is not None else value,
-        at if datum.temperature is None else _at(datum),
-        datum.medium,
-        datum.form,
-        None if datum.pressure is None else alone(datum.pressure, Quantity(label="", digits=6), "Pa"),
-    ]
-    return [one for one in found if one]
+    span = f" ({_span(datum.range, unit)})" if datum.range else ""
+    yield alone(datum.value, PROPERTY, unit) + span
+    yield _span(datum.temperature, "K") or ("" if key in POINTS else "at no stated temperature")
+    yield from (datum.medium, datum.form)
+    yield None if datum.pressure is None else alone(datum.pressure, Quantity(label="", digits=6), "Pa")
 
 
 LIST = Tool(
@@ -334,6 +276,7 @@ LIST = Tool(
     compute=list_records,
     page=list_page,
     options=ListOptions,
+    rows="materials",
 )
 SHOW = Tool(
     name="materials show",
@@ -342,4 +285,5 @@ SHOW = Tool(
     compute=show_records,
     page=show_page,
     options=ShowOptions,
+    rows="records",
 )

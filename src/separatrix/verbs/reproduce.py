@@ -13,15 +13,13 @@ from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import ABSENT, Quantity, alone
 from separatrix.ground.toml import path_text
-from separatrix.ground.units import Ratio, printable, shown
-from separatrix.present.blocks import Block, Cell, Column, Heading, Level, Note, Page, Table, text_column
+from separatrix.ground.units import printable, shown
+from separatrix.present.blocks import Block, Cell, Column, Note, Page, Table, text_column
 from separatrix.verbs import verb_named
-from separatrix.verbs.parts.comparison import is_number
-from separatrix.verbs.saved_answers import AGAIN, read_answers, refusing_damage
+from separatrix.verbs.saved_answers import AGAIN, is_number, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool, Verb
 
 if TYPE_CHECKING:
-    from separatrix.study.study import Study
     from separatrix.verdict.long_jobs import Progress
 
 
@@ -36,30 +34,9 @@ EXACT, ROUNDED, DIFFERENT = "bit for bit", "to rounding", "different"
 ROUNDING = 1e-9
 """Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
 
-MOST_SHOWN, ON_A_SCREEN = 20, 5
+MOST_SHOWN = 20
 IGNORED = ("separatrix_version", "provenance", "warnings", "notes", "units")
 """Keys of a document that are not the answer: warnings name the lines of files."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Differing:
-    """A key whose value differs: numbers, texts, or what only one of them has, in short."""
-
-    key: str
-    stored: object
-    computed: object
-    relative: Ratio | None  # null where they are not numbers
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Agreement:
-    """How well two documents agree."""
-
-    agreement: str  # "bit for bit", "to rounding" or "different"
-    largest_difference: Ratio | None  # of two numbers, relative; null if no number differs
-    largest_at: str | None  # its key
-    differences: tuple[Differing, ...]  # the first keys that differ beyond rounding
-    count: int  # number of keys that do
 
 
 def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -> Document:
@@ -76,38 +53,23 @@ def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -
 
 
 def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -> Document:
-    from separatrix.ground.plain_data import plain
     from separatrix.study.reading import require, study_again
-
-    kept = kept_by(stored, where)
-    if stored.get("complete") is False:
-        raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
-    verb = verb_named(stored["verb"])
-    study = study_again(kept["study"])
-    options = options_from(verb, kept["command"].get("question"))
-    require(study, verb.name, *verb.needs)
-    made = json.loads(json.dumps(_answered(verb, study, options, jobs, progress)))
-    result = agreement(stored, made)
-    return {
-        "verb": verb.name,
-        "name": study.name,
-        "title": study.title,
-        "same": result.agreement != DIFFERENT,
-        "result": plain(result, left_out=[]),
-        "versions": [*_versions(stored, kept)],
-    }
-
-
-def _answered(verb: Verb, study: Study, options: Any, jobs: int, progress: Progress | None) -> Document:
-    """Return the document of a verb that is computed without a folder."""
     from separatrix.verbs import computed
     from separatrix.verbs.answer_files import document
     from separatrix.verdict.long_jobs import Interrupted
 
+    kept = kept_by(stored, where)
+    if stored.get("complete") is False:
+        raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
+    verb, study = verb_named(stored["verb"]), study_again(kept["study"])
+    options = options_from(verb, kept["command"].get("question"))
+    require(study, verb.name, *verb.needs)
     found = computed(verb, study, options, jobs=jobs, progress=progress)
     if not found.is_complete:  # what was finished cannot be compared
         raise Interrupted
-    return document(verb, found)
+    result = agreement(stored, json.loads(json.dumps(document(verb, found))))
+    known = {"verb": verb.name, "name": study.name, "title": study.title, "result": result}
+    return known | {"same": result["agreement"] != DIFFERENT, "versions": [*_versions(stored, kept)]}
 
 
 def kept_by(stored: Document, where: str) -> Document:
@@ -115,14 +77,12 @@ def kept_by(stored: Document, where: str) -> Document:
     kept = stored.get("provenance")
     if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
         raise InputError(where, "has no provenance", cure="Answer its question again.")
-    study = kept.get("study")
+    study, why = kept.get("study"), kept.get("reason")
     if not isinstance(study, dict):
-        why = kept.get("reason")
         raise InputError(where, "does not keep its study", cure=printable(why, 200) if why else "")
-    is_right = isinstance(study.get("name"), str) and isinstance(study.get("data"), dict)
-    for one in (study.get("files"), study.get("origins")):
-        is_right = is_right and isinstance(one, dict) and all(isinstance(x, str) for x in one.values())
-    if not is_right:
+    kinds = {"name": str, "data": dict, "files": dict, "origins": dict}
+    is_right = all(isinstance(study.get(name), kind) for name, kind in kinds.items())
+    if not is_right or not all(isinstance(x, str) for at in ("files", "origins") for x in study[at].values()):
         rule = "is damaged: provenance.study must have name, data, files and origins"
         raise InputError(where, rule, cure=AGAIN)
     return kept
@@ -147,48 +107,39 @@ def fits(value: object, kind: Any) -> bool:
     origin, inside = get_origin(kind), get_args(kind)
     if origin in (Union, types.UnionType):
         return any(fits(value, one) for one in inside)
-    if origin is Annotated:
-        return fits(value, inside[0])
-    if origin is Literal:
-        return value in inside
-    if isinstance(value, list):
-        return isinstance(origin, type) and origin is not dict and all(fits(one, inside[0]) for one in value)
+    if origin in (Annotated, Literal):
+        return value in inside if origin is Literal else fits(value, inside[0])
     if isinstance(value, Mapping):
-        return (
-            isinstance(origin, type) and issubclass(origin, Mapping) and all(map(is_number, value.values()))
-        )
-    if kind is float:
-        return is_number(value)
-    return type(value) is kind
+        is_table = isinstance(origin, type) and issubclass(origin, Mapping)
+        return is_table and all(map(is_number, value.values()))
+    if isinstance(value, list):
+        is_list = isinstance(origin, type) and not issubclass(origin, Mapping)
+        return is_list and all(fits(one, inside[0]) for one in value)
+    return is_number(value) if kind is float else type(value) is kind
 
 
-def agreement(stored: Document, computed: Document) -> Agreement:
+def agreement(stored: Document, computed: Document) -> Document:
     """Compare two documents in their values; not in their versions, provenance and warnings."""
     found = list(_differing(stored, computed, "", None))
-    beyond = [one for one in found if one.relative is None or one.relative > ROUNDING]
-    numbers = [one for one in found if one.relative is not None]
-    largest = max(numbers, key=lambda one: one.relative or 0.0, default=None)
-    return Agreement(
-        agreement=DIFFERENT if beyond else ROUNDED if found else EXACT,
-        largest_difference=None if largest is None else largest.relative,
-        largest_at=None if largest is None else largest.key,
-        differences=tuple(beyond[:MOST_SHOWN]),
-        count=len(beyond),
-    )
+    beyond = [one for one in found if one["relative"] is None or one["relative"] > ROUNDING]
+    numbers = [one for one in found if one["relative"] is not None]
+    largest = max(numbers, key=lambda one: one["relative"], default={"relative": None, "key": None})
+    return {
+        "agreement": DIFFERENT if beyond else ROUNDED if found else EXACT,
+        "largest_difference": largest["relative"],
+        "largest_at": largest["key"],
+        "differences": beyond[:MOST_SHOWN],
+        "count": len(beyond),
+    }
 
 
-def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Differing]:
+def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Document]:
     """Yield what differs; numbers of a list are compared with the largest of that list."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         for name in {**a, **b}:
-            at = f"{key}.{name}" if key else str(name)
-            if name in IGNORED:
-                continue
-            if name in a and name in b:
-                yield from _differing(a[name], b[name], at, None)
-            else:
-                yield Differing(
-                    key=at, stored=_short(a.get(name)), computed=_short(b.get(name)), relative=None
+            if name not in IGNORED:
+                yield from _differing(
+                    a.get(name, ...), b.get(name, ...), f"{key}.{name}".removeprefix("."), None
                 )
     elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
         size = max((abs(one) for one in (*a, *b) if is_number(one)), default=None)
@@ -198,13 +149,13 @@ def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[
         relative = None
         if is_number(a) and is_number(b):
             relative = abs(a - b) / (scale or max(abs(a), abs(b)))
-        yield Differing(key=key, stored=_short(a), computed=_short(b), relative=relative)
+        yield {"key": key, "stored": _short(a), "computed": _short(b), "relative": relative}
 
 
 def _short(value: object) -> object:
-    if isinstance(value, Mapping):
-        return f"{len(value)} keys"
-    return f"{len(value)} values" if isinstance(value, list) else value
+    if isinstance(value, Mapping | list):
+        return f"{len(value)} {'values' if isinstance(value, list) else 'keys'}"
+    return None if value is ... else value
 
 
 def _versions(stored: Document, kept: Document) -> Iterator[Document]:
@@ -242,25 +193,23 @@ def _blocks(one: Part) -> Iterator[Block]:
         largest = alone(found.largest_difference, RELATIVE, "-")
         yield Note(f"Largest relative difference {largest}, of `{found.largest_at}`.")
     rows = tuple(found.differences or ())
-    if rows:
-        yield Heading(f"What differs in {one.verb}")
-    columns = (
-        text_column("key", lambda row: row.key),
-        text_column("in the answer", lambda row: _told(row.stored)),
-        text_column("now", lambda row: _told(row.computed)),
-        Column("relative difference", lambda row: Cell(row.relative, RELATIVE)),
-    )
-    more = f"{found.count - ON_A_SCREEN} more: `--json`." if found.count > ON_A_SCREEN else ""
-    yield Table(f"{one.verb} differs", columns, rows[:ON_A_SCREEN], more, Level.BRIEF)
-    yield Table(f"{one.verb} differs", columns, rows, "", Level.LONG | Level.SHEET)
-    if one.versions:
-        others = [f"{at.name} {at.here} (then {at.stored or 'unknown'})" for at in one.versions]
+    more = f"{found.count - MOST_SHOWN} more." if found.count > MOST_SHOWN else ""
+    yield Table(f"{one.verb} differs", COLUMNS, rows, more)
+    others = [f"{at.name} {at.here} (then {at.stored or 'unknown'})" for at in one.versions or ()]
+    if others:
         yield Note(f"Other versions here: {', '.join(others)}.")
 
 
 def _told(value: object) -> str:
     return ABSENT if value is None else printable(str(value), 60)
 
+
+COLUMNS = (
+    text_column("key", lambda row: row.key),
+    text_column("in the answer", lambda row: _told(row.stored)),
+    text_column("now", lambda row: _told(row.computed)),
+    Column("relative difference", lambda row: Cell(row.relative, RELATIVE)),
+)
 
 VERB = Tool(
     name="reproduce",
@@ -269,5 +218,6 @@ VERB = Tool(
     compute=compute,
     page=page,
     options=Options,
+    rows="answers",
     takes_time=True,
 )

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TypeGuard
 
 from separatrix.ground.document import Document
 from separatrix.ground.errors import InputError
@@ -25,9 +25,6 @@ VERBS = (
 """Verbs of a study; of two folders with several, the first that both have is compared."""
 
 REPORTS = (".html", ".htm")
-ENDINGS = (".json", *REPORTS, ".nc")
-"""Endings of files of answers: documents, reports, and arrays, which are not read back."""
-
 MOST_BYTES = 256 * 1024**2
 REPORT = re.compile(
     rb"""<script\b[^>]{0,200}\bid=["']separatrix-answers["'][^>]{0,200}>(.*?)</script""", re.DOTALL
@@ -35,23 +32,25 @@ REPORT = re.compile(
 """The documents of the answers in a report."""
 
 ENVELOPE: dict[str, tuple[type, str]] = {
-    "separatrix_version": (str, "text"),
-    "name": (str, "text"),
-    "title": (str, "text"),
+    **dict.fromkeys(("separatrix_version", "name", "title"), (str, "text")),
     "seed": (int, "a whole number"),
     "units": (dict, "the units of the answer"),
     "warnings": (list, "a list of texts"),
 }
 """What every answer has beside those of its verb: the type of each, and its words."""
 
-DAMAGE = (
-    *(ValueError, TypeError, KeyError, AttributeError, IndexError, RecursionError, ArithmeticError),
-    StopIteration,
-)
+DAMAGE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, ArithmeticError, StopIteration)
 """What a document raises whose parts are not those of an answer."""
+
+MOST = 1e150  # magnitude from which a number of a document is damage; below it the square is finite
 
 AGAIN = "Compute this answer again with this version."
 _MAKE = "Make one with: separatrix rank STUDY --out DIR."
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value of a document is a finite number; true and false are not."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and -MOST < value < MOST
 
 
 def read_answers(path: Path) -> dict[str, Document]:
@@ -81,13 +80,11 @@ def read_answer(path: Path) -> Document:
 
 def read_folder(folder: Path) -> dict[str, Document]:
     """Answers of a folder, by verb; refused as by `read_answers`."""
-    found = {}
-    for verb in VERBS:
-        file = folder / f"{verb}.json"
-        if file.exists():
-            found[verb] = one = read_answer(file)
-            if one["verb"] != verb:
-                raise InputError(path_text(file), f"must be an answer of {verb}", one["verb"])
+    files = {verb: folder / f"{verb}.json" for verb in VERBS}
+    found = {verb: read_answer(file) for verb, file in files.items() if file.exists()}
+    for verb, one in found.items():
+        if one["verb"] != verb:
+            raise InputError(path_text(files[verb]), f"must be an answer of {verb}", one["verb"])
     if not found:
         raise InputError(path_text(folder), "does not contain an answer", cure=_MAKE)
     return found
@@ -107,16 +104,13 @@ def refusing_damage(where: str) -> Iterator[None]:
 def _read_report(path: Path) -> dict[str, Document]:
     where = path_text(path)
     match = REPORT.search(_bytes(path))
-    if match is None:
-        raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
-    found = {}
-    for verb, document in _parsed(match[1], where).items():
-        found[verb] = one = _checked(document, where)
-        if one["verb"] != verb:
-            rule = f"must have the answer of {printable(str(verb), 40)} under that name"
-            raise InputError(where, rule, one["verb"])
+    found = {verb: _checked(one, where) for verb, one in _parsed(match[1], where).items()} if match else {}
     if not found:
-        raise InputError(where, "does not contain an answer", cure=_MAKE)
+        raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
+    for verb, one in found.items():
+        if one["verb"] != verb:
+            rule = f"must have the answer of {printable(verb, 40)} under that name"
+            raise InputError(where, rule, one["verb"])
     return found
 
 
@@ -131,10 +125,10 @@ def _checked(found: object, where: str) -> Document:
     for key, (kind, words) in ENVELOPE.items():
         if key not in found:
             raise InputError(where, f"lacks {key}", cure=AGAIN)
-        if not isinstance(found[key], kind) or (key in ("name", "title") and not found[key].strip()):
+        value = found[key]
+        is_right = isinstance(value, kind) and (key not in ("name", "title") or str(value).strip())
+        if not is_right or (key == "warnings" and not all(isinstance(one, str) for one in value)):
             raise InputError(where, f"is damaged: {key} must be {words}", cure=AGAIN)
-    if not all(isinstance(one, str) for one in found["warnings"]):
-        raise InputError(where, "is damaged: warnings must be a list of texts", cure=AGAIN)
     return found
 
 

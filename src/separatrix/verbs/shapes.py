@@ -33,6 +33,7 @@ from separatrix.verbs.answer_records import (
     TractionAnswer,
 )
 from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.map_records import MapAxis
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
 from separatrix.verdict.swept_cases import Sweep
 from separatrix.verdict.uncertain_records import NotDrawn, UncertainMaterial
@@ -173,6 +174,12 @@ def _cage(found: OfCage) -> Node:
 @shape.register
 def _(found: StabilityAnswer) -> Node:
     return shape(found.curve) | _cage(found)
+
+
+@shape.register
+def _(axis: MapAxis) -> Node:
+    """The values have the unit that the axis states."""
+    return fields_of(axis) | {"values": Leaf(axis.values, axis.unit)}
 
 
 @shape.register

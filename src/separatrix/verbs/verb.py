@@ -63,6 +63,13 @@ class Verb:
     files: Callable[..., Iterable[tuple[str, bytes]]] | None = None
     refusals: Callable[[Study], Iterator[str]] = no_refusals
 
+    @property
+    def help(self) -> str:
+        """Its line of help, which stands in the registry."""
+        from separatrix.verbs import VERBS
+
+        return VERBS[self.name]
+
     def shown_options(self) -> Mapping[str, tuple[Any, Option, Any]]:
         """Type, help and default of each option, by name."""
         return options_of(self.options)
@@ -88,13 +95,14 @@ class Tool:
     """A question without a study of its own: to logs, to the library, to saved answers.
 
     `compute` takes the options and, where it `takes_time`, the number of threads and who is told of its
-    progress; it returns its document, and `page` makes the page of that.
+    progress; it returns its document, and `page` makes the page of that. `rows` is the key of its main list.
     """
 
     name: str
     compute: Callable[..., Document]
     page: Callable[[Part], Page]
     options: type
+    rows: str
     help: str = ""
     epilog: str | None = None
     takes_time: bool = False

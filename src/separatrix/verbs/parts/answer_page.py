@@ -9,7 +9,7 @@ from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
-from separatrix.present.blocks import Block, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
 
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
@@ -86,15 +86,18 @@ def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
 
 def entry_words(entry: Json) -> str:
     """Return the value of an input, a material's name, or a list, with its distribution."""
-    words = str(entry["name"]) if entry.get("name") else _value(entry.get("value"), entry.get("unit") or "")
-    return words + (f" ({entry['distribution']['words']})" if "distribution" in entry else "")
+    words = (
+        str(entry["name"]) if entry.get("name") else value_words(entry.get("value"), entry.get("unit") or "")
+    )
+    return str(words) + (f" ({entry['distribution']['words']})" if "distribution" in entry else "")
 
 
-def _value(value: Any, unit: str) -> str:
+def value_words(value: Any, unit: str) -> str:
+    """Return the value of an input."""
     if isinstance(value, list):
         if len(value) > 4:
-            return f"{_value(value[0], unit)} ... {_value(value[-1], unit)} ({len(value)})"
-        return ", ".join(_value(one, unit) for one in value) or "-"
+            return f"{value_words(value[0], unit)} ... {value_words(value[-1], unit)} ({len(value)})"
+        return ", ".join(value_words(one, unit) for one in value) or "-"
     if value is None or isinstance(value, bool) or not isinstance(value, int | float):
         return "-" if value is None else str(value)
     if unit in ("", "-"):
@@ -124,19 +127,17 @@ def _properties(study: Json) -> Iterator[tuple[str, ...]]:
             place = (record.get("taken") or {}).get(key)
             taken = record["data"][key][place] if place is not None else {}
             known = (taken.get(each) or one.get(each) or "-" for each in ("confidence", "source"))
-            yield str(one["name"]), words, _value(value["value"], value.get("unit") or ""), *map(str, known)
+            yield (
+                str(one["name"]),
+                words,
+                value_words(value["value"], value.get("unit") or ""),
+                *map(str, known),
+            )
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
-    def friction(place: str) -> Any:
-        def words(row: Any) -> str:
-            found = row["friction"].get(place)
-            if found is None:
-                return "not measured"
-            spread = found.get("standard_deviation")
-            return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
-
-        return text_column(place, words)
+    def friction(place: str) -> Column:
+        return text_column(place, lambda row: friction_words(row["friction"].get(place)))
 
     columns = (text_column("candidate", lambda row: row["name"]), *map(friction, ranking["environments"]))
     caption = f"Friction of the candidates as measured, with standard deviation. From {ranking['origin']}."
@@ -144,6 +145,14 @@ def _frictions(ranking: Json, level: Level) -> list[Block]:
     origins = dict.fromkeys(f"{one['source']} ({one['confidence']})" for one in known)
     table = Table("frictions", columns, tuple(ranking["candidates"]), caption, level)
     return [table, *(Note(f"Source of the frictions: {one}.", "legend", level) for one in origins)]
+
+
+def friction_words(found: Json | None) -> str:
+    """Return a measured friction with its standard deviation."""
+    if found is None:
+        return "not measured"
+    spread = found.get("standard_deviation")
+    return f"{found['mean']:.3f}" + (f" \N{PLUS-MINUS SIGN} {spread:.2g}" if spread else "")
 
 
 def command(answer: Part) -> str:

@@ -10,14 +10,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, NamedTuple
 
-from separatrix.ground.document import Document
+from separatrix.ground.document import Document, Part, part_of
+from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable
 from separatrix.verbs.parts.quantities import QUANTITIES
+from separatrix.verbs.saved_answers import AGAIN, VERBS, is_number, refusing_damage
 
+Input = tuple[object, str | None]
+"""Value of an input, and its unit."""
+
+MOST_ROWS = 500
 Plain = float | int | str | bool | None
 
 
@@ -52,61 +58,23 @@ class Row:
     change: float | None = None  # second less first
     change_low: float | None = None  # ends of its 95 % interval
     change_high: float | None = None
-    relative: float | None = None  # change over the first
+    relative: float | None = None  # over the first
     noise: Noise
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Difference:
-    """An input that differs; None where it is absent."""
-
-    key: str  # of the study, or of the command
-    first: object
-    second: object
-    unit: str | None  # of the numbers; null for a text
-
-
-class Node(NamedTuple):
-    """Single values of a part of an answer, and their units."""
-
-    values: Mapping[str, Plain]
-    units: Mapping[str, str]
-
-
-NOT_RESULTS = frozenset(
-    (
-        *("study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"),
-        *("units", "complete", "reason", "static_reason", "outcome_sentence", "paper_statement", "words"),
-        *("ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"),
-    )
+NOT_RESULTS = (
+    *("study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"),
+    *("units", "complete", "reason", "static_reason", "outcome_sentence", "paper_statement", "words"),
+    *("ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"),
 )
 """Inputs, sentences that follow from numbers, and single drawn bearings."""
 
-PROBABILITY = ("probability_low", "probability_high")
-ENDS = {
-    "probability_stable": PROBABILITY,
-    "probability_whirl": PROBABILITY,
-    "uncertain_probability_stable": ("uncertain_probability_low", "uncertain_probability_high"),
-    "critical_friction": ("scatter_low", "scatter_high"),
-    "critical_friction_low": ("low_scatter_low", "low_scatter_high"),
-    "critical_friction_high": ("high_scatter_low", "high_scatter_high"),
-}
-"""Ends of intervals that have not the name of the number with _low and _high."""
-
 UNCOUNTED_VERBS = ("check", "bearing", "traction", "restitution", "mobility")
 UNCOUNTED_PLACES = (("chain",), ("pocket",), ("static",))
-UNCOUNTED_NAMES = frozenset(
-    (
-        *(
-            "friction",
-            "restitution_factor",
-            "restitution_factor_free_spin",
-            "ball_cage_stiffness",
-            "capacity",
-        ),
-        *("cage_speed", "drift_rate_law", "force_limit", "kick", "worst_kick", "runs", "duration"),
-        "friction_deviation",
-    )
+UNCOUNTED_NAMES = (
+    *("friction", "friction_deviation", "restitution_factor", "restitution_factor_free_spin", "capacity"),
+    *("ball_cage_stiffness", "cage_speed", "drift_rate_law", "force_limit", "kick", "worst_kick", "runs"),
+    "duration",
 )
 """What is computed without runs: its differences are exact up to the model."""
 
@@ -119,14 +87,8 @@ MAIN = ("margin", "probability_stable", "critical_friction", "restitution_factor
 """Names of results that a reader decides by, beside the verdicts, and the numbers behind them."""
 
 NORMAL_95 = 1.959963984540054
-MOST = 1e150  # magnitude from which a number of a document is damage; below it the square is finite
 BESIDE = ("record", "table", "other_tests", "distribution")
 """Parts of a resolved study that are not inputs: whole records of the library."""
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Whether a value of a document is a finite number; true and false are not."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and -MOST < value < MOST
 
 
 def difference_interval(
@@ -142,64 +104,54 @@ def difference_interval(
     return change - math.hypot(b - b_low, a_high - a), change + math.hypot(b_high - b, a - a_low)
 
 
-def results(
-    values: Mapping[str, Any], units: Any, place: tuple[str, ...] = ()
-) -> dict[tuple[str, ...], Node]:
+Places = dict[tuple[str, ...], Part]
+
+
+def results(part: Part, place: tuple[str, ...] = ()) -> Places:
     """Return the single values of a document by place; arrays of numbers are left out."""
-    known = units if isinstance(units, Mapping) else {}
-    items = {key: value for key, value in values.items() if key not in NOT_RESULTS}
+    items = {key: value for key, value in part.values.items() if key not in NOT_RESULTS}
     leaves = {key: one for key, one in items.items() if one is None or isinstance(one, float | int | str)}
-    texts = {key: one for key, one in known.items() if isinstance(one, str)}
-    found = {place: Node(leaves, texts)} if leaves else {}
+    found = {place: Part(leaves, part.units)} if leaves else {}
     for key, value in items.items():
         if isinstance(value, dict):
-            found |= results(value, known.get(key), (*place, key))
-        elif isinstance(value, list):
-            for i, one in enumerate(one for one in value if isinstance(one, dict)):
-                found |= results(one, known.get(key), (*place, _label(key, one, i)))
+            found |= results(part.get(key), (*place, key))
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            for i, one in enumerate(part.get(key)):
+                found |= results(one, (*place, _label(key, one, i)))
     return found
 
 
-def _label(key: str, row: Mapping[str, Any], number: int) -> str:
-    name, environment = row.get("name"), row.get("environment")
+def _label(key: str, row: Part, number: int) -> str:
+    name, environment, x, y = map(row.get, ("name", "environment", "x", "y"))
     if isinstance(name, str):
         named = f"{name} in {environment}" if isinstance(environment, str) else name
         return named if key in ("environments", "materials") else f"{key} {named}"
-    x, y = row.get("x"), row.get("y")
     if is_number(x) and is_number(y):
         return f"x {x:.6g}, y {y:.6g}"
     known = next((value for one in LABELS if is_number(value := row.get(one))), None)
     return f"{key} {number + 1}" if known is None else f"{key} {known:.6g}"
 
 
-Nodes = Mapping[tuple[str, ...], Node]
-
-
-def differing(verb: str, first: Nodes, second: Nodes) -> Iterator[Row]:
+def differing(verb: str, first: Places, second: Places) -> Iterator[Row]:
     """Yield a row for each result that differs."""
     from_runs = _from_runs()
     for place in {**first, **second}:
-        words = printable(" / ".join(place), 160)
-        if place not in first or place not in second:
+        words, (a, b) = printable(" / ".join(place), 160), (nodes.get(place) for nodes in (first, second))
+        if a is None or b is None:
             if not place or place[-1].partition(" ")[0] not in GRIDS:
-                one, other = (Value(value="yes" if place in nodes else None) for nodes in (first, second))
+                one, other = (Value(value="yes" if node else None) for node in (a, b))
                 yield Row(place=words, name="", unit="-", first=one, second=other, noise=Noise.CHANGED)
             continue
-        (a, units), (b, _) = first[place], second[place]
-        parts = {part for leaves in (a, b) for name in leaves for part in _parts(name, leaves)}
+        parts = {part for node in (a, b) for name in node.values for part in _parts(name, node)}
         is_chain = verb in UNCOUNTED_VERBS or place[:1] in UNCOUNTED_PLACES
-        for name in {**a, **b}:
-            if name in parts:
-                continue
+        for name in {**a.values, **b.values}:
             exact = is_chain or (name not in from_runs if verb == "sweep" else name in UNCOUNTED_NAMES)
-            row = _row(value_of(name, a), value_of(name, b), exact=exact)
+            row = None if name in parts else _row(value_of(name, a), value_of(name, b), exact=exact)
             if row is not None:
-                yield replace(row, place=words, name=name, unit=units.get(name, "-"))
+                yield replace(row, place=words, name=name, unit=a.unit(name))
 
 
 def _from_runs() -> set[str]:
-    from dataclasses import fields
-
     from separatrix.verdict.judgement import Judgement, KickCount
 
     return {one.name for record in (Judgement, KickCount) for one in fields(record)}
@@ -207,43 +159,42 @@ def _from_runs() -> set[str]:
 
 def _ends(name: str) -> tuple[str, str]:
     known = QUANTITIES.get(name)
-    return (known.ends if known else None) or ENDS.get(name) or (f"{name}_low", f"{name}_high")
+    return (known and known.ends) or (f"{name}_low", f"{name}_high")
 
 
-def _parts(name: str, leaves: Mapping[str, Plain]) -> tuple[str, ...]:
-    """Names beside a number that are its interval or its error."""
-    pair, error = _ends(name), (f"{name}_error",) if f"{name}_error" in leaves else ()
-    return (*pair, *error) if pair[0] in leaves else error
+def _parts(name: str, node: Part) -> Iterator[str]:
+    """Yield the names beside a number that are its interval or its error."""
+    for names in (_ends(name), (f"{name}_error",)):
+        yield from names if names[0] in node.values else ()
 
 
-def value_of(name: str, leaves: Mapping[str, Any]) -> Value:
+def value_of(name: str, node: Part) -> Value:
     """Return a number with its interval: the one given, or that of its standard error."""
-    value, pair, less = leaves.get(name), _ends(name), 0.0
-    error, eta = leaves.get(f"{name}_error"), leaves.get("restitution_factor")
+    value, error, eta = map(node.get, (name, f"{name}_error", "restitution_factor"))
+    if not is_number(value):
+        return Value(value=printable(value, 80) if isinstance(value, str) else value)
+    less, ends = 0.0, _ends(name)
     if name == "margin" and is_number(eta):  # of the threshold, less the chain's eta
-        pair, less = ("restitution_threshold_low", "restitution_threshold_high"), float(eta)
-    ends = [float(end) - less for one in pair if is_number(end := leaves.get(one))]
-    if is_number(value) and len(ends) == 2:
-        return Value(value=value, low=ends[0], high=ends[1])
-    if is_number(value) and is_number(error):
-        half = NORMAL_95 * float(error)
-        return Value(value=value, low=value - half, high=value + half)
-    return Value(value=printable(value, 80) if isinstance(value, str) else value)
+        less, ends = float(eta), _ends("restitution_threshold")
+    low, high = map(node.get, ends)
+    if not is_number(low) or not is_number(high):
+        half = NORMAL_95 * error if is_number(error) else math.nan
+        low, high = value - half, value + half
+    return Value(value=value) if math.isnan(low) else Value(value=value, low=low - less, high=high - less)
 
 
 def _row(a: Value, b: Value, *, exact: bool) -> Row | None:
-    if a.value == b.value and (a.low, a.high) == (b.low, b.high):
+    if a == b:
         return None
     row = Row(place="", name="", unit="-", first=a, second=b, noise=Noise.CHANGED)
     if not is_number(a.value) or not is_number(b.value):
         return None if a.value == b.value else row
-    one, other = float(a.value), float(b.value)
-    change, low, high = other - one, None, None
+    change, low, high = float(b.value) - float(a.value), None, None
     noise = Noise.EXACT if exact else Noise.UNJUDGED
     if a.low is not None and a.high is not None and b.low is not None and b.high is not None:
-        low, high = difference_interval((one, a.low, a.high), (other, b.low, b.high))
+        low, high = difference_interval((a.value, a.low, a.high), (b.value, b.low, b.high))
         noise = Noise.WITHIN if low <= 0.0 <= high else Noise.EXACT if exact else Noise.BEYOND
-    relative = change / abs(one) if one else None
+    relative = change / abs(a.value) if a.value else None
     return replace(row, change=change, change_low=low, change_high=high, relative=relative, noise=noise)
 
 
@@ -252,38 +203,23 @@ def is_decision(name: str) -> bool:
     return name.endswith("verdict") or name in DECISIONS
 
 
-def order(row: Row) -> tuple[int, int, float]:
-    """Key to sort rows by: decisions, more than noise, exact, others; the largest change first."""
-    tier = -1 if is_decision(row.name) else (*Noise,).index(row.noise)
-    is_main = 0 if row.name in MAIN else 1
-    if row.change is None or tier < 0:
-        return tier, is_main, 0.0
-    if row.change_low is not None and row.change_high is not None:
-        width = row.change_high - row.change_low
-        return tier, is_main, -abs(row.change) / width if width > 0.0 else -math.inf
-    return tier, is_main, -abs(row.relative) if row.relative is not None else -math.inf
+def order(row: Row, own: str | None) -> tuple[bool, bool, bool, int, float]:
+    """Key to sort rows by: what is decided by, in the own environment, beyond noise, the largest changes."""
+    low, high, part = row.change_low, row.change_high, row.relative
+    if row.change is not None and low is not None and high is not None:
+        part = row.change / (high - low) if high > low else None
+    size = 0.0 if row.change is None else math.inf if part is None else abs(part)
+    is_else = not row.place.startswith(f"{own} / ") if own else row.place.startswith("chain")
+    return not is_decision(row.name), row.name not in MAIN, is_else, (*Noise,).index(row.noise), -size
 
 
 # --- inputs -------------------------------------------------------------------------------------
-Input = tuple[object, str | None]
-"""Value of an input, and its unit."""
-
-
-def differences(first: Mapping[str, Input], second: Mapping[str, Input]) -> Iterator[Difference]:
-    """Yield each input that differs between two sets of them."""
-    for key in {**first, **second}:
-        a, b = first.get(key, (None, None)), second.get(key, (None, None))
-        if a[0] != b[0]:
-            yield Difference(key=key, first=a[0], second=b[0], unit=a[1] or b[1])
-
-
 def of_study(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Input]]:
     """Yield name, value and unit of every input of a resolved study; of an uncertain one its distribution."""
     if "value" in node:
         known, unit = node.get("distribution"), node.get("unit")
         words = known.get("written") or known.get("words") if isinstance(known, Mapping) else None
-        is_plain = not words and isinstance(unit, str)
-        yield path, (words or node["value"], str(unit) if is_plain else None)
+        yield path, (words or node["value"], unit if not words and isinstance(unit, str) else None)
         return
     if path and isinstance(node.get("name"), str):
         yield path, (node["name"], None)
@@ -299,14 +235,76 @@ def of_study(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Inp
 
 
 def inputs_of_answer(one: Document) -> dict[str, Input]:
-    """Inputs of an answer; of a simulation also kick and run, and the friction that it took."""
-    found = dict(sorted(of_study(one["study"]), key=lambda pair: pair[0]))
-    if one["verb"] == "simulate":
-        taken: dict[str, Input] = {
-            "--kick": (one.get("kick"), "m/s"),
-            "--run": (one.get("run"), None),
-            "cage.ball_cage_friction": ((one.get("cage") or {}).get("ball_cage_friction"), "-"),
+    """Inputs of an answer, and the options of its command."""
+    question = ((one.get("provenance") or {}).get("command") or {}).get("question") or {}
+    return dict(of_study(one["study"])) | {f"--{name}": (value, None) for name, value in question.items()}
+
+
+# --- two answers --------------------------------------------------------------------------------
+def compared(
+    first: Mapping[str, Document], second: Mapping[str, Document], *, names: tuple[str, str]
+) -> Document:
+    """Compare the answers of the first verb that both have; `names` stand for them in messages.
+
+    Raises
+    ------
+    InputError
+        They share no verb, or one is not as separatrix writes it.
+    """
+    from separatrix import __version__
+    from separatrix.ground.plain_data import plain
+
+    shared = [verb for verb in VERBS if verb in first and verb in second]
+    if not shared:
+        rule = f"must be an answer of {' or '.join(first)}, as {names[0]} is"
+        raise InputError(names[1], rule, got=", ".join(second))
+    sides = [_side(name, one[shared[0]]) for name, one in zip(names, (first, second), strict=True)]
+    one, other = sides
+    environment = one.environment if one.environment == other.environment else None
+    rows = sorted(differing(shared[0], one.places, other.places), key=lambda row: order(row, environment))
+    keys = {*one.inputs, *other.inputs}
+    pairs = [(key, *(side.inputs.get(key, (None, None)) for side in sides)) for key in sorted(keys)]
+    return {
+        "separatrix_version": __version__,
+        "verb": "compare",
+        "of": shared[0],
+        "answers": [side.named for side in sides],
+        "environment": environment,
+        "shared_verdicts": len(one.verdicts & other.verdicts) if one.verdicts | other.verdicts else None,
+        "inputs": [
+            {"key": key, "first": a[0], "second": b[0], "unit": a[1] or b[1]}
+            for key, a, b in pairs
+            if a[0] != b[0]
+        ],
+        "rows": plain(tuple(rows[:MOST_ROWS]), left_out=[]),
+        "left_out": max(0, len(rows) - MOST_ROWS),
+        "also": shared[1:],
+    }
+
+
+class _Side(NamedTuple):
+    """What is compared of an answer."""
+
+    named: Document
+    environment: str | None
+    places: Places
+    verdicts: set[tuple[tuple[str, ...], str]]
+    inputs: dict[str, Input]
+
+
+def _side(name: str, one: Document) -> _Side:
+    """Take from an answer what is compared; one that is damaged is refused under its name."""
+    with refusing_damage(name):
+        complete, own = one.get("complete") is not False, one.get("environment")
+        named = {
+            "path": name,
+            "title": printable(one["title"], 200),
+            "seed": one["seed"],
+            "complete": complete,
         }
-        return found | {key: value for key, value in taken.items() if value[0] is not None}
-    command = (one.get("provenance") or {}).get("command") or {}
-    return found | {f"--{name}": (value, None) for name, value in (command.get("question") or {}).items()}
+        places, inputs = results(part_of(one)), inputs_of_answer(one)
+        decided = {(at, key) for at, node in places.items() for key in node.values if is_decision(key)}
+        verdicts = {at for at in decided if at[1] != "rank"}
+    if not inputs:
+        raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
+    return _Side(named, own if isinstance(own, str) else None, places, verdicts, inputs)

@@ -78,6 +78,11 @@ def column(
     )
 
 
+def known_columns(columns: Iterable[Column], rows: Sequence[Any]) -> tuple[Column, ...]:
+    """Return the columns in which some of the rows have a value."""
+    return tuple(one for one in columns if any(one.cell(row).value not in (None, "") for row in rows))
+
+
 def place_column(part: Part, name: str, *, head: str = "") -> Column:
     """Return the column of a list of a part, for rows that are places in it."""
     known, unit = quantity(name), part.unit(name)
