@@ -31,10 +31,6 @@ def small(tmp_path):
     return path
 
 
-
-
-
-
 def test_an_answer_has_the_names_of_its_record(small):
     """So `answer.ranking` is `answer.record.ranking`; an unknown one is an AttributeError; copies work."""
     answer = api.restitution(small)

@@ -171,8 +171,6 @@ def test_a_film_without_thickness_is_bare_races(capsys):
     assert coated[0.0] != coated[2.5e-6]
 
 
-
-
 def test_the_dataset_has_axes_and_points(capsys):
     """The axes with their units; a row for each point, as in the document."""
     clearance = "cage.pocket_clearance=0.2..1mm:3"

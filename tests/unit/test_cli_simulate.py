@@ -178,8 +178,6 @@ def test_work_and_energy_balance_in_the_samples(data):
     assert energy - energy[0] == pytest.approx(work - work[0], abs=3e-3 * float(energy.max()))
 
 
-
-
 def test_a_whirl_is_followed_for_fifty_turns_and_its_force_means_nothing_beyond_the_races(folder):
     """Its frequency and speed in the document and in the text; no digits of a force that no ball can take."""
     (folder / "whirl.toml").write_text(SMALL.replace("= 0.1", "= 0.6"))
