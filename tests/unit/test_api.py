@@ -2,14 +2,13 @@
 
 import copy
 import html
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import separatrix
-from separatrix.front import api, main
+from separatrix.front import api
 from separatrix.ground.errors import InputError
 from separatrix.verdict.long_jobs import Interrupted
 
@@ -66,7 +65,6 @@ def test_notes_are_in_the_answer_and_its_document(tmp_path):
 
 def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
     """And the folder keeps the runs for the next call."""
-
     calls = iter(range(2))
 
     def stop(done, total):

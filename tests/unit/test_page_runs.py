@@ -184,6 +184,7 @@ def test_the_pockets_bound_the_path_by_a_polygon():
     assert AROUND.size == found.size
 
 
+MICRON = "\N{MICRO SIGN}m"
 FILM = {
     "restitution_factor": 0.5,
     "is_any_allowed": False,
@@ -196,7 +197,7 @@ FILM = {
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, [">= 1 \N{MICRO SIGN}m", "see figure", "any", "none"]),
+        ({}, [f"1 {MICRON} to 10 {MICRON}", f"100 nm, 10 {MICRON}", "any", "none"]),
         ({"restitution_factor": None, "is_any_allowed": True}, ["any"] * 4),
         ({"restitution_factor": None, "reason": "more or less in words"}, ["none"] * 4),
     ],
@@ -205,7 +206,7 @@ def test_allowed_films_are_told_from_the_flag(changes, words):
     """Not from the sentence of the reason."""
     answer = Part({}, {"film_thickness_here": "m"})
     film = Part(FILM | changes, {})
-    assert [sensitivity._thicknesses(answer, place)(film) for place in range(4)] == words
+    assert [sensitivity.thicknesses(answer, place)(film) for place in range(4)] == words
 
 
 @pytest.mark.parametrize(("complete", "said"), [(True, "No case is undecided"), (False, "No finished case")])

@@ -193,11 +193,9 @@ def test_blocks_are_where_their_level_says(answers):
     assert sum(isinstance(one, Note) and one.kind == "lead" for one in brief) == 1
     for level in LEVELS:
         blocks = page.at(level).blocks
-        assert not [
-            a
-            for a, b in zip(blocks, [*blocks[1:], Heading("end")])
-            if isinstance(a, Heading) and isinstance(b, Heading) and b.depth <= a.depth
-        ]
+        pairs = zip(blocks, [*blocks[1:], Heading("end")], strict=True)
+        heads = [(a.depth, b.depth) for a, b in pairs if isinstance(a, Heading) and isinstance(b, Heading)]
+        assert all(inner > outer for outer, inner in heads)
     assert "--full" not in text(page, Level.REPORT)
 
 

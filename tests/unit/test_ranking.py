@@ -249,7 +249,6 @@ def test_the_number_of_threads_changes_nothing():
 
 def test_an_interrupt_leaves_a_ranking_that_says_so_and_goes_on(tmp_path):
     """What was finished stays, what was not has that reason; with its ledger the rest gives the whole."""
-
     calls = iter(range(2))
 
     def stop(done, total):

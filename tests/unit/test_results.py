@@ -16,11 +16,11 @@ from separatrix.ground.units import Newton, Ratio, Rows
 from separatrix.present.dataset import dataset
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
-from separatrix.verbs import answer_records as answers
 from separatrix.verbs import Computed, verb_named
+from separatrix.verbs import answer_records as answers
 from separatrix.verbs.answer_files import document
-from separatrix.verbs.verb import NoOptions
 from separatrix.verbs.shapes import to_dataframe, to_xarray
+from separatrix.verbs.verb import NoOptions
 from separatrix.verdict import swept_cases as sweep
 from separatrix.verdict.ranking_records import NotMeasured, Ranked
 

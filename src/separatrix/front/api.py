@@ -161,13 +161,10 @@ class ToolAnswer(Shown):
         return self.tool.page(part_of(self.found))
 
     def to_dataframe(self) -> pd.DataFrame:
-        """One row for each test, record or result: the first list of the document that has rows."""
+        """One row for each test, record or result."""
         import pandas as pd
 
-        rows = (
-            one for one in self.found.values() if isinstance(one, list) and one and isinstance(one[0], dict)
-        )
-        return pd.json_normalize(next(rows, []))
+        return pd.json_normalize(self.found[self.tool.rows])
 
 
 def _answer(verb: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:

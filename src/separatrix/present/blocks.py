@@ -219,7 +219,10 @@ def _depth(one: Block) -> int:
 
 
 def joined(title: str, subtitle: str, parts: Sequence[tuple[str, Page]]) -> Page:
-    """Return pages as sections of one, each under its title; notes that several have stand once."""
+    """Return pages as sections of one, each under its title; notes that several have stand once.
+
+    Its appendix is that of the first.
+    """
     blocks: list[Block] = []
     for name, page in parts:
         blocks.append(Heading(name))
@@ -230,8 +233,7 @@ def joined(title: str, subtitle: str, parts: Sequence[tuple[str, Page]]) -> Page
                 blocks.append(replace(one, kind="text"))
             elif not (isinstance(one, Note) and one.kind == "caveat" and one in blocks):
                 blocks.append(one)
-    appendix = dict.fromkeys(one.appendix for _, one in parts)
-    return Page(title, subtitle, tuple(blocks), next(iter(appendix), ()))
+    return Page(title, subtitle, tuple(blocks), parts[0][1].appendix)
 
 
 def facts(*pairs: tuple[str, Cell | str | None], level: Level = Level.ALWAYS) -> Facts:

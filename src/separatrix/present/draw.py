@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure as Canvas
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import math_to_image
-from matplotlib.patheffects import withStroke, withTickedStroke
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator
 from matplotlib.transforms import Bbox, offset_copy
 
@@ -299,8 +299,6 @@ def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     look: Any = {"color": one.colour, "ls": DASHES[one.line], "lw": one.width, "marker": marker or None}
     look |= {"alpha": one.opacity, "rasterized": len(x) > MANY, "label": symbols(one.name) or None}
     look |= {"ms": one.size, "mfc": "white" if one.is_open else one.colour}
-    if one.has_ticks:
-        look["path_effects"] = [withTickedStroke(angle=90, spacing=9, length=0.5)]
     if one.has_halo:
         look["path_effects"] = [withStroke(linewidth=one.width + 1.6, foreground="white")]
     axes.plot(x, y, zorder=2 if one.line else 4, clip_on=bool(one.line) or not len(x), **look)

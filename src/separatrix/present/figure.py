@@ -45,8 +45,7 @@ class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
     `fill` is the opacity inside a closed line, `face` a colour there that hides what was drawn before,
-    `has_halo` a white edge above colours. A line `has_ticks` on its left where one side of it is meant. A
-    trace without points stands only in the legend.
+    `has_halo` a white edge above colours. A trace without points stands only in the legend.
     """
 
     x: Numbers
@@ -63,7 +62,6 @@ class Trace:
     ends_along: str = "y"
     fill: float = 0.0
     opacity: float = 1.0
-    has_ticks: bool = False
     has_halo: bool = False
     face: str = ""
     hover: tuple[str, ...] = ()

@@ -221,5 +221,6 @@ VERB = Tool(
     compute=compute,
     page=page,
     options=Options,
+    rows="rows",
     has_full=True,
 )

@@ -14,7 +14,7 @@ from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, 
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
-from separatrix.verbs.parts.telling import column, quantity, said, told
+from separatrix.verbs.parts.telling import all_numbers, quantity, said, told
 from separatrix.verbs.parts.varied import parameter_axis, value_of
 from separatrix.verbs.verb import Option, Verb
 
@@ -85,40 +85,45 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
         every = (*notes, *(note for point in found.points for note in point.notes))
         return MapAnswer(solution=solution, cage=cage, map=found, notes=every)
 
-    return made_into(
-        made,
-        lambda: stability_map(asked, runner=runner),
-    )
+    return made_into(made, lambda: stability_map(asked, runner=runner))
 
 
 def page(answer: Part) -> Page:
     """Return the page of `map`."""
-    x, y = answer.x, answer.y
     refused = [one for one in answer.points if one.get("state") == "REFUSED"]
-    more = f"The first of the refused points: {refused[0].reason}" if refused else ""
     friction = [] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]
     scatter = ("Scatter of the balls", told(answer, "ball_scatter"))
     return page_of(
         answer,
         Note(" ".join(filter(None, [counted(answer), nearest_words(answer)])), "lead"),
-        *([Note(more)] if more else []),
+        *(Note(f"The first of the refused points: {one.reason}") for one in refused[:1]),
         facts(
-            ("Across", _axis_words(x)),
-            ("Upward", _axis_words(y)),
+            ("Across", _axis_words(answer.x)),
+            ("Upward", _axis_words(answer.y)),
             ("Runs", runs_words(answer)),
-            *_inference(answer),
+            ("Inferred", inference_words(answer)),
         ),
-        map_picture(answer),
+        Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
         *bands(answer),
         Heading("Basis of this answer", Level.LONG),
         facts(*basis_facts(answer), *friction, scatter, level=Level.LONG),
-        points_table(answer),
+        all_numbers("points", (), ((_with_units(answer, one),) for one in answer.points)),
+        all_numbers("changes", (), ((_with_units(answer, one),) for one in answer.get("changes") or ())),
     )
 
 
 def _names(answer: Part) -> tuple[str, str]:
     return answer.x.parameter, answer.y.parameter
+
+
+def _with_units(answer: Part, point: Part) -> Part:
+    """Return a point, or a change, with its place under the names of the parameters, and in their units."""
+    x, y = (one.get("unit") or "-" for one in (answer.x, answer.y))
+    place = {answer.x.parameter: point.x, answer.y.parameter: point.get("y")}
+    rest = {key: value for key, value in point.values.items() if key not in ("x", "y", *place)}
+    units = dict(zip(place, (x, y), strict=True)) | dict.fromkeys(("y_low", "y_high", "margin"), y)
+    return Part(place | rest, {**point.units, **units})
 
 
 def counted(answer: Part) -> str:
@@ -135,6 +140,10 @@ def _value(axis: Part, value: float | None) -> str:
     return value_of(axis, axis.parameter, value).text
 
 
+def _at(axis: Part, value: float | None) -> str:
+    return f"{quantity(axis.parameter).label} {_value(axis, value)}"
+
+
 def _axis_words(axis: Part) -> str:
     values = axis.get("values")
     here = f"; the study has {_value(axis, axis.here)}" if "here" in axis else ""
@@ -148,57 +157,47 @@ def nearest_words(answer: Part) -> str:
     if "here" not in x or not values[0] <= x.here <= values[-1]:
         return ""
     at = min(values, key=lambda value: abs(value - x.here))
-    across, up = (quantity(one.parameter).label for one in (x, y))
-    first = f"Next to the study, at {across} {_value(x, at)}, the cage"
-    own = f" The study itself has {across} {_value(x, x.here)}"
-    own += f" and {up} {_value(y, y.here)}." if "here" in y else "."
-    changes = [row.change for row in rows(answer, [at]) if row.change is not None]
-    if not changes:
-        kind = rows(answer, [at])[0].kind
-        words = {EVERYWHERE: "whirls everywhere", NOWHERE: "whirls nowhere", OPEN: "was not finished"}
-        return f"{first} {words.get(kind, 'has no boundary that was found')}.{own}"
-    each = (
-        f"{'begins' if one.whirls_above else 'ceases'} to whirl between {up} {_value(y, one.y_low)} and "
-        f"{_value(y, one.y_high)}"
-        for one in changes
-    )
-    return f"{first} {', and '.join(each)}.{own}"
+    found = []
+    for row in rows(answer, [at]):
+        words = row.kind
+        if row.change is not None:
+            words = "begins to whirl" if row.change.whirls_above else "ceases to whirl"
+            words += f" between {_at(y, row.change.y_low)} and {_value(y, row.change.y_high)}"
+        found.append(words)
+    own = f"{_at(x, x.here)} and {_at(y, y.here)}" if "here" in y else _at(x, x.here)
+    return f"Next to the study, at {_at(x, at)}, the cage {', and '.join(found)}. The study itself has {own}."
 
 
 def runs_words(answer: Part) -> str:
     """Return how many runs a point has, of which length, from which disturbance."""
-    rule = answer.stopping
-    words = said(rule, "{most_runs} at every point")
-    if rule.agreeing_runs != rule.most_runs:
-        words = said(
-            rule,
-            "up to {most_runs}, stopped after {agreeing_runs} that agree (risk of the wrong side "
-            "{wrong_side_probability}, of another decision {other_decision_probability})",
-        )
+    words = said(
+        answer.stopping,
+        "up to {most_runs}, stopped after {agreeing_runs} that agree (risk of the wrong side "
+        "{wrong_side_probability}, of another decision {other_decision_probability})",
+    )
     kick = "" if KICK in _names(answer) else said(answer, ", from an initial disturbance of {kick}")
     return f"{words}, each of {told(answer, 'duration')}{kick}"
 
 
-def _inference(answer: Part) -> list[tuple[str, str]]:
+def inference_words(answer: Part) -> str:
     """Return how many points were not run, and how often those around them were wrong where they were."""
     found = answer.get("inference")
     if found is None or not found.points + found.checked:
-        return []
-    inferred = f"{found.points} points were not run, as those around them agree; "
-    if "error_low" not in found:
-        return [("Inferred", f"{inferred}none was checked")]
-    ends = said(found, "(95 %: {error_low} to {error_high})")
-    checked = f"{found.checked} more of that kind were run as a check, of which {found.decided_otherwise}"
-    return [("Inferred", f"{inferred}{checked} are decided otherwise {ends}")]
+        return ""
+    checked = "none was checked"
+    if "error_low" in found:
+        checked = (
+            f"{found.checked} more of that kind were run as a check, of which {found.decided_otherwise} "
+        )
+        checked += said(found, "are decided otherwise (95 %: {error_low} to {error_high})")
+    return f"{found.points} points were not run, as those around them agree; {checked}"
 
 
 # Where the answer changes.
 
-EVERYWHERE, NOWHERE, OPEN = "everywhere", "nowhere", "not finished"
-
 
 class Row(NamedTuple):
-    """A change in a column of the map; of a column without one, what it is."""
+    """A change in a column of the map; of a column without one, what the cage does there."""
 
     x: float
     change: Part | None
@@ -210,67 +209,47 @@ def rows(answer: Part, columns: Sequence[float]) -> list[Row]:
     found = []
     for x in columns:
         changes = [one for one in answer.get("changes") or () if one.x == x]
-        found += [Row(x, one, "above" if one.whirls_above else "below") for one in changes]
+        found += [Row(x, one, "whirls above" if one.whirls_above else "whirls below") for one in changes]
         if not changes:
             found.append(Row(x, None, _kind([one for one in answer.points if one.x == x])))
     return found
 
 
 def _kind(column: Sequence[Part]) -> str:
-    """Return what a column without a change is."""
-    sides = {_side(one) for one in column if one.runs}
+    """Return what the cage does in a column without a change."""
     if any(_state(one) == "NOT_RUN" for one in column):
-        return OPEN
-    if not sides:
-        return "refused"
-    return "no boundary found" if 0 in sides else EVERYWHERE if sides == {1} else NOWHERE
+        return "was not finished"
+    run = [one for one in column if one.runs]
+    if run and all(one.probability_low > 0.5 for one in run):
+        return "whirls everywhere"
+    if run and all(one.probability_high < 0.5 for one in run):
+        return "whirls nowhere"
+    return "has no boundary that was found"
 
 
-def _side(point: Part) -> int:
-    """Return 1 where more than half of the runs whirl, -1 where fewer do, 0 where neither is sure."""
-    return 1 if point.probability_low > 0.5 else -1 if point.probability_high < 0.5 else 0
-
-
-def bands(answer: Part) -> Iterator[Table | Note]:
+def bands(answer: Part) -> Iterator[Table]:
     """Yield the bands of the columns, so many as a screen and a report have room for; a workbook has all."""
-    every = answer.x.get("values")
-    if not answer.get("changes"):
-        kinds = ", ".join(dict.fromkeys(row.kind for row in rows(answer, every)))
-        yield Note(f"No column of the map has a boundary: {kinds}.")
-        return
-    if len(every) <= SOME_COLUMNS:
-        yield _bands(answer, every, Level.ALWAYS)
-        return
-    yield _bands(answer, _spread(every, SOME_COLUMNS), Level.BRIEF)
-    yield _bands(answer, _spread(every, MORE_COLUMNS), Level.LONG)
-    if len(every) > MORE_COLUMNS:
-        yield _bands(answer, every, Level.SHEET)
-
-
-def _spread(values: Sequence[float], most: int) -> list[float]:
-    if len(values) <= most:
-        return list(values)
-    return [values[round(i * (len(values) - 1) / (most - 1))] for i in range(most)]
-
-
-def _bands(answer: Part, chosen: Sequence[float], level: Level) -> Table:
-    x, y, total = answer.x, answer.y, len(answer.x.get("values"))
+    x, y, every = answer.x, answer.y, answer.x.get("values")
 
     def of(name: str, head: str) -> Column:
         return Column(
             head, lambda row: value_of(y, y.parameter, row.change.get(name) if row.change else None)
         )
 
-    label = quantity(y.parameter).label
     columns = (
         Column(quantity(x.parameter).label, lambda row: value_of(x, x.parameter, row.x)),
-        of("y_low", f"{label} from"),
+        of("y_low", f"{quantity(y.parameter).label} from"),
         of("y_high", "to"),
-        text_column("whirls", lambda row: row.kind),
+        text_column("the cage", lambda row: row.kind),
         of("margin", "margin"),
     )
-    part = "" if len(chosen) == total else f"{len(chosen)} of {total} columns; map.json has all. "
-    return Table("bands", columns, tuple(rows(answer, chosen)), part + LEGEND, level)
+    for most, level in ((SOME_COLUMNS, Level.BRIEF), (MORE_COLUMNS, Level.LONG)):
+        step = max(1.0, (len(every) - 1) / (most - 1))
+        chosen = [every[round(i * step)] for i in range(min(most, len(every)))]
+        part = (
+            "" if len(chosen) == len(every) else f"{len(chosen)} of {len(every)} columns; map.json has all. "
+        )
+        yield Table("bands", columns, tuple(rows(answer, chosen)), part + LEGEND, level)
 
 
 LEGEND = (
@@ -280,47 +259,21 @@ LEGEND = (
 )
 
 
-def points_table(answer: Part) -> Table:
-    """Return every point of the map with its evidence, for a workbook."""
-    x, y = answer.x, answer.y
-    names = ("probability_whirl", "runs", "whirling", "growth_rate", "largest_offset", "drift_rate")
-    columns = (
-        Column(quantity(x.parameter).label, lambda row: value_of(x, x.parameter, row.x)),
-        Column(quantity(y.parameter).label, lambda row: value_of(y, y.parameter, row.y)),
-        text_column("decision", lambda row: row.decision or row.get("inferred_decision")),
-        *map(column, names),
-        column("largest_contact_force"),
-        column("restitution_factor", head="restitution factor of the point"),
-        Column("margin", lambda row: value_of(y, y.parameter, row.margin)),
-        text_column("reason", lambda row: row.reason),
-    )
-    return Table("points", columns, tuple(answer.points), "", Level.SHEET)
-
-
 # The picture.
-
-
-def map_picture(answer: Part) -> Picture:
-    """Return the map, with its bands and the study itself."""
-    white = " White: not run." if answer.counts.get("not_run") else ""
-    return Picture(
-        "stability-map", lambda: map_figure(answer), f"Share of the runs that whirl, point by point.{white}"
-    )
 
 
 def map_figure(answer: Part) -> Figure:
     """Return the share of the runs that whirl, where it changes, and what has no verdict."""
-    x, y = answer.x, answer.y
     axes = [
         parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
-        for one in (x, y)
+        for one in (answer.x, answer.y)
     ]
     kick = "" if KICK in _names(answer) else said(answer, ", initial disturbance {kick}")
     panel = Panel(
         title=f"Share of the runs that whirl{kick}",
         x=axes[0],
         y=axes[1],
-        marks=(*_cells(answer), *_limit(answer), *_changes(answer), *_study(answer)),
+        marks=(*_cells(answer), *_overlays(answer)),
     )
     return Figure(
         rows=((panel,),),
@@ -349,11 +302,11 @@ def _cells(answer: Part) -> Iterator[Mark]:
     yield Cells(x=x, y=y, values=values, label=label, low=0.0, high=1.0, colours="cividis", hover=hover)
     decided = np.vectorize(lambda one: str(one.decision or one.get("inferred_decision")))(table)
     refused = (state == "REFUSED") | ((state == "INFERRED") & (decided == "None"))
-    if refused.any():
-        yield Hatched(x=x, y=y, where=refused.tolist(), name="refused", strokes="xxxx", fill="#9a9a9a")
-    if (undecided := decided == "UNDECIDED").any():
-        name = "undecided: the runs, or their drift, allow no verdict"
-        yield Hatched(x=x, y=y, where=undecided.tolist(), name=name)
+    crossed: dict[str, Any] = {"name": "refused", "strokes": "xxxx", "fill": "#9a9a9a"}
+    striped: dict[str, Any] = {"name": "undecided: the runs, or their drift, allow no verdict"}
+    for where, look in ((refused, crossed), (decided == "UNDECIDED", striped)):
+        if where.any():
+            yield Hatched(x=x, y=y, where=where.tolist(), **look)
     if (state == "INFERRED").any():
         was_run = [one for one in answer.points if one.runs]
         name = "was run; elsewhere the points around agree"
@@ -367,42 +320,25 @@ def _state(point: Part) -> str:
 
 
 def _hover(answer: Part, point: Part) -> str:
-    at = ", ".join(
-        f"{quantity(axis.parameter).label} {_value(axis, value)}"
-        for axis, value in ((answer.x, point.x), (answer.y, point.y))
-    )
+    at = f"{_at(answer.x, point.x)}, {_at(answer.y, point.y)}"
     if point.decision is None:
         return f"{at}: {point.reason}"
     share = f"share that whirls {told(point, 'probability_whirl')}, {point.runs} runs"
     return f"{at}: {point.decision}; {share}"
 
 
-def _changes(answer: Part) -> Iterator[Mark]:
-    """Yield a bar at each column from the last point below a change to the first above it."""
-    found = answer.get("changes") or []
-    if found:
-        low = [one.y_low for one in found]
-        ends: dict[str, Any] = {"low": low, "high": [one.y_high for one in found]}
-        yield Trace(x=[one.x for one in found], y=low, **ends, line="", colour=VERMILION)
-
-
-def _limit(answer: Part) -> Iterator[Mark]:
-    """Yield the linear limit in the plane of restitution factor and friction."""
+def _overlays(answer: Part) -> Iterator[Mark]:
+    """Yield the linear limit, a bar from each point below a change to that above, and the study."""
+    x, y, found = answer.x, answer.y, answer.get("changes") or []
     if set(_names(answer)) == {FRICTION, RESTITUTION}:
-        law = linear_law(2.0 * sqrt(2.0 / answer.cage.ball_count), is_upright=answer.x.parameter == FRICTION)
+        law = linear_law(2.0 * sqrt(2.0 / answer.cage.ball_count), is_upright=x.parameter == FRICTION)
         yield replace(law, colour=BLACK, has_halo=True)
-
-
-def _study(answer: Part) -> Iterator[Mark]:
-    """Yield the point of the study itself, if the map has it."""
-    at = [one.get("here") for one in (answer.x, answer.y)]
-    ends = [one.get("values") for one in (answer.x, answer.y)]
-    if all(here is not None and one[0] <= here <= one[-1] for here, one in zip(at, ends, strict=True)):
-        words = ", ".join(
-            f"{quantity(one.parameter).label} {_value(one, one.here)}" for one in (answer.x, answer.y)
-        )
+    if found:
+        at, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
+        yield Trace(x=at, y=low, low=low, high=high, line="", colour=VERMILION)
+    if all("here" in one and one.get("values")[0] <= one.here <= one.get("values")[-1] for one in (x, y)):
         look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
-        yield Trace(x=at[:1], y=at[1:], name="the study itself", hover=(f"the study: {words}",), **look)
+        yield Trace(x=[x.here], y=[y.here], name="the study itself", **look)
 
 
 VERB = Verb(

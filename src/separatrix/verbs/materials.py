@@ -276,6 +276,7 @@ LIST = Tool(
     compute=list_records,
     page=list_page,
     options=ListOptions,
+    rows="materials",
 )
 SHOW = Tool(
     name="materials show",
@@ -284,4 +285,5 @@ SHOW = Tool(
     compute=show_records,
     page=show_page,
     options=ShowOptions,
+    rows="records",
 )

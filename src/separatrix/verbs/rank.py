@@ -44,8 +44,8 @@ from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
 from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
-    all_numbers,
     by_verdict,
+    candidate_numbers,
     evidence_column,
     is_judged,
     motion_column,
@@ -142,7 +142,7 @@ def page(answer: Part) -> Page:
             else []
         ),
         *gaps(answer),
-        all_numbers(answer),
+        candidate_numbers(answer),
         draws=True,
     )
 

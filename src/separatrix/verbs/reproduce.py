@@ -218,5 +218,6 @@ VERB = Tool(
     compute=compute,
     page=page,
     options=Options,
+    rows="answers",
     takes_time=True,
 )

@@ -47,14 +47,15 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
 
 def page(answer: Part) -> Page:
     """Return the page of `stability`."""
-    drift = drift_words(answer)
-    leads = [own_lead(answer), *friction_lead(answer), *([drift] if drift else [])]
+    leads = [own_lead(answer), *friction_lead(answer), drift_words(answer)]
+    below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
+    caption = f"Critical friction against restitution factor: below the band {below}, above it unstable."
     return page_of(
         answer,
-        Note(" ".join(leads), "lead"),
-        *([curve_picture(answer)] if answer.curve else []),
+        Note(" ".join(filter(None, leads)), "lead"),
+        *([Picture("stability-curve", lambda: curve_figure(answer), caption)] if answer.curve else []),
         *own_point(answer),
-        *([Heading("Stability curve")] if answer.curve else []),
+        Heading("Stability curve"),
         *curve_blocks(answer),
         Heading("Basis of this answer", Level.LONG),
         facts(
@@ -82,16 +83,6 @@ def friction_lead(answer: Part) -> list[str]:
     return [f"The cage's friction, {words}, is {side}: {then}."]
 
 
-def curve_picture(answer: Part) -> Picture:
-    """Return the curve with the bearing's own point."""
-    below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
-    return Picture(
-        "stability-curve",
-        lambda: curve_figure(answer),
-        f"Critical friction against restitution factor: below the band {below}, above it unstable.",
-    )
-
-
 def curve_figure(answer: Part) -> Figure:
     """Return the curve with the bearing's own point, and the friction of its cage."""
     friction, words = answer.cage.ball_cage_friction, pocket_friction(answer)
@@ -99,8 +90,7 @@ def curve_figure(answer: Part) -> Figure:
     if words:
         name = said(answer.cage, "the cage's friction, {ball_cage_friction}")
         look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
-        hover = (f"the cage's friction: {words}",)
-        own = [Trace(x=[answer.chain.restitution_factor], y=[friction], hover=hover, **look)]
+        own = [Trace(x=[answer.chain.restitution_factor], y=[friction], **look)]
     panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])
     return Figure(
         rows=((panel,),),
@@ -116,7 +106,7 @@ VERB = Verb(
     page=page,
     needs=("cage",),
     moves_a_cage=True,
-    epilog="Beside the curve: its sub-critical band, the curve of each initial disturbance, the linear "
-    "limit, and the critical friction at the bearing's own restitution factor.",
+    epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
+    "restitution factor from each initial disturbance.",
     keeps_runs=True,
 )

@@ -445,6 +445,7 @@ VERB = Tool(
     compute=compute,
     page=page,
     options=Options,
+    rows="tests",
     takes_time=True,
     has_full=True,
 )

@@ -95,13 +95,14 @@ class Tool:
     """A question without a study of its own: to logs, to the library, to saved answers.
 
     `compute` takes the options and, where it `takes_time`, the number of threads and who is told of its
-    progress; it returns its document, and `page` makes the page of that.
+    progress; it returns its document, and `page` makes the page of that. `rows` is the key of its main list.
     """
 
     name: str
     compute: Callable[..., Document]
     page: Callable[[Part], Page]
     options: type
+    rows: str
     help: str = ""
     epilog: str | None = None
     takes_time: bool = False

@@ -7,20 +7,20 @@ from math import hypot, log, pi
 from typing import Any
 
 from separatrix.ground.document import Part
-from separatrix.ground.quantity import alone, middle
 from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Note, Table
-from separatrix.present.figure import (
-    BLUE,
-    GREY,
-    SKY,
-    Across,
-    Band,
-    Label,
-    Mark,
-    Panel,
-    Trace,
+from separatrix.present.figure import BLUE, GREY, Across, Band, Label, Mark, Panel, Trace
+from separatrix.verbs.parts.telling import (
+    all_numbers,
+    axis,
+    column,
+    each_of,
+    marks,
+    number_of,
+    place_column,
+    quantity,
+    said,
+    told,
 )
-from separatrix.verbs.parts.telling import axis, column, estimate, quantity, said, told
 
 HIGHEST = 0.5
 """Friction at the top of a picture without any curve: above it no cage material is of interest."""
@@ -30,109 +30,58 @@ HEIGHTS = ("critical_friction", "scatter_high", "critical_friction_high")
 """Numbers of a point whose largest is the top of the picture; the limits are drawn as far as they go."""
 
 WIDE = 0.006
-"""Half the width of the band that is known at the bearing's own restitution factor alone."""
+"""Half the width of a band that is known at the bearing's own restitution factor alone."""
+
+# The picture.
 
 # The picture.
 
 
-def highest(curve: Part, more: Iterable[float | None] = ()) -> float:
-    """Return the friction at the top of the picture: above every curve and mark in it, and `more`."""
-    points = [*(curve.get("curve") or ()), *([curve.here] if "here" in curve else [])]
+def highest(points: Sequence[Part], more: Iterable[float | None] = ()) -> float:
+    """Return the friction at the top of the picture: above every point of the curve, and `more`."""
     found = [one.get(name) for one in points for name in HEIGHTS]
-    found += [one for point in points for one in point.get("kick_critical_friction") or ()]
     top = max((one for one in [*found, *more] if one is not None), default=0.0)
     return 1.12 * top if top > 0.0 else HIGHEST
 
 
-def curve_marks(curve: Part, top: float | None = None) -> list[Mark]:
-    """Return the band, the curve with its scatter, the linear limit, and the curve of each disturbance.
+def curve_marks(curve: Part, top: float) -> list[Mark]:
+    """Return the curve with its scatter, the band, and the linear limit.
 
     A band without its upper end goes beyond `top`, that of the picture.
     """
     points = curve.get("curve") or []
     eta = [one.restitution_factor for one in points]
     half = [one.critical_friction for one in points]
-    scatter: dict[str, Any] = {
-        "low": [one.scatter_low for one in points],
-        "high": [one.scatter_high for one in points],
-    }
+    scatter: dict[str, Any] = {end: [one.get(f"scatter_{end}") for one in points] for end in ("low", "high")}
     words = f"half of {told(curve, 'runs')} runs whirl, disturbance {told(curve, 'middle_kick')}"
-    hover = tuple(map(_hover, points))
-    return [
-        Trace(x=eta, y=half, name=words, colour=BLUE, marker="o", size=3.0, hover=hover),
+    found: list[Mark] = [
+        Trace(x=eta, y=half, name=words, colour=BLUE, marker="o", size=3.0),
         Band(x=eta, **scatter, name="its 95 % interval"),
-        *_each_disturbance(curve),
-        *_band(curve, top or highest(curve)),
-        *linear_limit(curve),
     ]
-
-
-def _hover(point: Part) -> str:
-    at = f"restitution factor {told(point, 'restitution_factor')}"
-    if "critical_friction" not in point:
-        return f"{at}: {point.reason}"
-    band = ""
-    if any(name in point for name in ENDS):
-        low, high = (_end(point, name) for name in ENDS)
-        band = f"; band {low} to {high}"
-    return f"{at}: half of the runs whirl at a friction of {told(point, 'critical_friction')}{band}"
-
-
-def _end(point: Part, name: str) -> str:
-    """Return an end of the band without its own interval."""
-    return alone(point.get(name), quantity(name), point.unit(name))
-
-
-def _band(curve: Part, top: float) -> list[Mark]:
-    """Return the band over the curve, or where only the bearing's own is known, there."""
-    points, x = (curve.get("curve") or [], [])
     if curve.band:
-        x = [one.restitution_factor for one in points]
-    elif "here" in curve:
-        at = curve.here.restitution_factor
-        points, x = [curve.here] * 2, [max(at - WIDE, 0.0), at + WIDE]
-    if not points:
-        return []
-    low: list[float | None] = []
-    high: list[float | None] = []
-    for one in points:
-        known = any(name in one for name in ("critical_friction", *ENDS))
-        least, most = (one.get(name) for name in ENDS)
-        low.append(least if least is not None else 0.0 if known else None)
-        high.append(most if most is not None else 2.0 * top if known else None)
+        low, high = zip(*(_ends(one, top) for one in points), strict=True) if points else ((), ())
+        found.append(Band(x=eta, low=low, high=high, name=_band_name(curve), opacity=0.15))
+    return [*found, *linear_limit(curve)]
+
+
+def _ends(point: Part, top: float) -> tuple[float | None, float | None]:
+    """Return the ends of the band at a point; of one that was not found, that of the picture."""
+    if not any(name in point for name in ("critical_friction", *ENDS)):
+        return None, None
+    low, high = (point.get(name) for name in ENDS)
+    return (0.0 if low is None else low), (2.0 * top if high is None else high)
+
+
+def _band_name(curve: Part) -> str:
     kicks = disturbances(curve)
-    where = "" if curve.band else "at the bearing's own $eta$ "
-    name = f"band {where}in which the disturbance decides ({kicks[0]} to {kicks[-1]})"
     if len(kicks) == 1:
-        name = f"band {where}of the scatter between runs"
-    found: list[Mark] = [Band(x=x, low=low, high=high, name=name, opacity=0.15)]
-    if curve.band:
-        look: dict[str, Any] = {"colour": BLUE, "width": 0.7}
-        found.append(Trace(x=x, y=low, line=":", **look))
-        found.append(
-            Trace(x=x, y=[None if one is None or one > top else one for one in high], line="-.", **look)
-        )
-    return found
-
-
-def _each_disturbance(curve: Part) -> list[Mark]:
-    """Return the critical friction from the least and from the largest disturbance."""
-    points, kicks = curve.get("curve") or [], curve.kicks
-    if not curve.band or len(kicks) == 1:
-        return []
-    found: list[Mark] = []
-    for place, marker in ((0, "v"), (len(kicks) - 1, "^")):
-        if kicks[place] != curve.middle_kick:
-            y = [(one.kick_critical_friction or [None] * len(kicks))[place] for one in points]
-            look: dict[str, Any] = {"colour": SKY, "marker": marker, "size": 2.5, "width": 0.7}
-            name = f"half of them whirl, disturbance {disturbances(curve)[place]}"
-            found.append(Trace(x=[one.restitution_factor for one in points], y=y, name=name, **look))
-    return found
+        return "band of the scatter between runs"
+    return f"band in which the disturbance decides ({kicks[0]} to {kicks[-1]})"
 
 
 def disturbances(curve: Part) -> list[str]:
     """Return the initial disturbances of the runs as text."""
-    return [alone(one, quantity("kicks"), curve.unit("kicks")) for one in curve.kicks]
+    return [number_of(curve, "kicks", one) for one in curve.kicks]
 
 
 def linear_limit(curve: Part) -> list[Mark]:
@@ -158,33 +107,24 @@ def _damping(eta: float) -> float:
     return 1.0 if eta == 0.0 else -log(eta) / hypot(pi, log(eta))
 
 
-def own_marks(answer: Part, curve: Part) -> list[Mark]:
-    """Return the restitution factors of the bearing as upright lines, and its critical friction."""
-    chain, found = answer.chain, list[Mark]()
-    for name, words, line in (
-        ("restitution_factor", "this bearing", "-"),
-        ("restitution_factor_free_spin", "the same, balls free to spin", ":"),
-    ):
-        text = f"{words}, $eta$ = {told(chain, name)}"
-        found.append(Across(at=getattr(chain, name), name=text, line=line, hover=text))
+def own_marks(answer: Part, curve: Part, top: float) -> list[Mark]:
+    """Return the restitution factors of the bearing as upright lines, its critical friction and its band."""
+    found: list[Mark] = []
+    for name, words, line in (("", "this bearing", "-"), ("_free_spin", "the same, balls free to spin", ":")):
+        key = f"restitution_factor{name}"
+        text = f"{words}, $eta$ = {told(answer.chain, key)}"
+        found.append(Across(at=answer.chain.get(key), name=text, line=line, hover=text))
     here = curve.get("here")
-    if here is not None and "critical_friction" in here:
-        words = f"its critical friction, {told(here, 'critical_friction')}"
-        value = estimate(here, "critical_friction")
-        found.append(
-            Trace(
-                x=[here.restitution_factor],
-                y=[middle(value)],
-                low=[here.scatter_low],
-                high=[here.scatter_high],
-                name=words,
-                line="",
-                marker="D",
-                size=4.5,
-                is_open=True,
-                hover=(_hover(here),),
-            )
-        )
+    if here is None:
+        return found
+    if not curve.band:
+        at, (low, high) = here.restitution_factor, _ends(here, top)
+        look: dict[str, Any] = {"name": _band_name(curve), "opacity": 0.25}
+        found.append(Band(x=(at - WIDE, at + WIDE), low=[low] * 2, high=[high] * 2, **look))
+    if "critical_friction" in here:
+        look = {"marker": "D", "size": 4.5, "is_open": True}
+        look["name"] = f"its critical friction, {told(here, 'critical_friction')}"
+        found.append(marks([here], "restitution_factor", "critical_friction", **look))
     return found
 
 
@@ -202,15 +142,20 @@ def curve_panel(
 
     `more` are marks above them, `frictions` their heights, `labels` texts at the right under `head`.
     """
-    top = highest(curve, frictions)
+    top = highest(points_of(curve), frictions)
     return Panel(
         title=title,
         x=axis("restitution_factor", "-", [], low=0.0, high=1.0),
         y=axis("ball_cage_friction", "-", [], low=0.0, high=top),
-        marks=(*curve_marks(curve, top), *own_marks(answer, curve), *more),
+        marks=(*curve_marks(curve, top), *own_marks(answer, curve, top), *more),
         labels=tuple(labels),
         head=head,
     )
+
+
+def points_of(curve: Part) -> list[Part]:
+    """Return the points of a curve, and the bearing's own at last."""
+    return [*(curve.get("curve") or ()), *([curve.here] if "here" in curve else [])]
 
 
 # The text.
@@ -243,24 +188,13 @@ def own_point(curve: Part) -> list[Block]:
     here = curve.get("here")
     if here is None:
         return []
-    each = tuple(range(len(curve.kicks)))
-
-    def of(part: Part, name: str, head: str) -> Column:
-        values = part.get(name) or [None] * len(each)
-        return Column(head, lambda row: Cell(values[row], quantity(name), part.unit(name)))
-
-    table = Table(
-        "own point",
-        (
-            of(curve, "kicks", "initial disturbance"),
-            of(here, "kick_low", f"{_share(curve.band_few)} whirl at"),
-            of(here, "kick_critical_friction", "half whirl at"),
-            of(here, "kick_high", f"{_share(curve.band_most)} whirl at"),
-        ),
-        each,
-        f"Pocket frictions at this bearing's restitution factor, {told(here, 'restitution_factor')}. "
-        + band_words(curve, here),
-    )
+    columns = [place_column(curve, "kicks", head="initial disturbance")]
+    if here.kick_low:
+        columns.append(place_column(here, "kick_low", head=f"{_share(curve.band_few)} whirl at"))
+        columns.append(place_column(here, "kick_critical_friction"))
+        columns.append(place_column(here, "kick_high", head=f"{_share(curve.band_most)} whirl at"))
+    at = told(here, "restitution_factor")
+    caption = f"Pocket frictions at this bearing's restitution factor, {at}. {band_words(curve, here)}"
     notes = [_sentence(here.reason)] if "reason" in here else []
     if here.restitution_factor == 0.0:
         notes.append(
@@ -269,7 +203,7 @@ def own_point(curve: Part) -> list[Block]:
         )
     return [
         Heading("Critical friction of this bearing", depth=3),
-        table,
+        Table("own point", tuple(columns), tuple(range(len(curve.kicks))), caption),
         *(Note(one, "legend") for one in notes),
     ]
 
@@ -297,25 +231,26 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
     """Return the table of the curve, with its ensemble; a workbook has that of each disturbance, too."""
     points = curve.get("curve") or []
     linear = {one.restitution_factor: one for one in curve.get("linear_limit") or ()}
-    band = [_plain(name) for name in ENDS] if curve.band else []
+    few, most = _share(1.0 - curve.band_few), _share(curve.band_most)
+    band = (
+        f" Band: {few} of the runs settle or roll from every disturbance below its low end, {most} whirl "
+        "from every disturbance above its high end."
+    )
     caption = (
         f"Critical friction: {said(curve, 'half of {runs} runs of {duration} whirl from the reference')} "
-        f"disturbance, {told(curve, 'middle_kick')}; fewer below, more above."
+        f"disturbance, {told(curve, 'middle_kick')}; fewer below, more above.{band if curve.band else ''} "
+        f"Disturbances: {', '.join(disturbances(curve))}. Linear limit: no clearance, balls at rest."
     )
-    if band:
-        few, most = _share(1.0 - curve.band_few), _share(curve.band_most)
-        caption += (
-            f" Band: {few} of the runs settle or roll from every disturbance below its low end, {most} whirl "
-            "from every disturbance above its high end."
-        )
-    caption += f" Disturbances: {', '.join(disturbances(curve))}. Linear limit: no clearance, balls at rest."
     columns = (
         column("restitution_factor"),
         column("critical_friction"),
-        *band,
+        *(map(_plain, ENDS) if curve.band else ()),
         column("critical_friction", of=lambda row: linear.get(row.restitution_factor), head="linear limit"),
     )
     reasons = dict.fromkeys(one.reason for one in points if "reason" in one)
+    own = {"kicks": curve.unit("kicks")}
+    each = [Part({**one.values, "kicks": curve.kicks}, {**one.units, **own}) for one in points_of(curve)]
+    rows = [(one.restitution_factor, row) for one in each if one.kick_low for row in each_of(one)]
     return [
         Equation(
             r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}",
@@ -323,7 +258,8 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         ),
         Table("stability curve", columns, tuple(points), caption, level),
         *(Note(_sentence(one), "legend", level) for one in reasons),
-        *_sheets(curve),
+        all_numbers("points of the curve", (), ((one,) for one in points_of(curve))),
+        all_numbers("curve by disturbance", ("restitution factor",), rows),
     ]
 
 
@@ -331,31 +267,6 @@ def _plain(name: str) -> Column:
     """Return the column of a number without its interval."""
     known = quantity(name)
     return Column(known.head, lambda row: Cell(row.get(name), known, row.unit(name)))
-
-
-def _sheets(curve: Part) -> list[Block]:
-    """Return every number of the curve and of the bearing's own point: ends with intervals, disturbances."""
-    points = [*(curve.get("curve") or ()), *([curve.here] if "here" in curve else [])]
-    if not any(name in one for one in points for name in ENDS):
-        return []
-    columns = (column(name) for name in ("restitution_factor", "critical_friction", *ENDS))
-    rows = tuple((one, place) for one in points if one.kick_low for place in range(len(curve.kicks)))
-
-    def of(name: str) -> Column:
-        return Column(
-            quantity(name).head, lambda row: Cell(row[0].get(name)[row[1]], quantity(name), row[0].unit(name))
-        )
-
-    kick = Column(
-        "disturbance", lambda row: Cell(curve.kicks[row[1]], quantity("kicks"), curve.unit("kicks"))
-    )
-    eta = column("restitution_factor", of=lambda row: row[0])
-    each = (eta, kick, *map(of, ("kick_low", "kick_critical_friction", "kick_high")))
-    own = "The last is the bearing's own." if "here" in curve else ""
-    return [
-        Table("band of the curve", tuple(columns), tuple(points), own, Level.SHEET),
-        Table("curve by disturbance", each, rows, own, Level.SHEET),
-    ]
 
 
 # The friction of the cage itself.

@@ -261,8 +261,6 @@ QUANTITIES: dict[str, Quantity] = {
     "mean": Q(label="mean", digits=4),
     "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),
     "skill": Q(label="part of the deviance explained", head="skill", unit="%", form=".0f"),
-    "predicted": Q(label="predicted P(settles)", form=".2f"),
-    "counted": Q(label="counted share that settles", form=".2f"),
     "bearings": Q(label="bearings", form=".0f"),
     "size": Q(label="number of bearings", head="bearings", form=".0f"),
     "settled": Q(label="cases settled on average", head="cases settled", digits=2),

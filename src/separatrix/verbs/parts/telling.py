@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from separatrix.ground.document import Part
@@ -91,6 +91,35 @@ def place_column(part: Part, name: str, *, head: str = "") -> Column:
         lambda place: Cell(getattr(part, name)[place], known, unit),
         meaning=known.meaning,
     )
+
+
+def each_of(part: Part) -> Iterator[Part]:
+    """Yield a part for each place in the lists of a part."""
+    lists = {name: value for name, value in part.values.items() if isinstance(value, list)}
+    for values in zip(*lists.values(), strict=True):
+        yield Part(dict(zip(lists, values, strict=True)), part.units)
+
+
+def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]) -> Table:
+    """Return what some parts have for a workbook; a row is a value for each of `heads`, and then its part."""
+    known = tuple(rows)
+    kinds: dict[str, bool] = {}
+    for key, value in (pair for *_, part in known for pair in part.values.items()):
+        is_words = isinstance(value, str | bool)
+        if is_words or isinstance(value, int | float):
+            kinds[key] = is_words
+    ends = {end for key in kinds for end in quantity(key).ends or (f"{key}_low", f"{key}_high")}
+
+    def label(place: int) -> Column:
+        return Column(heads[place], lambda row: Cell(row[place], quantity(heads[place])))
+
+    def held(key: str) -> Column:
+        if kinds[key]:
+            return text_column(key.replace("_", " "), lambda row: row[-1].get(key))
+        return Column(key.replace("_", " "), lambda row: cell(row[-1] if key in row[-1] else None, key))
+
+    columns = (*map(label, range(len(heads))), *(held(key) for key in kinds if key not in ends))
+    return Table(name, columns, known, level=Level.SHEET)
 
 
 def by_race(

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Cell, Column, Level, Table, grouped, text_column
-from separatrix.verbs.parts.telling import cell, column, fact, said, told
+from separatrix.present.blocks import Cell, Column, Table, grouped, text_column
+from separatrix.verbs.parts.telling import all_numbers, cell, column, fact, said, told
 
 MOTIONS = {
     "CENTRED": "the cage rests among its balls, clear of its land",
@@ -202,25 +202,8 @@ def span(rows: Sequence[Part], name: str) -> str:
     return " to ".join(dict.fromkeys(told(one, name) for one in ends))
 
 
-def all_numbers(answer: Part) -> Table:
+def candidate_numbers(answer: Part) -> Table:
     """Return every number of every candidate in every environment, for a workbook."""
-    rows = [(one.name, row) for one in answer.environments for row in one.materials]
-    rows += [("overall", row) for row in answer.overall]
-    names = dict.fromkeys(key for _, row in rows for key, value in row.values.items() if _is_number(value))
-
-    def number(name: str) -> Column:
-        return Column(name.replace("_", " "), lambda pair: cell(pair[1], name))
-
-    columns = (
-        text_column("environment", lambda pair: pair[0]),
-        text_column("material", lambda pair: pair[1].name),
-        text_column("verdict", lambda pair: verdict(pair[1])),
-        *(number(name) for name in names if not name.endswith(("_low", "_high"))),
-        text_column("extrapolation", lambda pair: "; ".join(pair[1].extrapolation)),
-        text_column("reason", lambda pair: pair[1].reason),
-    )
-    return Table("all numbers", columns, tuple(rows), level=Level.SHEET)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    rows = [(one.name, row.name, row) for one in answer.environments for row in one.materials]
+    rows += [("overall", row.name, row) for row in answer.overall]
+    return all_numbers("all numbers", ("environment", "material"), rows)
