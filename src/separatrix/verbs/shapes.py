@@ -178,8 +178,8 @@ def _(found: StabilityAnswer) -> Node:
 
 @shape.register
 def _(axis: MapAxis) -> Node:
-    """The values have the unit that the axis states."""
-    return fields_of(axis) | {"values": Leaf(axis.values, axis.unit)}
+    """The values, and that of the study, have the unit that the axis states."""
+    return fields_of(axis) | {"values": Leaf(axis.values, axis.unit), "here": Leaf(axis.here, axis.unit)}
 
 
 @shape.register
