@@ -1,11 +1,11 @@
-"""Critical friction against chi, kick over clearance: from weak impacts to the linear limit, in one figure.
+"""Critical friction against chi, disturbance over clearance: weak impacts to the linear limit, in one figure.
 
     python benchmarks/chi_law.py --out FILE.png --csv FILE.csv [--runs 128]
 
-chi = v0 sqrt(M/k)/c_p is how far a kick presses a pocket in, over the clearance. The cage: 11 balls, 50 g,
-3e6 N/m, c_p 0.3 mm, a thin ring free to turn, ball set at rest, no land. Only the kick changes; a change of
-the clearance would give the same, since nothing else has a length. A run lasts 0.3 s, or 250 crossings of the
-clearance if that is longer.
+chi = v0 sqrt(M/k)/c_p is how far a disturbance presses a pocket in, over the clearance. The cage: 11 balls,
+50 g, 3e6 N/m, c_p 0.3 mm, a thin ring free to turn, ball set at rest, no land. Only the disturbance
+changes; a change of the clearance would give the same, since nothing else has a length. A run lasts 0.3 s,
+or 250 crossings of the clearance if that is longer.
 
 Points already in the CSV are not computed again, so a complete one is only drawn; Ctrl-C keeps what is
 finished and draws it. In the CSV chi = inf stands for the linear limit in closed form, and chi = 0 for hard
@@ -23,25 +23,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from separatrix.cage import MovingCage
-from separatrix.figures.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    PAGE,
-    PURPLE,
-    VERMILION,
-    canvas,
-    journal,
-    save,
-    settled,
-)
 from separatrix.ground.units import Array
+from separatrix.present.draw import NOTHING, PAGE, STYLE
+from separatrix.present.figure import BLUE, GREEN, GREY, PURPLE, VERMILION
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.critical_friction import critical_friction, linear_limit
 from separatrix.verdict.response import LADDER, Crossing, GrowthCounter
@@ -189,8 +180,9 @@ MARKS = dict(zip(FACTORS, ("o", "s", "^", "D"), strict=True))
 
 def draw(points: list[Point], path: Path) -> None:
     """One figure: points with intervals, lines of the limits."""
-    with journal():
-        figure, axes = canvas(PAGE, 4.4)
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(PAGE, 4.4), layout="constrained")
+        axes = figure.subplots()
         axes.set(xscale="log", yscale="log", xlim=(2.4e-3, 420.0), ylim=(0.018, 0.5))
         for eta in FACTORS:
             curve(axes, eta, {p.chi: p for p in points if p.restitution_factor == eta})
@@ -198,7 +190,7 @@ def draw(points: list[Point], path: Path) -> None:
             axes.plot(CHI_MIDDLE, friction, marker="x", ms=6, mew=1.2, color=COLOURS[eta], ls="")
         finish(axes)
         legend(figure)
-        save(settled(figure), path)
+        figure.savefig(path, metadata=NOTHING[path.suffix])
 
 
 def curve(axes: Axes, eta: float, points: dict[float, Point]) -> None:
@@ -235,9 +227,9 @@ def softening(chi: Array) -> Array:
 
 
 def finish(axes: Axes) -> None:
-    """Axes and their labels; the kick of the cage at hand along the top."""
+    """Axes and their labels; the disturbance of the cage at hand along the top."""
     axes.set(
-        xlabel=r"kick over clearance $\chi = v_0\,\sqrt{M/k}\,/\,c_p$ [-]",
+        xlabel=r"initial disturbance over clearance $\chi = v_0\,\sqrt{M/k}\,/\,c_p$ [-]",
         ylabel=r"friction at which half the runs whirl, $f_{BC}$ [-]",
     )
     axes.set_yticks([0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5])
@@ -246,7 +238,7 @@ def finish(axes: Axes) -> None:
     axes.xaxis.set_major_formatter("{x:g}")
     per_chi = KICK / CHI_MIDDLE
     top = axes.secondary_xaxis("top", functions=(lambda chi: chi * per_chi, lambda kick: kick / per_chi))
-    top.set_xlabel(r"kick at $c_p$ = 0.3 mm, 50 g, 3 MN/m [m/s]")
+    top.set_xlabel(r"initial disturbance at $c_p$ = 0.3 mm, 50 g, 3 MN/m [m/s]")
     top.xaxis.set_major_formatter("{x:g}")
 
 

@@ -16,7 +16,7 @@ import matplotlib
 import separatrix
 
 sys.path.insert(0, str(Path(__file__).parent))
-from reference_tables import json_page, study_page
+from reference_tables import json_page, quantities_page, study_page
 
 matplotlib.use("agg")  # not in the environment: the notebooks draw in their own way
 
@@ -105,10 +105,11 @@ def write_reference(app: Sphinx) -> None:
 
 
 def write_tables(app: Sphinx) -> None:
-    """Write the pages of the keys of a study and of the names in the documents."""
+    """Write the pages of the keys of a study, of the names in the documents, and of the quantities."""
     folder = Path(app.srcdir) / "generated"
     (folder / "study-keys.md").write_text(study_page(), encoding="utf-8")
     (folder / "json-names.md").write_text(json_page(), encoding="utf-8")
+    (folder / "nomenclature.md").write_text(quantities_page(), encoding="utf-8")
 
 
 def setup(app: Sphinx) -> None:

@@ -1,4 +1,4 @@
-"""What a name of the JSON documents means: from the records, and from the nomenclature."""
+"""What a name of the JSON documents means: from the records, and from the table of quantities."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ import inspect
 import re
 import textwrap
 from dataclasses import fields, is_dataclass
-from functools import cache
-from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, get_args, get_type_hints
 
 from separatrix.ground.plain_data import field_axes, field_units
+from separatrix.verbs.parts.quantities import QUANTITIES
 
-NOMENCLATURE = Path(__file__).parent / "reference" / "nomenclature.md"
-ROW = re.compile(r"^\|[^|]*\|([^|]*`[^|]*)\|([^|]*)\|([^|]*)\|$", re.MULTILINE)
 SECTION = re.compile(
     r"^(?:Attributes|Parameters)\n-+\n(.*?)(?=\n\n\S[^\n]*\n---|\Z)", re.DOTALL | re.MULTILINE
 )
@@ -31,7 +28,9 @@ class Line(NamedTuple):
 
 def lines_of(record: type) -> list[Line]:
     """Return a line for each field of a record."""
-    units, axes, meanings = field_units(record), field_axes(record), meanings_of(record)
+    axes, meanings = field_axes(record), meanings_of(record)
+    counts = {name: "-" for name, hint in get_type_hints(record).items() if int in (hint, *get_args(hint))}
+    units = counts | field_units(record)
     return [
         Line(one.name, units.get(one.name, ""), ", ".join(axes.get(one.name, ())), meanings.get(one.name, ""))
         for one in fields(record)
@@ -41,25 +40,13 @@ def lines_of(record: type) -> list[Line]:
 def meanings_of(record: type) -> dict[str, str]:
     """Return what is stated of each field of a record.
 
-    The record's own words come before those of the records it extends, and these before the nomenclature.
+    The record's own words come before those of the records it extends, and these before the table of
+    quantities.
     """
-    units = {one.name: "-" for one in fields(record)} | field_units(record)
-    found = {one.name: one.meaning for one in reversed(quantities()) if units.get(one.name) == one.unit}
+    found = {name: one.meaning or one.label for name, one in QUANTITIES.items()}
     for base in reversed([base for base in record.__mro__ if is_dataclass(base)]):
         found |= _of_docstring(base) | _of_source(base)
     return found
-
-
-@cache
-def quantities() -> tuple[Line, ...]:
-    """Return each quantity of the nomenclature that has a meaning there."""
-    found: list[Line] = []
-    for cell, *others in ROW.findall(NOMENCLATURE.read_text("utf-8")):
-        names, (units, meaning) = re.findall(r"`(\w+)`", cell), (other.strip() for other in others)
-        each = units.split(", ")
-        each = each if len(each) == len(names) else [units] * len(names)
-        found += [Line(name, unit, "", meaning) for name, unit in zip(names, each, strict=True) if meaning]
-    return tuple(found)
 
 
 def _of_docstring(record: type) -> dict[str, str]:

@@ -1,10 +1,10 @@
-"""Tables of the reference, written from the records: keys of a study, names of the JSON documents."""
+"""Tables of the reference, written from the records: keys of a study, names of the documents, quantities."""
 
 from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import is_dataclass
 from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
@@ -14,15 +14,17 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.solution import Solution
-from separatrix.comparing.records import Comparison
 from separatrix.friction.logs.log import ColumnRead, RawLog
 from separatrix.friction.reduction import TestFriction
+from separatrix.friction.test_course import TestCourse
 from separatrix.ground.schema import Described, is_record, keys_of
 from separatrix.ground.units import UNITS, format_quantity
 from separatrix.study import study
 from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import answer_records as answers
+from separatrix.verbs.parts.comparison import Row
+from separatrix.verbs.parts.quantities import QUANTITIES
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
 KEYS = """# Keys of a study
@@ -35,14 +37,42 @@ its default. The page is written from the program. Rules that connect several ke
 NAMES = """# Names in the JSON documents
 
 After this page you can look up each name in the document that `--json` prints: its unit, its shape and its
-meaning. The page is written from the records of the program and from the
-[nomenclature](../reference/nomenclature.md). All numbers are in SI units. What the parts of
-a document are for, and the files beside it: [results](../reference/results.md).
+meaning. The page is written from the records of the program. All numbers are in SI units. What the parts
+of a document are for, and the files beside it: [results](../reference/results.md). Symbols of the paper:
+[nomenclature](nomenclature.md).
 
 Every document of a study has `separatrix_version`, `verb`, `name` and `title` (of the study), `seed`,
 `warnings` (sentences), `provenance` (what `reproduce` needs), `study` (every resolved input with
 `value`, `unit` and `origin`) and `units` (of each result, under the same names).
 """
+QUANTITIES_HEAD = """# Nomenclature
+
+After this page you can go from a symbol of the paper to its name in the program, and back. A quantity has
+the same name in the study file, in Python, in JSON and in the datasets, and SI units everywhere (angles in
+rad). Text, tables and figures show handier units and the label. The page is written from the program; every
+name of an answer, whether it is told or not: [names in the documents](json-names.md).
+
+Axes of arrays have fixed names: `ball`, `race`, `strip`, `node`, `time`, `kick`, `run`, `case`. A singular
+name is one value, a plural an array. `inner` and `outer` are the rings, never I and E or one letter.
+"""
+PAPER = dict(
+    one.split(maxsplit=1)
+    for one in """
+ball_diameter D; pitch_diameter d_m; ball_count Z; radial_clearance P_d; inner_conformity f_i;
+outer_conformity f_o; inner_speed omega_I; outer_speed omega_E; load_inner N_I; load_outer N_E; load N;
+spin_roll_ratio Delta omega_piv / Delta omega_roul; ball_spin omega_S; rolling_speed_inner V_I^roul;
+rolling_speed_outer V_E^roul; across y; contact_modulus E*; curvature_rolling 1/R_x;
+curvature_transverse 1/R_y; elastic_modulus E_film; thickness h; creep_ratio xi; creep_increment delta xi;
+shear tau; creep_spin s; creep_curvature q; orbital_cosines A_h; orbital_sines B_h; half_play c_p; lean tau;
+rates lambda_i; kick v_0; damping_relaxed C_eff; hertz_coefficient K_H; moment_of_inertia J; pitch_radius R;
+cage_speed Omega; drive_energy E_drive; largest_offset r; pocket_clearance 2 c_p; land_clearance 2 c_g;
+pocket_axial_clearance 2 c_a; slip_speed_inner v_e; slip_speed_outer v_e; pocket_friction_effect k;
+transverse_inertia J_t; cage_frequency f_c; shaft_frequency f_i
+""".replace("\n", " ").split(";")
+)
+"""Symbols that the paper or the theory has for a name, where the table of quantities does not show one."""
+UNSTATED = {"run_in_end": "s", "steady_end": "s", "stick_slip_frequency": "1/s", "effective_count": "-"}
+"""Units that no field states: places along a test are in the SI unit of `run_in_axis`, here of a time."""
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
 
@@ -126,16 +156,19 @@ ROWS = (
     *(
         Line(
             f"uncertain_{name}",
+            "" if name == "verdict" else "-",
             meaning=f"`{name}` where every run draws its own bearing; null without uncertain inputs",
         )
         for name in ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
     ),
 )
+ANSWERS = (("path", "where it is"), ("title", "that of its study"), ("complete", "whether it is finished"))
 TRIBOMETER = (
     Line("files", meaning="a row for each log"),
     Line("rows", meaning="rows that were read"),
     Line("described", meaning="what was read, in words"),
     Line("tests", meaning="a row for each test; in `fits` the number of tests"),
+    Line("course", meaning="friction along the test, and what the log has beside it"),
     Line("friction_low", "-", meaning="lower end of the 95 % interval of the friction"),
     Line("friction_high", "-", meaning="upper end of it"),
     Line("fits", meaning="a row for each material in each environment; empty where a test lacks conditions"),
@@ -148,6 +181,45 @@ TRIBOMETER = (
     Line("between_tests", "-", meaning="standard deviation between tests of one sample, as a share"),
     Line("default_scatter", "-", meaning="assumed for an unrepeated test, as a share of the mean"),
     Line("friction_file", meaning="path of the friction file, null if none was written"),
+)
+COMPARISON = (
+    Line("of", meaning="verb of the two answers"),
+    Line("answers", meaning="the two in the order given: `path`, `title`, `seed`, `complete`"),
+    *(Line(name, meaning=f"of an answer: {what}") for name, what in ANSWERS),
+    Line("environment", meaning="the bearing's own, where both agree; else null"),
+    Line("shared_verdicts", meaning="number of verdicts that both have; null where neither has one"),
+    Line("inputs", meaning="inputs that differ, `first` and `second`"),
+    Line("key", meaning="of an input: key of the study, or option"),
+    Line("rows", meaning="results that differ, at most 500; those that a reader decides by come first"),
+    Line("left_out", meaning="number of rows beyond these"),
+    Line("also", meaning="other verbs of both folders"),
+    Line("curves", meaning="points of both stability curves, for the picture; null without"),
+    Line(
+        "margins", meaning="margins of both rankings in their own environment, with their ends; null without"
+    ),
+)
+REPRODUCED = (
+    Line("same", meaning="whether an answer is the same, to rounding; at the top, whether all of them are"),
+    Line("answers", meaning="each answer that was computed again"),
+    Line("result", meaning="how well it agrees"),
+    Line("agreement", meaning="bit for bit, to rounding, or different"),
+    Line("largest_difference", "-", meaning="of two numbers, relative; null if no number differs"),
+    Line("largest_at", meaning="its key"),
+    Line(
+        "differences",
+        meaning="the first keys that differ beyond rounding: `key`, `stored`, `computed`, `relative`",
+    ),
+    Line("count", "-", meaning="number of keys that do"),
+    Line("versions", meaning="versions that differ here: `name`, `stored`, `here`"),
+    Line("stored", meaning="value of the saved answer"),
+    Line("here", meaning="of a version: the one here"),
+)
+REPORTED = (
+    Line("answers", meaning="verbs whose answers the report shows"),
+    Line("summary", meaning="sentences of its first page"),
+    Line("environment", meaning="the bearing's own; null without a ranking"),
+    Line("materials", meaning="of a ranking: name, verdict, rank, margin and P(stable) of each candidate"),
+    Line("files", meaning="paths that were written"),
 )
 TRACTION = (
     Line("area", meaning="fields of the exact contact in free rolling"),
@@ -187,8 +259,10 @@ VERBS = {
             Line("case", meaning="number of the case"),
         ),
     ),
-    "compare": Verb((Comparison,), (Line("of", meaning="verb of the two answers"),)),
-    "tribometer": Verb((RawLog, ColumnRead, TestFriction), TRIBOMETER),
+    "compare": Verb((Row,), COMPARISON),
+    "reproduce": Verb((), REPRODUCED),
+    "report": Verb((), REPORTED),
+    "tribometer": Verb((RawLog, ColumnRead, TestFriction, TestCourse), TRIBOMETER),
 }
 
 
@@ -231,7 +305,7 @@ def json_page() -> str:
         records = records_of(*made_of.records)
         shown |= dict.fromkeys(records)
         links = ", ".join(f"[{one.__name__}](#{_anchor(one)})" for one in records)
-        page += [f"## {verb}\n", f"Records: {links}.\n", *_table(made_of.own)]
+        page += [f"## {verb}\n", *([f"Records: {links}.\n"] if records else []), *_table(made_of.own)]
     page += ["## Records\n"]
     for record in shown:
         text, _, _ = inspect.cleandoc(record.__doc__ or "").partition("\nAttributes\n")
@@ -258,6 +332,43 @@ def _markdown(text: str) -> str:
 
 def _cell(text: str) -> str:
     return _markdown(text).replace("|", "\\|").replace("*", "\\*")
+
+
+def lines_by_name() -> dict[str, list[Line]]:
+    """Return every line of the documents and of the studies under its name."""
+    found: dict[str, list[Line]] = {}
+    for made_of in VERBS.values():
+        for record in records_of(*made_of.records):
+            for line in lines_of(record):
+                found.setdefault(line.name, []).append(line)
+        for line in made_of.own:
+            found.setdefault(line.name, []).append(line)
+    for path in sections():
+        for key in study_keys(path):
+            unit = key.one.unit if key.one.unit in UNITS else "-"
+            found.setdefault(key.name, []).append(Line(key.name, unit, "", key.meaning))
+    return found
+
+
+def quantities_page() -> str:
+    """Return the page of the quantities: symbol, label, name, unit and meaning, by name."""
+    page = [QUANTITIES_HEAD, "| symbol | name | unit | label | meaning |\n|---|---|---|---|---|"]
+    known = lines_by_name()
+    for name in sorted({*QUANTITIES, *PAPER}):
+        one = QUANTITIES.get(name)
+        label, symbol = (one.label, one.symbol) if one else ("", "")
+        meaning = (one.meaning if one else "") or next((x.meaning for x in known[name] if x.meaning), "")
+        meaning = "" if meaning == label else meaning
+        symbols = " or ".join(dict.fromkeys(sign for sign in (PAPER.get(name), symbol) if sign))
+        cells = (_cell(symbols), f"`{name}`", units_of_name(name, known), _cell(label), _cell(meaning))
+        page.append(f"| {' | '.join(cells)} |")
+    return "\n".join([*page, ""])
+
+
+def units_of_name(name: str, known: Mapping[str, list[Line]]) -> str:
+    """Return the SI units that a name has in the records; empty if none states one."""
+    units = dict.fromkeys(line.unit for line in known.get(name, ()) if line.unit)
+    return UNSTATED.get(name) or " or ".join(units)
 
 
 def study_page() -> str:

@@ -120,7 +120,7 @@ def test_round_pockets_kicked_faster_than_the_pocket_speed_are_noted():
 
     assert notes(PocketShape.CYLINDRICAL, 0.2) == notes(PocketShape.SQUARE, 0.21) == []
     (note,) = notes(PocketShape.CYLINDRICAL, 0.05, 0.21)
-    assert "the strongest kick, 0.21 m/s, exceeds 0.201 m/s" in note
+    assert "the strongest disturbance, 0.21 m/s, exceeds 0.201 m/s" in note
 
 
 def test_a_force_beyond_the_races_or_an_offset_beyond_the_land_is_noted():

@@ -7,10 +7,21 @@ import numpy as np
 import pytest
 from commands import document
 from reference_meanings import lines_of
-from reference_tables import VERBS, json_page, names_of, records_of, study_page
+from reference_tables import (
+    PAPER,
+    VERBS,
+    json_page,
+    lines_by_name,
+    names_of,
+    quantities_page,
+    records_of,
+    study_page,
+    units_of_name,
+)
 
 import separatrix
 from separatrix.study.template import sections, study_keys
+from separatrix.verbs.parts.quantities import QUANTITIES
 from separatrix.verdict.ranking_records import Ranked
 
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}
@@ -85,6 +96,15 @@ def test_every_name_of_the_verbs_without_a_study_has_a_line(tmp_path, monkeypatc
     assert missing("tribometer", found) == set()
 
 
+def test_every_name_of_a_comparison_has_a_line():
+    """Two runs of one cage, which differ in inputs and results."""
+    first, second = (separatrix.simulate(SMALL, run=run) for run in (0, 1))
+    found = separatrix.compare(first, second).document()
+    assert found["rows"]
+    assert found["inputs"]
+    assert missing("compare", found) == set()
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_every_name_has_a_meaning(verb):
     """Of its own lines and of its records: words that are not the name again."""
@@ -114,3 +134,14 @@ def test_a_line_states_unit_dimensions_and_meaning():
     assert page.count("(verdict-judgement-judgement)=") == 1
     anchors = re.findall(r"^\((.*)\)=$", page, flags=re.MULTILINE)
     assert len(set(anchors)) == len(anchors)
+
+
+def test_every_quantity_is_a_name_of_a_document_and_has_a_unit():
+    """What stands in the table of quantities is in a record or document; so is each name with a symbol."""
+    known = lines_by_name()
+    told = [*QUANTITIES, *PAPER]
+    assert [name for name in told if name not in known] == []
+    assert [name for name in told if not units_of_name(name, known)] == []
+    page = quantities_page()
+    assert "| eta | `restitution_factor` | - | restitution factor |" in page
+    assert "| N_I or Q_i | `load_inner` | N |" in page

@@ -66,11 +66,11 @@ REFUSED = {  # others: test_study_cage
 SETTINGS = {
     "kick of zero": (
         'kicks = ["0 m/s"]',
-        '> 1e-09 m/s and < 10000 m/s; got "0 m/s". A kick of zero starts no motion',
+        '> 1e-09 m/s and < 10000 m/s; got "0 m/s". A disturbance of zero leaves the cage at rest',
     ),
     "kick lost in rounding": (
         'kicks = ["1e-300 m/s"]',
-        '> 1e-09 m/s and < 10000 m/s; got "1e-300 m/s". A kick',
+        '> 1e-09 m/s and < 10000 m/s; got "1e-300 m/s". A disturbance',
     ),
     "run of a week": ('duration = "168 h"', "duration must be <= 10000 s; got"),
     "run of an hour": ('duration = "1 h"', "for this cage; got 3600 s. Shorten the run"),

@@ -42,9 +42,9 @@ def once(most, other):
     return values
 
 
-ALL_SETTLE = "All of the runs settle from the worst kick, 0.1 m/s"
+ALL_SETTLE = "All of the runs settle from the worst disturbance, 0.1 m/s"
 ALL_WHIRL = "All of the runs from 0.1 m/s whirl, at 1500 Hz"
-TOO_FEW = "Too few runs for a verdict: 3 at each kick; set [stability] runs to 4 or more."
+TOO_FEW = "Too few runs for a verdict: 3 from each disturbance; set [stability] runs to 4 or more."
 OFF = "The motion settles, but the cage centre"
 FED = {"whirl_frequency": 1500.0, "pocket_power": 11.0, "land_power": -3.0}
 RUBS = {"rubbing_force": 4.0, "rubbing_speed": 3.0}
@@ -53,7 +53,7 @@ JUDGED = [
     (CAGE, many(0, 16), FED, "UNSTABLE WHIRLING", f"{ALL_WHIRL}; friction feeds the cage 11 W."),
     (
         *(CAGE, many(0, 16), {"whirl_frequency": 1500.0}, "UNSTABLE WHIRLING"),
-        f"{ALL_WHIRL}; the energy passes 100 times that of kick and frame.",
+        f"{ALL_WHIRL}; the energy passes 100 times that of disturbance and frame.",
     ),
     # 42 of 64 lie above one half beyond their scatter, 38 do not; settling needs nine in ten
     (CAGE, many(22, 42), {}, "UNSTABLE WHIRLING", "66 % of the runs from 0.1 m/s whirl"),
@@ -70,7 +70,8 @@ JUDGED = [
     # rolling in the pockets counts as settling; what most runs do is told with force and power
     (
         *(CAGE, many(4, 0, 0, 0, 12), {"largest_contact_force": 20.0, "pocket_power": 0.7}, "STABLE ROLLING"),
-        "All of the runs settle or roll in their pockets from the worst kick, 0.1 m/s; 75 % roll, with up to "
+        "All of the runs settle or roll in their pockets from the worst disturbance, 0.1 m/s; 75 % roll, "
+        "with up to "
         "20 N in a pocket, fed 700 mW (medians).",
     ),
     (CAGE, many(9, 0, 0, 0, 7), {}, "STABLE CENTRED", "All of the runs settle or roll in their pockets from"),

@@ -96,29 +96,29 @@ class History:
     half_play: Annotated[Array, "m", ("ball",)]  # half the clearance of each pocket along the orbit
     pocket_impacts: Annotated[Array, "-", ("ball",)]
     pocket_rubbing: Annotated[Array, "J", ("ball",)]  # integral of force times sliding speed
-    outcome: RunOutcome
+    outcome: RunOutcome  # SETTLES, ROLLS, WHIRLS, DRIFTS or UNRESOLVED
     cause: Cause  # why the run is unresolved, or that friction on the land keeps it moving
     judged_from: Second  # the last part of the run, by which it was judged
     followed: Second  # its end; the history may go on
     end_energy: Joule
     growth_rate: PerSecond
-    drift_rate: PerSecond
+    drift_rate: PerSecond  # growth rate of the mean offset
     largest_offset: Metre
     mean_offset: Metre
     offset_spread: Metre  # standard deviation of the offset at the end
     orbit_speed: RadianPerSecond  # of the centre about the axis in the fixed frame, at the end
     whirl_frequency: Hertz
-    whirl_direction: int
+    whirl_direction: int  # of the centre's velocity, seen from the balls: 1 forward, -1 backward
     pocket_power: Watt
     land_power: Watt
     rubbing_force: Newton
     rubbing_speed: MetrePerSecond
     largest_contact_force: Newton
     largest_land_force: Newton
-    land_impacts: int
-    left_ball: int
+    land_impacts: int  # impacts of the cage on its land
+    left_ball: int  # first ball, from 1, that reached the edge of its pocket's wall; 0 if none did
     left_time: Second
-    energy_imbalance: Ratio
+    energy_imbalance: Ratio  # unexplained part of the energy balance, over the work done
     largest_tilt: Radian | None  # between the axes of cage and bearing
     cone_speed: RadianPerSecond | None
     axial_low: Metre | None  # extremes of the axial place

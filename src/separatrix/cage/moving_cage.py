@@ -76,12 +76,12 @@ class MovingCage:
     mass: Kilogram = key(_SIZE)  # M
     moment_of_inertia: KilogramMetre2 = key(_SIZE)  # J about the axis; a thin ring has M R^2
     transverse_inertia: KilogramMetre2 | None = key(_SIZE, default=None)  # about a diameter; None: J/2
-    ball_count: int = key(between(1, 1000))
+    ball_count: int = key(between(1, 1000))  # number of balls
     pitch_radius: Metre = key(_SIZE)  # R, where balls and pockets meet
     cage_speed: RadianPerSecond = key(_TURNS)  # Omega of the ball set
-    inner_speed: RadianPerSecond = key(_TURNS)
-    outer_speed: RadianPerSecond = key(_TURNS)
-    motion: MotionModel = key(default=MotionModel.PLANE)
+    inner_speed: RadianPerSecond = key(_TURNS)  # of the inner ring
+    outer_speed: RadianPerSecond = key(_TURNS)  # of the outer ring
+    motion: MotionModel = key(default=MotionModel.PLANE)  # in the plane or in space
     pocket_clearance: Metre = key(not_negative(10.0))  # along the orbit, stop to stop, 2 c_p; 0: gripped
     ball_cage_stiffness: NewtonPerMetre = key(_SIZE)  # k_BC, in series with race_damping
     race_damping: NewtonSecondPerMetre  # C_mu; infinite: a ball gripped by its races
@@ -94,23 +94,23 @@ class MovingCage:
     ball_diameter: Metre = key(_AMOUNT, default=0.0)  # friction acts at half of it; 0: at the centre
     traction: BallTraction | None = None  # of a ball of one state; None: the paper's damper
     free_ball: FreeBall | None = None  # of a ball whose three spins are states too
-    guidance: Guidance = key(default=Guidance.BALL)
+    guidance: Guidance = key(default=Guidance.BALL)  # by the outer land, the inner land, or the balls
     land_clearance: Metre | None = key(positive(1e-9, 10.0), default=None)  # diametral
-    land_friction: Ratio = key(_AMOUNT, default=0.1)
+    land_friction: Ratio = key(_AMOUNT, default=0.1)  # of the cage on its land
     land_stiffness: NewtonPerMetre = key(_SIZE, default=1e7)  # of each land
-    land_restitution: Ratio = _SAME["land_restitution"]()
-    land_count: int = _SAME["land_count"]()
+    land_restitution: Ratio = _SAME["land_restitution"]()  # of an impact on the land
+    land_count: int = _SAME["land_count"]()  # 2 for a land on each side of the balls
     land_spacing: Metre | None = None  # between the middles of two lands
-    land_width: Metre = key(_AMOUNT, default=0.0)
+    land_width: Metre = key(_AMOUNT, default=0.0)  # of each land
     land_radius: Metre | None = key(_RADIUS, default=None)  # of friction; None: the pitch radius
     land_out_of_round: Metre = _SAME["land_out_of_round"]()  # amplitude of its lobes
-    land_lobes: int = _SAME["land_lobes"]()
+    land_lobes: int = _SAME["land_lobes"]()  # lobes of the cage's land
     unbalance: KilogramMetre = key(_AMOUNT, default=0.0)  # mass times eccentricity
     dynamic_unbalance: Radian = key(between(0.0, 0.1), default=0.0)  # to its principal axis
     gravity: MetrePerSecond2 = key(_AMOUNT, default=0.0)  # across the axis, along azimuth 0
-    axial_gravity: MetrePerSecond2 = key(between(-1e6, 1e6), default=0.0)
+    axial_gravity: MetrePerSecond2 = key(between(-1e6, 1e6), default=0.0)  # gravity along the axis
     added_mass: Kilogram = key(_AMOUNT, default=0.0)  # of fluid that moves along, across the axis
-    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)
+    pocket_shape: PocketShape = key(default=PocketShape.SQUARE)  # square, cylindrical or elongated
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
     pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start
     hertz_coefficient: NewtonPerMetre1_5 | None = key(positive(1e-3, 1e18), default=None)  # K of N = K d^1.5
@@ -122,7 +122,7 @@ class MovingCage:
     groove_stiffness: NewtonPerMetre = key(_AMOUNT, default=0.0)
     pivot_speed: MetrePerSecond = key(_AMOUNT, default=0.0)  # below it pivoting lowers friction
     inner_radius: Metre | None = key(_RADIUS, default=None)  # of the walls; None: no edge
-    outer_radius: Metre | None = key(_RADIUS, default=None)
+    outer_radius: Metre | None = key(_RADIUS, default=None)  # of the cage, where the walls of pockets end
     orbital_cosines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(_SPEEDS, default=())
     """A_h: a free ball at azimuth p, fixed in space and 0 along the radial load, is faster than the ball set
     by the sum of A_h cos h p + B_h sin h p over h = 1, 2, ..."""

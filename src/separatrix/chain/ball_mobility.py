@@ -75,7 +75,7 @@ class LinearMobility:
     damping: NewtonSecondPerMetre
     damping_relaxed: NewtonSecondPerMetre  # C_eff, the attitude of the spin axis following too
     damping_locked: NewtonSecondPerMetre  # all spin held
-    effective_mass: Kilogram
+    effective_mass: Kilogram  # of the ball with the spin that follows a push at once
     pocket_friction_effect: Ratio
     groove_damping: NewtonSecondPerMetre
     groove_stiffness: NewtonPerMetre
@@ -98,8 +98,8 @@ class Mobility:
     law_error: Ratio
     asymmetry: Ratio
     speed: Annotated[Array, "m/s", ("push",)]  # of the push, beyond the free orbit
-    force_forward: Annotated[Array, "N", ("push",)]
-    force_backward: Annotated[Array, "N", ("push",)]
+    force_forward: Annotated[Array, "N", ("push",)]  # of the races on a ball faster than its free orbit
+    force_backward: Annotated[Array, "N", ("push",)]  # of the races on a slower ball
     force_law: Annotated[Array, "N", ("push",)]
     notes: tuple[str, ...] = ()  # where the slip fields leave the range of their model, a sentence each
 

@@ -42,7 +42,7 @@ class BallTraction:
         A number is not above zero.
     """
 
-    mass: Kilogram = key(positive(1e-12, 1e3))
+    mass: Kilogram = key(positive(1e-12, 1e3))  # of the ball
     slope: NewtonSecondPerMetre = key(positive(1e-12, 1e12))
     speed: MetrePerSecond
 
@@ -102,11 +102,11 @@ class SlipField:
 class FreeBall:
     """A ball with its mass, both races' slip fields, and the fastest rate of its small motions."""
 
-    mass: Kilogram
-    inertia: KilogramMetre2
-    inner: SlipField
-    outer: SlipField
-    fastest_rate: PerSecond
+    mass: Kilogram  # of the ball
+    inertia: KilogramMetre2  # moment of inertia of the ball
+    inner: SlipField  # slip field of the inner race
+    outer: SlipField  # slip field of the outer race
+    fastest_rate: PerSecond  # of the ball's small motions
 
     @property
     def capacity(self) -> Newton:

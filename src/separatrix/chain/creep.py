@@ -13,8 +13,8 @@ from separatrix.study.study import BallBearing, Race
 class Creep:
     """The part of the creep that the kinematics fix: spin s [1/m] and Heathcote's curvature q [1/m2]."""
 
-    spin: PerMetre
-    curvature: PerMetre2
+    spin: PerMetre  # s, creep that grows with y; Kalker's spin is -s
+    curvature: PerMetre2  # q, creep that grows with the square of y
 
     def ratio(self, across: Array, offset: Ratio = 0.0) -> Array:
         """Creep ratio xi = offset + s y + q y^2 at the places `across` [m] from the centre line [-]."""

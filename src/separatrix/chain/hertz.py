@@ -21,14 +21,14 @@ class ContactEllipse:
     Of `contact_ellipse` on arrays every field is an array of their shape.
     """
 
-    load: Newton
+    load: Newton  # normal to the contact
     semi_major: Metre
     semi_minor: Metre
     max_pressure: Pascal
     approach: Metre
-    curvature_rolling: PerMetre
-    curvature_transverse: PerMetre
-    contact_modulus: Pascal
+    curvature_rolling: PerMetre  # of the gap, along rolling
+    curvature_transverse: PerMetre  # of the gap, across the groove
+    contact_modulus: Pascal  # E*: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2
 
     @property
     def stiffness(self) -> NewtonPerMetre:

@@ -53,12 +53,12 @@ class Restitution:
     """
 
     ball_cage_stiffness: NewtonPerMetre
-    cage_mass: Kilogram
+    cage_mass: Kilogram  # M_C
     inner_damping: NewtonSecondPerMetre
     outer_damping: NewtonSecondPerMetre
-    race_damping: NewtonSecondPerMetre
-    damping_ratio: Ratio
-    restitution_factor: Ratio
+    race_damping: NewtonSecondPerMetre  # C_mu, of both races together, Eq. 18
+    damping_ratio: Ratio  # sqrt(k_BC M_C) over 2 C_mu
+    restitution_factor: Ratio  # eta: speed of the cage after an impact over that before, Eq. 1
     restitution_factor_hertz: Ratio
     race_damping_free_spin: NewtonSecondPerMetre
     damping_ratio_free_spin: Ratio

@@ -28,10 +28,10 @@ class ShearField:
 
     across: Annotated[Array, "m", ("strip",)]  # place of each strip
     along: Annotated[Array, "m", ("strip", "node")]  # place of each element, leading edge first
-    creep_ratio: Annotated[Array, "-", ("strip",)]
+    creep_ratio: Annotated[Array, "-", ("strip",)]  # of ball and race, over the rolling speed
     pressure: Annotated[Array, "Pa", ("strip", "node")]  # by Hertz
     bound: Annotated[Array, "Pa", ("strip", "node")]  # friction times pressure
-    shear: Annotated[Array, "Pa", ("strip", "node")]
+    shear: Annotated[Array, "Pa", ("strip", "node")]  # tangential traction
     shear_without_slip: Annotated[Array, "Pa", ("strip", "node")]  # shear of a contact that sticks throughout
     slip: Annotated[Array, ("strip", "node")]  # 0 in stick, else the sign of the slip
     sweeps: Annotated[Array, ("strip",)]  # solutions until the strip's stick zone settled

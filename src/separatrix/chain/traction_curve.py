@@ -169,13 +169,13 @@ class TractionCurve:
     `nodes` counts the elements of the finest strip.
     """
 
-    creep_increment: Annotated[Array, "-", ("increment",)]
-    traction_coefficient: Annotated[Array, "-", ("increment",)]
+    creep_increment: Annotated[Array, "-", ("increment",)]  # what an impact of the cage adds to the creep
+    traction_coefficient: Annotated[Array, "-", ("increment",)]  # T over N, at each increment
     slope: Ratio
     slope_error: Ratio
     free_rolling_offset: Ratio
     spin_roll_ratio: Ratio
-    nodes: int
+    nodes: int  # elements along the finest strip
     notes: tuple[str, ...] = ()  # where the film leaves the range of its model, a sentence each
 
 

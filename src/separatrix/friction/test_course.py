@@ -32,8 +32,8 @@ class TestCourse:
     mean: Shares  # their mean
     high: Shares  # largest friction of these rows
     normal_force: Annotated[list[float | None] | None, "N"]  # null where the log has none, as below
-    temperature: Annotated[list[float | None] | None, "K"]
-    wear_depth: Annotated[list[float | None] | None, "m"]
+    temperature: Annotated[list[float | None] | None, "K"]  # mean of a column
+    wear_depth: Annotated[list[float | None] | None, "m"]  # mean of a column
     slip_speed: Annotated[list[float | None] | None, "m/s"]
     span_along: Array  # centres of the spans of the steady part from whose means its error comes
     span_mean: Shares  # those means

@@ -346,7 +346,8 @@ def _labels(axes: Axes, panel: Panel) -> None:
     wanted = [float(share.transform((right, one.y / panel.y.size))[1]) for one in panel.labels]
     places = apart(wanted)
     moved = any(abs(a - b) > 0.0125 for a, b in zip(places, wanted, strict=True))
-    aside = offset_copy(axes.transAxes, axes.get_figure(root=True), x=14 if moved else 5, units="points")
+    gap = 14 if moved or any(one.marker for one in panel.labels) else 5
+    aside = offset_copy(axes.transAxes, axes.get_figure(root=True), x=gap, units="points")
     for one, at, place in zip(panel.labels, wanted, places, strict=True):
         if one.marker:
             axes.plot(1.02, at, one.marker, color=one.colour, ms=5, transform=axes.transAxes, clip_on=False)

@@ -71,7 +71,7 @@ LEAST_KICK: MetrePerSecond = 1e-9
 """Kicks are larger: the energy of a weaker one is lost in rounding."""
 
 MOST_KICK: MetrePerSecond = 1e4
-NO_KICK = "A kick of zero starts no motion."
+NO_KICK = "A disturbance of zero leaves the cage at rest."
 _LIFTS = "A load the other way lifts the inner ring off its balls; turn the bearing round."
 _START = "It is the share of the speed at which the ramp begins; at rest the balls would not roll."
 
@@ -181,7 +181,7 @@ class StabilitySettings:
     reference_kick: MetrePerSecond | None = key(
         positive(1e-6, 1e3), default=None, certain=True, hint=NO_KICK, without=SCALED
     )
-    """The kick of critical friction and threshold, and what default kicks scale with."""
+    """The initial disturbance of critical friction and threshold, with which default `kicks` scale."""
 
     kicks: tuple[MetrePerSecond, ...] = key(
         between(LEAST_KICK, MOST_KICK, open_low=True, open_high=True),
@@ -191,7 +191,7 @@ class StabilitySettings:
         length=(0, 20),
         rising=True,
         ordered=True,
-        without="0.2, 1 and 4 times the reference kick",
+        without="0.2, 1 and 4 times the reference disturbance",
     )
     """Speeds of the cage's centre at the start."""
 
@@ -202,10 +202,10 @@ class StabilitySettings:
         positive(1e-9, 1e4), default=0.3, hint="Some tenths of a second show the motion.", example='"0.3 s"'
     )
     axial_kick: Ratio = key(between(0.0, 10.0), default=0.0)
-    """Only in space: speed along the axis at the start, over the kick."""
+    """Only in space: speed along the axis at the start, over the disturbance."""
 
     tilt_kick: Ratio = key(between(0.0, 10.0), default=0.0)
-    """Only in space: speed of the rim by tilting at the start, over the kick."""
+    """Only in space: speed of the rim by tilting at the start, over the disturbance."""
 
     ball_scatter: Ratio = key(between(0.0, 1.0), default=0.3)
     """Lead or lag of each ball at the start, over half the pocket clearance."""

@@ -37,8 +37,8 @@ from separatrix.verdict.uncertain_records import UncertainStudy
 class Refusal:
     """What a verb would refuse of a study, or take long for."""
 
-    verb: str
-    sentence: str
+    verb: str  # that refuses the study, or takes long
+    sentence: str  # why, and what to do
 
 
 class FirstReached(Enum):
@@ -81,7 +81,7 @@ class CheckAnswer:
 class TractionAnswer:
     """Traction curves by the study's model, by strips at other pivoting-to-rolling ratios, and the shear."""
 
-    race_friction: Ratio
+    race_friction: Ratio  # f_BT, of ball on race
     bearing: BearingState  # equilibrium and contacts
     inner: TractionCurve  # curve of the inner race by the study's model
     outer: TractionCurve  # curve of the outer race by the study's model

@@ -134,7 +134,8 @@ def push_figure(answer: Part) -> Figure:
         force = [0.0, *getattr(answer, f"force_{way}")]
         marks.append(Trace(x=u, y=force, name=name, colour=colour, line=line))
     x = axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1])
-    y = axis("force", answer.unit("capacity"), [capacity], low=0.0, high=1.25 * capacity)
+    label, most = "force of the races $F$", 1.25 * capacity
+    y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
     return Figure(
         rows=((Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks)),),),
         heading=figure_heading(answer),

@@ -505,7 +505,7 @@ def overview(answer: Part) -> Figure:
     ticks = tuple(f"{name}  {ranks[name]}" for name in names)
     x = axis("restitution_threshold", "-", [], low=-0.012, high=1.0)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=ticks)
-    title = f"Restitution thresholds, larger is better; after each name its rank in {own.name}"
+    title = f"Restitution thresholds, larger is better; ranks in {own.name}"
     return Figure(
         rows=((Panel(title=title, x=x, y=y, marks=tuple(found), labels=verdicts_here, head="verdict"),),),
         heading=figure_heading(answer, f"seed {answer.seed}"),

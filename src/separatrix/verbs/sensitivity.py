@@ -257,7 +257,7 @@ def next_tests(answer: Part) -> Iterator[Block]:
 
     def chances(test: Part) -> str:
         pairs = zip(test.cases, test.chances, strict=True)
-        return "; ".join(f"{case} {number_of(test, 'chance', chance)}" for case, chance in pairs)
+        return "; ".join(f"{case} {number_of(test, 'chances', chance)}" for case, chance in pairs)
 
     heads = "input to measure", "chance of a verdict"
     columns = text_column(heads[0], lambda test: test.name), column("settled"), text_column(heads[1], chances)

@@ -54,7 +54,7 @@ class Options:
 
     kick: Annotated[
         str | float | None,
-        Option('For instance "0.5 m/s" [default: the reference kick of the study].', "SPEED"),
+        Option('For instance "0.5 m/s" [default: the reference disturbance of the study].', "SPEED"),
     ] = None
     run: Annotated[int, Option("Which run of the ensemble.", "N")] = 0
     restitution_factor: Annotated[
@@ -67,7 +67,7 @@ class Options:
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
-    """Follow one run of the ensemble, by default the first from the reference kick."""
+    """Follow one run of the ensemble, by default the first from the reference disturbance."""
     from separatrix.cage import analyse, settings_for
     from separatrix.cage import simulate as follow
     from separatrix.chain.solution import solve

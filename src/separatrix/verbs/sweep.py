@@ -310,7 +310,11 @@ def _panels(answer: Part, way: Way) -> Iterator[Panel]:
         x, speed = [one.get(way.name) for one in whirling], [abs(one.orbit_frequency) for one in whirling]
         more: dict[str, Any] = {"line": "", "marker": "^", "size": 5.0, "colour": VERMILION}
         frequencies.append(Trace(x=x, y=speed, name=quantity("orbit_frequency").label, **more))
-    yield panel("Frequencies on the housing", axis("frequency", "Hz", [], is_log=True), frequencies)
+    yield panel(
+        "Frequencies on the housing",
+        axis("shaft_frequency", "Hz", [], label="frequency", is_log=True),
+        frequencies,
+    )
 
 
 def _over(answer: Part, cases: Sequence[Part], way: Way, what: str, **look: Any) -> Trace:

@@ -7,6 +7,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
+from separatrix.ground.quantity import Quantity
 from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
@@ -17,7 +18,6 @@ from separatrix.verbs.parts.telling import (
     column,
     number_of,
     place_column,
-    quantity,
     said,
     told,
 )
@@ -38,6 +38,8 @@ CONTACT = (
     "slope_error",
     "free_rolling_offset",
 )
+
+RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 
 
 def compute(study: Study, _options: NoOptions) -> TractionAnswer:
@@ -111,7 +113,7 @@ def by_ratio(answer: Part) -> Table:
     inner, outer = answer.inner.by_spin_roll_ratio, answer.outer.by_spin_roll_ratio
 
     def size(pair: tuple[Part, Part]) -> Cell:
-        return Cell(abs(pair[0].spin_roll_ratio), quantity("ratio"), pair[0].unit("spin_roll_ratio"))
+        return Cell(abs(pair[0].spin_roll_ratio), RATIO, pair[0].unit("spin_roll_ratio"))
 
     columns = (
         Column("ratio", size),

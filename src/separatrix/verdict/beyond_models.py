@@ -80,7 +80,8 @@ def _tilts(solution: Solution) -> Iterator[str]:
     kick = max(with_kicks(solution.study.stability, at).kicks)
     if kick > STRONG * speed:
         yield (
-            f"The pockets are round, and the strongest kick, {kick:.3g} m/s, exceeds {speed:.3g} m/s, the "
+            f"The pockets are round, and the strongest disturbance, {kick:.3g} m/s, exceeds {speed:.3g} "
+            "m/s, the "
             "speed of a cage half a pocket clearance off the axis. So disturbed a cage tilts, and may "
             "whirl in space at up to half less friction: `--motion space`."
         )

@@ -60,9 +60,9 @@ class CriticalFriction:
     """
 
     restitution_factor: Ratio  # nominal, of the whole cage mass
-    critical_friction: Ratio | None = None  # at which half the runs whirl from the reference kick
-    critical_friction_low: Ratio | None = None  # below it nine in ten runs settle from every kick
-    critical_friction_high: Ratio | None = None  # above it nine in ten runs whirl from every kick
+    critical_friction: Ratio | None = None  # at which half the runs whirl from the reference disturbance
+    critical_friction_low: Ratio | None = None  # below it nine in ten runs settle from every disturbance
+    critical_friction_high: Ratio | None = None  # above it nine in ten runs whirl from every disturbance
     scatter_low: Ratio | None = None  # lower end of the 95 % interval of `critical_friction`
     scatter_high: Ratio | None = None  # upper end of the 95 % interval of `critical_friction`
     low_scatter_low: Ratio | None = None  # lower end of the interval of `critical_friction_low`

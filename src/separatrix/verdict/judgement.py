@@ -54,7 +54,7 @@ NORMAL_95 = 1.959963984540054
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KickCount:
-    """Where the runs from one kick end."""
+    """Where the runs from one initial disturbance end."""
 
     kick: MetrePerSecond
     settles: int  # runs of this outcome, as those that follow
@@ -66,7 +66,7 @@ class KickCount:
     """Of those that settle: friction on the land keeps up more motion than frame and loads can give."""
     probability_stable: Ratio  # share of the runs that settle or roll
     probability_low: Ratio  # of its 95 % Wilson interval
-    probability_high: Ratio
+    probability_high: Ratio  # upper end of it
 
     @property
     def runs(self) -> int:
@@ -81,22 +81,22 @@ class KickCount:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judgement:
-    """Verdict on a cage with its evidence: that of the worst kick, but for what says "any run".
+    """Verdict on a cage with its evidence: that of the worst disturbance, but for what says "any run".
 
     Medians are over the last part of the runs that end in `cage_motion`, or of all if that is None.
     """
 
-    verdict: Verdict
+    verdict: Verdict  # STABLE, UNSTABLE or UNDECIDED
     probability_stable: Ratio  # share of the runs that settle or roll
     probability_low: Ratio  # of its 95 % Wilson interval
-    probability_high: Ratio
+    probability_high: Ratio  # upper end of it
     worst_kick: MetrePerSecond
-    """Of the kicks from which most runs whirl, if any, the one from which fewest settle or roll."""
+    """Of the disturbances from which most runs whirl, if any, the one from which fewest settle or roll."""
     by_kick: Annotated[tuple[KickCount, ...], Rows("kick", "by_kick_", label="kick")]  # where all runs end
     reason: str  # one sentence
     ball: str  # that decided: "damper", "one state" or "free"
     ball_reason: str | None = None  # why that ball decided; null where the study forces it
-    cage_motion: CageMotion | None  # what most runs from the worst kick end in; null if most are unresolved
+    cage_motion: CageMotion | None  # what most runs from the worst disturbance end in; or null
     growth_rate: PerSecond
     """Mean over all runs of half the logarithmic rate of the kinetic energy in their second half."""
     growth_rate_low: PerSecond | None  # of Student's 95 % interval; null with fewer than two runs
@@ -132,7 +132,7 @@ class Judgement:
     energy_imbalance: Ratio  # the worst of all runs
     duration: Second  # asked for
     longest_run: Second  # of all
-    runs: int  # at each kick
+    runs: int  # from each initial disturbance
     impact_rate: PerSecond  # of all pockets, median
     largest_tilt: Radian | None = None  # any run; null in the plane, as what follows
     axial_travel: Metre | None = None  # between the ends of the axial motion, any run

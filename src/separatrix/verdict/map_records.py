@@ -121,7 +121,7 @@ class MapPoint:
 
     x: float  # value of the parameter x, SI
     y: float  # value of the parameter y, SI
-    state: State = State.NOT_RUN
+    state: State = State.NOT_RUN  # whether it was run, refused, inferred or left out
     decision: Verdict | None = None  # by the rule of `cage.judge`, from the runs that were made
     probability_whirl: Ratio | None = None  # share of the runs that whirl
     probability_low: Ratio | None = None  # lower end of its 95 % Wilson interval
@@ -188,7 +188,7 @@ class MapQuestion:
     study: Study  # with a [cage]
     x: MapAxis  # another parameter than y
     y: MapAxis
-    kick: MetrePerSecond  # of every point, unless an axis is the kick
+    kick: MetrePerSecond  # initial disturbance of every point, unless an axis has it
     runs: int = 16  # most runs of a point
     adaptive: bool = False  # only points near a change of the answer are run, and a sample of the others
 
@@ -204,10 +204,10 @@ class StabilityMap:
     """Bands between motion that settles and a whirl."""
     counts: Annotated[Mapping[str, int], Rows(prefix="points_")]
     """Points of each decision, refused, inferred, not run."""
-    kick: MetrePerSecond  # of every point, unless an axis is the kick
+    kick: MetrePerSecond  # initial disturbance of every point, unless an axis has it
     stopping: Stopping  # when a point is ended early
     inference: Inference | None  # errors of the points that were not run; null if all were
     duration: Second  # of a run
-    ball_scatter: Ratio
+    ball_scatter: Ratio  # initial lead or lag of the balls, over half the pocket clearance
     adaptive: bool  # whether only points near a change were run
     complete: bool  # false if an interrupt left points out

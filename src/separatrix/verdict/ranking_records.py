@@ -111,7 +111,7 @@ class Ranking:
 
     environment: str  # the bearing's own, of the headline
     candidate: str  # whose pocket the chain and the curve are for
-    restitution_factor: Ratio
+    restitution_factor: Ratio  # eta of the chain, for the bearing's own candidate
     restitution_factor_free_spin: Ratio  # of the chain, the ball free to spin in the impact
     ball_cage_stiffness: NewtonPerMetre  # of the pocket of `candidate`
     pocket: PocketConditions  # sliding speed and pressure at which friction is taken
@@ -128,7 +128,7 @@ class Ranking:
     own_curves: Annotated[tuple[OwnCurve, ...] | None, Rows("material", label="name")]
     """A curve for each candidate; null where all have one stiffness."""
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    runs: int  # from each kick
+    runs: int  # from each disturbance
     duration: Second  # of a run
     ball_model: BallModel  # that the study asks for; a verdict states the one that decided
     motion_model: MotionModel  # plane or space

@@ -146,7 +146,7 @@ def largest_room(cage: MovingCage) -> Metre:
 
 def too_few(runs: int) -> str:
     """Return that no count of so few runs would decide."""
-    return f"Too few runs for a verdict: {runs} at each kick; set [stability] runs to 4 or more."
+    return f"Too few runs for a verdict: {runs} from each disturbance; set [stability] runs to 4 or more."
 
 
 def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
@@ -154,7 +154,8 @@ def settles(cage: MovingCage, ensemble: Ensemble, kick: int) -> str:
     outcome = ensemble.outcome[kick]
     settled, rolling = outcome == RunOutcome.SETTLES, outcome == RunOutcome.ROLLS
     ends = "settle or roll in their pockets" if rolling.any() else "settle"
-    said = f"{_share(settled | rolling)} of the runs {ends} from the worst kick, {ensemble.kicks[kick]:g} m/s"
+    share, speed = _share(settled | rolling), ensemble.kicks[kick]
+    said = f"{share} of the runs {ends} from the worst disturbance, {speed:g} m/s"
     if np.count_nonzero(rolling) > np.count_nonzero(settled):
         force = _median(ensemble.largest_contact_force[kick][rolling])
         power = _median(ensemble.pocket_power[kick][rolling])
@@ -176,7 +177,7 @@ def whirls(ensemble: Ensemble, kick: int) -> str:
     fed = np.maximum(ensemble.pocket_power[kick], 0.0) + np.maximum(ensemble.land_power[kick], 0.0)
     power = fed[whirling & (fed > 0.0)]
     if not power.size:
-        return f"{first}; the energy passes {GROWN:g} times that of kick and frame."
+        return f"{first}; the energy passes {GROWN:g} times that of disturbance and frame."
     by_land = np.mean(ensemble.cause[kick][whirling] == Cause.LAND_FRICTION) > 0.5
     what = "friction on the land, more than that in the pockets," if by_land else "friction"
     return f"{first}; {what} feeds the cage {_watt(float(np.median(power)))}."

@@ -80,11 +80,11 @@ class StabilityCurve:
     band: bool  # whether the points of `curve` have their band; `here` always has
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]  # disturbances of the runs
     middle_kick: MetrePerSecond  # of the critical friction
-    runs: int  # from each kick
+    runs: int  # from each disturbance
     duration: Second  # of a run
-    ball_scatter: Ratio
+    ball_scatter: Ratio  # initial lead or lag of the balls, over half the pocket clearance
     searched_friction: Ratio  # highest friction that was searched
-    drifts: bool  # whether nothing returns the cage centre: a kick may settle, but no verdict is STABLE
+    drifts: bool  # whether nothing returns the cage centre: a run may settle, but no verdict is STABLE
     drift_rate_law: PerSecond  # growth of the offset by the linear law; 0 with a land or a ball set at rest
     adaptive: bool  # whether the restitution factors were chosen here
     complete: bool  # false if an interrupt left points out

@@ -8,6 +8,8 @@ from typing import Annotated
 from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
 from separatrix.verdict.judgement import Judgement
 
+Shares = Annotated[Array, "-"]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputRow:
@@ -60,7 +62,7 @@ class UncertainEnvironment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvergenceRow:
-    """P(stable) of one case against the number of bearings, from its worst kick; shape (size,)."""
+    """P(stable) of one case against the number of bearings, from its worst disturbance; shape (size,)."""
 
     name: str  # of the candidate
     environment: str  # empty: overall
@@ -101,8 +103,8 @@ class Drivers:
     """Of the variance of the logit of P(settles), largest first, chance last; empty where `reason` states
     why."""
     reason: str  # why there are no shares; empty otherwise
-    predicted: Array  # mean prediction in each bin of bearings left out of the fit, shape (bin,)
-    counted: Array  # share that settles, in the same bins, shape (bin,)
+    predicted: Shares  # mean prediction in each bin of bearings left out of the fit, shape (bin,)
+    counted: Shares  # share that settles, in the same bins, shape (bin,)
     bearings: Array  # number in each bin, shape (bin,)
     skill: Ratio | None  # part of the deviance that the fit removes, on bearings left out
 
@@ -122,7 +124,7 @@ class TestGain:
     """How many undecided cases measuring one input settles on average, and which with what probability."""
 
     name: str  # the input to measure
-    settled: float  # mean number of cases that get a verdict
+    settled: Ratio  # mean number of cases that get a verdict
     cases: tuple[str, ...]  # that may get one
     chances: tuple[Ratio, ...]  # probability that it does, for each case
 
@@ -181,6 +183,6 @@ class UncertainStudy:
     allowed_friction: tuple[AllowedFriction, ...]  # of a new material
     allowed_films: tuple[AllowedFilm, ...]  # that keep each case stable
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
-    runs: int  # of each bearing, from each kick
+    runs: int  # of each bearing, from each disturbance
     notes: tuple[str, ...]  # what was left out and why, a sentence each
     complete: bool  # false if an interrupt left something out

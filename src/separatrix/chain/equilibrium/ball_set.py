@@ -44,22 +44,22 @@ class Equilibrium:
     outer_contact: Annotated[NDArray[np.bool_], ("ball",)]  # whether it touches the outer race
     orbital_speed: Annotated[Array, "rad/s", ("ball",)]
     pitch_angle: Annotated[Array, "rad", ("ball",)]
-    yaw_angle: Annotated[Array, "rad", ("ball",)]
-    ball_spin: Annotated[Array, "rad/s", ("ball", "axis")]
+    yaw_angle: Annotated[Array, "rad", ("ball",)]  # of the spin axis out of the plane of ball and axis
+    ball_spin: Annotated[Array, "rad/s", ("ball", "axis")]  # own rotation: axial, outward, along the orbit
     spin_roll_ratio_inner: Annotated[Array, "-", ("ball",)]
     spin_roll_ratio_outer: Annotated[Array, "-", ("ball",)]
-    rolling_speed_inner: Annotated[Array, "m/s", ("ball",)]
-    rolling_speed_outer: Annotated[Array, "m/s", ("ball",)]
-    centrifugal_force: Annotated[Array, "N", ("ball",)]
-    gyroscopic_moment: Annotated[Array, "N m", ("ball",)]
+    rolling_speed_inner: Annotated[Array, "m/s", ("ball",)]  # mean speed of both surfaces through the contact
+    rolling_speed_outer: Annotated[Array, "m/s", ("ball",)]  # the same at the outer race
+    centrifugal_force: Annotated[Array, "N", ("ball",)]  # of a ball
+    gyroscopic_moment: Annotated[Array, "N m", ("ball",)]  # of a ball
     race_control: Annotated[tuple[Race, ...], ("ball",)]
     """Race that controls the ball's spin by Jones's criterion."""
     axial_displacement: Metre
     radial_displacement: Metre
-    transverse_displacement: Metre
+    transverse_displacement: Metre  # of the inner ring across axis and radial load
     tilt: Radian
     is_tilt_held: bool  # whether the rings are held, parallel or at a given tilt
-    cross_tilt: Radian
+    cross_tilt: Radian  # of the inner ring about the radial load
     moment: NewtonMetre
     iterations: int  # steps of the solver
     residual: Newton  # unbalanced force on the inner ring

@@ -58,7 +58,7 @@ def contacts_figure(answer: Part, at: Part) -> Figure:
     pressure: list[Mark] = []
     creep: list[Mark] = []
     wide = 1.12 * max(at.inner.semi_major, at.outer.semi_major)
-    across = axis("groove_place", "m", [wide], low=-wide, high=wide)
+    across = axis("across", "m", [wide], low=-wide, high=wide)
     for (race, colour, _, line), side in zip(RACES, (1, -1), strict=True):
         found = getattr(at, race)
         look: dict[str, Any] = {"colour": colour, "line": line}

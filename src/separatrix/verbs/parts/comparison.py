@@ -42,8 +42,8 @@ class Value:
     """A result in one answer, with its 95 % interval if it has one."""
 
     value: Plain  # null where this answer lacks it
-    low: float | None = None
-    high: float | None = None
+    low: float | None = None  # lower end of its 95 % interval
+    high: float | None = None  # upper end
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,14 +52,14 @@ class Row:
 
     place: str  # for instance "liquid nitrogen, 440C / Armalon"
     name: str  # empty where only one answer has the place
-    unit: str
-    first: Value
-    second: Value
+    unit: str  # SI unit of the numbers
+    first: Value  # value of the first answer
+    second: Value  # value of the second one
     change: float | None = None  # second less first
     change_low: float | None = None  # ends of its 95 % interval
-    change_high: float | None = None
+    change_high: float | None = None  # upper end
     relative: float | None = None  # over the first
-    noise: Noise
+    noise: Noise  # BEYOND, WITHIN, EXACT, UNJUDGED or CHANGED
 
 
 NOT_RESULTS = (

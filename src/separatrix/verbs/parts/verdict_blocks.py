@@ -151,7 +151,7 @@ def _impacts(row: Part) -> str:
     if not any(shares):
         return f"none at a pocket, {'all' if row.land_impact_share else 'none'} at the land"
     most = max(range(len(shares)), key=shares.__getitem__)
-    share = told(Part({"pocket_impact_share": shares[most]}, {}), "pocket_impact_share")
+    share = told(Part({"pocket_impact_shares": shares[most]}, {}), "pocket_impact_shares")
     land = said(row, "; {land_impact_share} of all impacts are at the land")
     return f"pocket {most + 1} takes {share} of the impacts at {len(shares)} pockets{land}"
 
