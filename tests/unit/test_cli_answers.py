@@ -259,7 +259,7 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     assert main(["check", "cold.toml", "--full"]) == 0
     whole = capsys.readouterr().out
     assert "cold.toml, line" in whole
-    assert "Sources of the materials" in whole
+    assert "Materials, at the temperature of the study." in whole
 
 
 def test_a_cage_without_a_land_has_no_assumed_land(capsys):

@@ -219,8 +219,8 @@ def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
     """`--ball` forces one; auto is one state."""
     assert main(["simulate", str(folder / "small.toml"), "--ball", ball, "--out", "one", "--quiet"]) == 0
     cage = json.loads(Path("one/simulate.json").read_text())["cage"]
-    has = {"free": "free_ball", "one state": "traction"}.get(said)
-    assert [name for name in ("free_ball", "traction") if cage[name]] == ([has] if has else [])
+    has = {"free": ["free_ball", "traction"], "one state": ["traction"]}.get(said, [])
+    assert [name for name in ("free_ball", "traction") if cage[name]] == has
 
 
 @pytest.mark.parametrize(

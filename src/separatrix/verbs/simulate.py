@@ -176,7 +176,7 @@ def motion_facts(answer: Part) -> Facts:
         sense = DIRECTIONS[answer.whirl_direction] or "without direction"
         whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
     if "cage_slip" in answer:
-        slip = "{cage_slip} behind the ball set" + (", so ahead of it" if answer.cage_slip < 0.0 else "")
+        slip = "{cage_slip} of the ball set's speed (positive: the cage lags)"
     offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
     orbit = "centre {orbit_speed}" + (", tilt {cone_speed}" if "cone_speed" in answer else "")
     balls = number_of(answer, "orbit_speed", answer.cage.cage_speed)
