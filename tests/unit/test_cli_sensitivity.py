@@ -156,7 +156,7 @@ def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):
     assert found["complete"] is False
     assert row(found, "air", "A")["probability_stable"] is not None
     assert main(["sensitivity", "small.toml", "--samples", "64", "--jobs", "1", "--quiet"]) == 130
-    assert "\n\nINCOMPLETE: interrupted." in capsys.readouterr().out
+    assert "Interrupted: only what was finished is here." in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("samples", ["0", "63", "100"])

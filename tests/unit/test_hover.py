@@ -21,7 +21,7 @@ MARKS = (
 PANEL = Panel(
     title="a  Panel",
     x=Axis(label="thickness $h$ [um]", size=MICRO, is_log=True),
-    y=Axis(label="factor [-]"),
+    y=Axis(label="factor [-]", low=0.0, high=0.5),
     marks=MARKS,
     labels=(Label(y=0.3, text="last"), Label(y=0.3, text="too")),
 )

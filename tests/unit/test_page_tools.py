@@ -8,7 +8,7 @@ import pytest
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Level, Picture
-from separatrix.present.figure import Band, Trace
+from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, materials, reproduce, tribometer
@@ -203,14 +203,16 @@ def tests_of_logs(tmp_path_factory):
 
 
 def test_each_test_is_drawn_with_its_cut_and_its_steady_part(tests_of_logs):
-    """Grey before the end of running-in; the mean over the steady part."""
+    """The ends of its steady part, and the mean over it."""
     page = tribometer.page(part_of(tests_of_logs))
     pictures = [one for one in page.blocks if isinstance(one, Picture)]
     assert [one.name for one in pictures] == ["a.csv", "b.csv"]
     test = tests_of_logs["tests"][0]
     course, *_ = pictures[0].figure().panels
-    (cut,) = [one for one in course.marks if isinstance(one, Band) and one.name == "left out"]
-    assert tuple(cut.x) == (0.0, test["run_in_end"])
+    assert [one.at for one in course.marks if isinstance(one, Across)] == [
+        test["run_in_end"],
+        test["steady_end"],
+    ]
     (mean,) = [one for one in course.marks if getattr(one, "name", "").startswith("steady mean")]
     assert tuple(mean.x) == (test["run_in_end"], test["steady_end"])
     assert len(test["course"]["along"]) == 600

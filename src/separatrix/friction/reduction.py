@@ -247,8 +247,6 @@ class Reduction:
     """Means of the steady part from which its error comes; in cycles where those are known."""
     mean: steady.SteadyMean
     steady_friction: Array  # friction of the rows of the steady part, shape (row,)
-    cycle_means: Array
-    """Means of whole cycles of the steady part, shape (cycle,); empty where no cycle is known."""
     oscillation: cycles.Oscillation
     events: tuple[Event, ...] = ()
 
@@ -301,7 +299,6 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
         spans=spans,
         mean=mean,
         steady_friction=friction,
-        cycle_means=stretch.cycle_means(spans),
         oscillation=strongest,
         events=events,
     )

@@ -37,7 +37,6 @@ class TestCourse:
     slip_speed: Annotated[list[float | None] | None, "m/s"]
     span_along: Array  # centres of the spans of the steady part from whose means its error comes
     span_mean: Shares  # those means
-    span_cycles: float  # whole cycles of a span; 0 where none are known
 
 
 def course(one: Reduction) -> TestCourse:
@@ -61,7 +60,6 @@ def course(one: Reduction) -> TestCourse:
         slip_speed=beside("slip_speed"),
         span_along=np.array([one.stretch.place(float(centre)) for centre in spans.centres]),
         span_mean=spans.means,
-        span_cycles=float(spans.width) if one.cycle_means.size else 0.0,
     )
 
 

@@ -17,7 +17,18 @@ from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.shear import ShearField
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import TractionCurve
-from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, node_of, plain, units_of
+from separatrix.ground.plain_data import (
+    Group,
+    Item,
+    Leaf,
+    Node,
+    Table,
+    absent,
+    fields_of,
+    node_of,
+    plain,
+    units_of,
+)
 from separatrix.ground.plain_data import shape as shape
 from separatrix.ground.units import Rows
 from separatrix.verbs.answer_records import (
@@ -33,7 +44,7 @@ from separatrix.verbs.answer_records import (
     TractionAnswer,
 )
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.map_records import MapAxis
+from separatrix.verdict.map_records import MapAxis, StabilityMap
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
 from separatrix.verdict.swept_cases import Sweep
 from separatrix.verdict.uncertain_records import NotDrawn, UncertainMaterial
@@ -177,9 +188,23 @@ def _(found: StabilityAnswer) -> Node:
 
 
 @shape.register
+def _(found: StabilityMap) -> Node:
+    """Places of points have the units of their axes."""
+    node = fields_of(found)
+    points = node["points"]
+    for row in (points.records or []) if isinstance(points, Table) else []:
+        row |= {"x": _in_unit(row["x"], found.x.unit), "y": _in_unit(row["y"], found.y.unit)}
+    return node
+
+
+def _in_unit(item: Item, unit: str | None) -> Item:
+    return item._replace(unit=unit) if isinstance(item, Leaf) else item
+
+
+@shape.register
 def _(axis: MapAxis) -> Node:
-    """The values have the unit that the axis states."""
-    return fields_of(axis) | {"values": Leaf(axis.values, axis.unit)}
+    """The values, and that of the study, have the unit that the axis states."""
+    return fields_of(axis) | {"values": Leaf(axis.values, axis.unit), "here": Leaf(axis.here, axis.unit)}
 
 
 @shape.register

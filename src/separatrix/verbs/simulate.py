@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
+from separatrix.ground.quantity import alone
 from separatrix.ground.units import NUMBER, printable
 from separatrix.present.blocks import (
     Facts,
@@ -27,7 +28,7 @@ from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.refused import refused
-from separatrix.verbs.parts.telling import number_of, place_column, said, told
+from separatrix.verbs.parts.telling import number_of, place_column, quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
@@ -175,8 +176,7 @@ def motion_facts(answer: Part) -> Facts:
         sense = DIRECTIONS[answer.whirl_direction] or "without direction"
         whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
     if "cage_slip" in answer:
-        size = number_of(answer, "cage_slip", abs(answer.cage_slip))
-        slip = f"{size} {'ahead of' if answer.cage_slip < 0.0 else 'behind'} the ball set"
+        slip = "{cage_slip} of the ball set's speed (positive: the cage lags)"
     offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
     orbit = "centre {orbit_speed}" + (", tilt {cone_speed}" if "cone_speed" in answer else "")
     balls = number_of(answer, "orbit_speed", answer.cage.cage_speed)
@@ -186,7 +186,7 @@ def motion_facts(answer: Part) -> Facts:
         ("Axial place", said(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
         ("Whirl", said(answer, whirl)),
         ("Orbit", f"{said(answer, orbit)}; the ball set turns at {balls}"),
-        ("Cage slip", slip),
+        ("Cage slip", said(answer, slip)),
         ("Clearance", _clearance(answer)),
     )
 
@@ -223,7 +223,8 @@ def force_facts(answer: Part) -> Facts:
         pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
         pocket += "(`--ball free` has)"
     shares = [f"{told(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
-    heat = number_of(answer, "pocket_rubbing_power", sum(answer.pocket_rubbing_power))
+    power = "pocket_rubbing_power"
+    heat = alone(sum(answer.get(power)), quantity(power), answer.unit(power))
     return facts(
         ("Pocket, largest", said(answer, pocket)),
         ("Land, largest", told(answer, "largest_land_force") if has_land(answer.cage) else "no land"),

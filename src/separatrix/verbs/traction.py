@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import cycle
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -178,8 +177,7 @@ def shear_figure(answer: Part) -> Figure:
         high = 1.6 * max(one for strip in strips for one in field.bound[strip])
         label = f"{race} race: shear"
         y = axis("shear", field.unit("shear"), [high], low=-high, high=high, label=label)
-        axes = y, replace(y, label=""), replace(y, label="")
-        rows.append(tuple(map(strip_panel, [field] * 3, strips, letters, axes)))
+        rows.append(tuple(strip_panel(field, *each, y) for each in zip(strips, letters, strict=True)))
     alt = "Six panels: shear along rolling in three strips of each contact, within what friction bears."
     return Figure(rows=tuple(rows), heading=figure_heading(answer), height=2.1, alt=alt)
 
@@ -194,7 +192,7 @@ def strip_panel(field: Part, strip: int, letter: str, y: Axis) -> Panel:
         Trace(x=x, y=field.shear[strip], colour=BLUE, name="with slip"),
     )
     along = axis("along", field.unit("along"), x)
-    return Panel(title=f"{letter}  y = {place}, creep {creep}", x=along, y=y, marks=marks)
+    return Panel(title=f"{letter}  y = {place}, $xi$ = {creep}", x=along, y=y, marks=marks)
 
 
 BOUND = "within $f_BT$ $p$"

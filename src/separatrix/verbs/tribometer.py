@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -72,9 +73,6 @@ FRICTION = Quantity(label="friction", digits=4)
 """Of a test: elsewhere the name is that of the friction in a pocket, of which fewer digits matter."""
 
 EXPONENT, DRIFT = Quantity(label="exponent", form=".3f"), Quantity(label="drift", form=".2e")
-
-MINUTES = (3600.0 * 3, 60.0 * 3)
-"""Times from which a test is told in hours, and in minutes [s]."""
 
 BESIDE = ("normal_force", "temperature", "slip_speed", "wear_depth")
 """What is drawn below friction if the log has it; three of them at most."""
@@ -184,6 +182,7 @@ def page(answer: Part) -> Page:
     """Return the page of `tribometer`."""
     tests = [_with_axis(one) for one in answer.tests]
     flags = list(dict.fromkeys(flag for one in tests for flag in one.flags))
+    methods = dict.fromkeys(one.run_in_method for one in tests)
     kept = f"{answer.friction_file} is written; a study reads it with `[ranking] friction`."
     return Page(
         f"Friction of {_count(len(tests), 'test')} of a tribometer",
@@ -195,24 +194,20 @@ def page(answer: Part) -> Page:
             *(Note(f"{i}: {flag}", "legend") for i, flag in enumerate(flags, 1)),
             Note(LEGEND, "legend"),
             _numbers(tests),
-            *(_ends_by(one) for one in dict.fromkeys(one.run_in_method for one in tests)),
+            *(Note(f"End of running-in: {one}.", "legend", Level.LONG) for one in methods),
             *(_fits(answer) if answer.fits else ()),
             Heading("What was read"),
             *_read(answer, tests),
             *(Note(one, "caveat") for one in answer.notes),
             Note(kept if "friction_file" in answer else "Nothing written; use `--out friction.toml`."),
             Heading("Course of each test", Level.REPORT),
-            *(_picture(one) for one in tests),
+            *(Picture(file_name(one.source), partial(_figure, one), one.source) for one in tests),
         ),
     )
 
 
 def _count(number: int, name: str) -> str:
     return f"{number} {name}{'s'[: number != 1]}"
-
-
-def _ends_by(method: str) -> Note:
-    return Note(f"End of running-in: {method}.", "legend", Level.LONG)
 
 
 def _with_axis(test: Part) -> Part:
@@ -226,11 +221,9 @@ def _with_axis(test: Part) -> Part:
 
 def _along(test: Part, name: str) -> Cell:
     """Return a place along a test, in the unit that suits the test."""
-    known = quantity(name)
+    known, end = quantity(name), test.steady_end
     if test.run_in_axis == "time":
-        hours, minutes = MINUTES
-        end = test.steady_end
-        known = replace(known, unit="h" if end >= hours else "min" if end >= minutes else "")
+        known = replace(known, unit="h" if end >= 3 * 3600.0 else "min" if end >= 180.0 else "")
     mark = " cycles" if test.run_in_axis == "cycles" else ""
     return Cell(test.get(name), known, test.unit(name), mark)
 
@@ -383,11 +376,6 @@ def _plain(name: str) -> str:
 
 
 # --- the figure of a test -----------------------------------------------------------------------
-def _picture(test: Part) -> Picture:
-    caption = f"{test.source}: friction along the test, and what else its log has."
-    return Picture(file_name(test.source), lambda: _figure(test), caption)
-
-
 def file_name(source: str) -> str:
     """Name of a test as the name of a file: letters, digits, dots and dashes."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "._-") else "-" for c in source)
@@ -413,53 +401,40 @@ def _axis_along(test: Part) -> Axis:
     return Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last)
 
 
+def _ends(test: Part) -> list[Across]:
+    ends = test.run_in_end, test.steady_end
+    return [Across(at=one, colour=GREY, line="--", name="ends of the steady part") for one in ends]
+
+
 def _course_panel(test: Part) -> Panel:
-    """Return friction along the test, the parts left out, means of spans and the steady mean."""
-    course, start, end, mean = test.course, test.run_in_end, test.steady_end, test.friction
-    along, first, last = _axis_along(test), course.along[0], max(course.along[-1], end)
-    low, high = min(course.low), max(course.high)
-    room = 0.05 * (high - low) or 0.05 * abs(high) or 1.0
-    low, high = 0.0 if 0.0 <= low < 0.5 * high else low - room, high + room
-    outside = [(a, b) for a, b in ((first, start), (end, last)) if b - a > 2e-3 * (last - first)]
-    drift, ends = test.drift_rate * (end - start) / 2, (start, end)
-    left = (
-        Band(x=one, low=(low,) * 2, high=(high,) * 2, colour=GREY, opacity=0.18, name="left out")
-        for one in outside
-    )
+    """Return friction along the test, the ends of its steady part, the means of spans and of all of it."""
+    course, mean, ends = test.course, test.friction, (test.run_in_end, test.steady_end)
+    low, high, drift = test.friction_low, test.friction_high, test.drift_rate * (ends[1] - ends[0]) / 2
+    look: dict[str, Any] = {"line": "", "marker": "o", "size": 1.2, "name": "means of spans"}
     return Panel(
         title="a  Friction along the test",
-        x=along,
-        y=Axis(label="friction [-]", low=low, high=high),
+        x=_axis_along(test),
+        y=Axis(label="friction [-]"),
         marks=(
-            *left,
+            *_ends(test),
             Band(x=course.along, low=course.low, high=course.high, colour=SKY, name="range of rows"),
             Trace(x=course.along, y=course.mean, colour=BLUE, width=0.6),
-            Trace(x=course.span_along, y=course.span_mean, colour=BLUE, line="", marker="o", size=1.2,
-                  name=f"means of {_spans(course)}"),
-            Band(x=ends, low=(test.friction_low,) * 2, high=(test.friction_high,) * 2, colour=VERMILION,
-                 opacity=0.2),
+            Trace(x=course.span_along, y=course.span_mean, colour=BLUE, **look),
+            Band(x=ends, low=(low, low), high=(high, high), colour=VERMILION, opacity=0.2),
             Trace(x=ends, y=(mean, mean), colour=VERMILION, name="steady mean, 95 % interval"),
             Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),
         ),
-    )  # fmt: skip
-
-
-def _spans(course: Part) -> str:
-    count = course.span_cycles
-    words = alone(count, Quantity(label="", digits=2), "-")
-    return f"{words} cycle{'s'[: count != 1.0]}" if count else "spans"
+    )
 
 
 def _beside(test: Part, name: str, letter: str) -> Panel:
     """Return a condition along the test, with the ends of the steady part."""
-    course = test.course
-    values = course.get(name)
-    ends = (Across(at=one, colour=GREY, line="--") for one in (test.run_in_end, test.steady_end))
+    course, words = test.course, _plain(name)
     return Panel(
-        title=f"{letter}  {_plain(name).capitalize()}",
+        title=f"{letter}  {words.capitalize()}",
         x=_axis_along(test),
-        y=axis(name, course.unit(name), values, label=_plain(name)),
-        marks=(Trace(x=course.along, y=values, colour=BLUE, width=0.8), *ends),
+        y=axis(name, course.unit(name), course.get(name), label=words),
+        marks=(Trace(x=course.along, y=course.get(name), colour=BLUE, width=0.8), *_ends(test)),
     )
 
 

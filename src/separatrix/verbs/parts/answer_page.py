@@ -35,7 +35,7 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level =
     `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
     `appendix` is where inputs and provenance are shown.
     """
-    missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED, "caveat")]
+    missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED)]
     uncertain = [one["name"] for one in answer.values["study"]["uncertain_inputs"]]
     notes = [] if draws or not uncertain else [at_their_means(uncertain)]
     caveats = [Note(text, "caveat") for text in [*notes, *answer.warnings]]
