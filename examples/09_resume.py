@@ -11,9 +11,12 @@ study = separatrix.read_study("momentum-wheel")
 quick = replace(study, stability=replace(study.stability, runs=8, duration=0.02))
 
 
-def stop(done: int, total: int) -> None:
+calls = iter(range(3))
+
+
+def stop(done: float, total: float) -> None:
     """Press Ctrl-C once some of the work is done."""
-    if 2 <= done < total:
+    if next(calls, None) is None:
         raise KeyboardInterrupt
 
 

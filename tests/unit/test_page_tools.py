@@ -47,7 +47,7 @@ def test_an_answer_that_was_changed_is_refused(tmp_path, changes, rule):
     path = saved(tmp_path, **changes)
     with pytest.raises(InputError, match=rule) as error:
         read_answer(path)
-    assert str(error.value).startswith(str(path))
+    assert str(error.value).startswith((str(path), path.name))  # short in the folder of the file
 
 
 def test_an_answer_of_an_earlier_version_is_refused(tmp_path):
