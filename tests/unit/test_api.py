@@ -65,10 +65,8 @@ def test_notes_are_in_the_answer_and_its_document(tmp_path):
 
 def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
     """And the folder keeps the runs for the next call."""
-    calls = iter(range(2))
-
     def stop(done, total):
-        if next(calls, None) is None:
+        if done > 0.6 * total:
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as caught:
