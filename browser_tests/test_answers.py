@@ -56,7 +56,7 @@ def test_a_click_in_a_map_simulates_the_cage_there(view, server, ranked, folder)
     card = opened(page, "map")
     card.get_by_label("x", exact=False).first.fill("film.thickness=0.4..0.8um:2")
     card.get_by_label("runs").fill("1")
-    card.get_by_label("points").fill("2")
+    card.locator("input[name=points]").fill("2")
     run(page, "map")
     page.get_by_role("link", name="Show the answer").first.click()
     figure = page.locator(".plot .canvas").first

@@ -1,4 +1,4 @@
-"""The moving cage: its page simulation.html, opened without a server, and the local page play it alike."""
+"""The moving cage: its page moving-cage.html, opened without a server, and the local page play it alike."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def written(request, tmp_path_factory):
     (place / "small.toml").write_text(STUDY, encoding="utf-8")
     command = [sys.executable, "-m", "separatrix", "simulate", str(place / "small.toml")]
     subprocess.run([*command, "--motion", request.param, "--out", str(place / "out"), "--quiet"], check=True)
-    return place / "out" / "simulation.html"
+    return place / "out" / "moving-cage.html"
 
 
 def plays(page) -> None:
