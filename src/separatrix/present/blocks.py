@@ -19,7 +19,6 @@ class Level(Flag):
     REPORT = auto()
     SHEET = auto()
     LONG = FULL | REPORT
-    PRINTED = BRIEF | FULL
     ALWAYS = BRIEF | FULL | REPORT
 
 

@@ -102,7 +102,8 @@ def routes(page: Page) -> APIRouter:
         text = _SCRIPT.sub(
             lambda one: f'<script{one[1] or ""} src="?script={next(numbers)}" defer></script>', text
         )
-        return HTMLResponse(_POLICY.sub("", text))
+        head = '<head>\n<link rel="icon" href="/static/icon.svg">'
+        return HTMLResponse(_POLICY.sub("", text).replace("<head>", head, 1))
 
     @router.get("/files/{name:path}", response_class=HTMLResponse)
     def files(name: str) -> Response:

@@ -63,11 +63,6 @@ def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
     return label[:1].upper() + label[1:], cell(part, name)
 
 
-def facts_of(part: Part, *names: str) -> list[tuple[str, Cell]]:
-    """Return label and value of those quantities that are known."""
-    return [fact(part, name) for name in names if name in part]
-
-
 def column(
     name: str, *, of: Of = itself, head: str = "", mark: Callable[[Any], str] = lambda _: ""
 ) -> Column:
