@@ -65,6 +65,7 @@ def test_notes_are_in_the_answer_and_its_document(tmp_path):
 
 def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
     """And the folder keeps the runs for the next call."""
+
     def stop(done, total):
         if done > 0.6 * total:
             raise KeyboardInterrupt

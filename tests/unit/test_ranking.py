@@ -249,6 +249,7 @@ def test_the_number_of_threads_changes_nothing():
 
 def test_an_interrupt_leaves_a_ranking_that_says_so_and_goes_on(tmp_path):
     """What was finished stays, what was not has that reason; with its ledger the rest gives the whole."""
+
     def stop(done, total):
         if done > 0.6 * total:
             raise KeyboardInterrupt
