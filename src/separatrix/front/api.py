@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -45,16 +46,16 @@ Record = TypeVar("Record")
 Asked = Study | str | Path
 
 
-class Shown:
+class Shown(ABC):
     """What every answer can show of itself, from its document and its page."""
 
+    @abstractmethod
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        raise NotImplementedError
 
+    @abstractmethod
     def page(self) -> Page:
         """Page of blocks: what text, report, workbook and local page show."""
-        raise NotImplementedError
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
