@@ -357,13 +357,14 @@ def test_an_interrupt_is_raised_in_the_work():
 def test_work_that_hears_no_interrupt_is_left_behind(monkeypatch):
     """After its time, in a thread that does not keep the process."""
     monkeypatch.setattr(console, "PATIENCE", 0.1)
+    before = threading.enumerate()
     with pytest.raises(console.LeftBehind):
         console.breakable(never_ends)
-    left = [one for one in threading.enumerate() if one is not threading.main_thread() and one.daemon]
+    (left,) = (one for one in threading.enumerate() if one not in before)
     HELD.set()
-    for one in left:
-        one.join()
-    assert left
+    left.join(60.0)
+    assert left.daemon
+    assert not left.is_alive()
 
 
 @pytest.mark.usefixtures("interrupted")
