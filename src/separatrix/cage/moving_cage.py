@@ -342,17 +342,17 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
         The study has no cage, or its running clearances cannot be.
     """
     study, design, body = solution.study, solution.design, solution.inertia
-    level, waves = ball or design.ball, solution.orbital_waves
+    level, waves = ball or design.ball_model, solution.orbital_waves
     hertz = design.pocket_contact is not PocketContact.LINEAR
     stiffness = solution.restitution.ball_cage_stiffness
     spin = tuple(float(x) for x in solution.bearing.equilibrium.ball_spin.mean(axis=0))
-    if design.motion is MotionModel.PLANE and level is BallModel.DAMPER:
+    if design.motion_model is MotionModel.PLANE and level is BallModel.DAMPER:
         spin = (math.copysign(math.hypot(*spin), spin[0]), 0.0, 0.0)
     free = solution.free_ball if level is BallModel.FREE else None
     if free is not None:  # that of the most loaded ball, in the sense of this bearing
         sense = math.copysign(1.0, solution.bearing.cage_speed)
         spin = (sense * free[1][0], sense * free[1][1], free[1][2])
-    linear = solution.mobility.linear if design.motion is MotionModel.SPACE else None
+    linear = solution.mobility.linear if design.motion_model is MotionModel.SPACE else None
     outer = design.outer_diameter if design.guidance is Guidance.OUTER else design.inner_diameter
     land = design.land_diameter or outer
     depth = solution.impact_speed * math.sqrt(body.mass / 2.0 / stiffness)
@@ -391,6 +391,7 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
             ramp_start=study.operation.ramp_start,
             axial_kick=study.stability.axial_kick,
             tilt_kick=study.stability.tilt_kick,
+            motion=design.motion_model,
             **{name: getattr(design, name) for name in _AS_DESIGNED},
         )
     except InputError as error:
@@ -402,7 +403,7 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
 
 
 _OF_THE_CHAIN = {
-    "mass", "moment_of_inertia", "transverse_inertia", "ball_cage_stiffness", "ball_cage_friction",
+    "mass", "moment_of_inertia", "transverse_inertia", "ball_cage_stiffness", "ball_cage_friction", "motion",
 }  # fmt: skip
 _OWN = {one.name for one in fields(MovingCage)} - _OF_THE_CHAIN
 _AS_DESIGNED = _OWN & {one.name for one in fields(CageDesign)}

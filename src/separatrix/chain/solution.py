@@ -40,7 +40,7 @@ from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import cage_candidate, environment_of
-from separatrix.study.study import CageDesign, Candidate, ClearanceState, Friction, Material, Study
+from separatrix.study.study import CageDesign, CageModel, Candidate, ClearanceState, Friction, Material, Study
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 WORN_MOBILITY = (
@@ -48,6 +48,10 @@ WORN_MOBILITY = (
     "its elastic creep."
 )
 NO_CAGE = "Give at least its mass, pocket_clearance, and ball_cage_stiffness or material."
+
+
+SHARED = ("bearing", "traction", "slopes", "clearances", "mobility", "restitution", "inertia")
+"""Links that do not depend on the cage's model."""
 
 
 def solve(study: Study, candidate: Candidate | None = None) -> Solution:
@@ -81,6 +85,15 @@ class Solution:
 
     study: Study
     candidate: Candidate | None = None
+
+    @cached_property
+    def paper(self) -> Solution:
+        """The same chain with the cage's model of the paper: in the plane, among dampers."""
+        _ = self.restitution
+        cage = replace(self.stated_design, model=CageModel.PAPER, ball=None, motion=None)
+        found = Solution(study=replace(self.study, cage=cage), candidate=self.candidate)
+        vars(found).update({name: value for name, value in vars(self).items() if name in SHARED})
+        return found
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -42,6 +42,7 @@ Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no notes: the
 Full = Annotated[bool, typer.Option("--full", help="The whole answer, not only what fits a screen.")]
 OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
 CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
+MODEL_HELP = "The best estimate or the paper's method [default: that of the study]."
 MOTION_HELP = "Where the cage moves [default: as in the study, or in the plane]."
 BALL_HELP = "Model of the ball that a pocket pushes [default: that of the study]."
 STUDY_HELP = "A study file or workbook, or the name of a shipped study."
@@ -65,6 +66,7 @@ Jobs = Annotated[int | None, whole_number("Threads [default: one for each proces
 
 BESIDE: dict[str, tuple[Any, Any]] = {
     "study": (Annotated[str, typer.Argument(metavar="STUDY", help=STUDY_HELP)], inspect.Parameter.empty),
+    "model": (Annotated[str | None, typer.Option(metavar="full|paper", help=MODEL_HELP)], None),
     "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
     "ball": (Annotated[str | None, typer.Option(metavar="damper|traction|free|auto", help=BALL_HELP)], None),
     "full": (Full, False),
@@ -172,7 +174,7 @@ def command_of(verb: Verb) -> Callable[..., int]:
     def command(**given: Any) -> int:
         return run(verb, given)
 
-    beside = ["study", *("motion", "ball") * verb.moves_a_cage, *("full",) * verb.has_full]
+    beside = ["study", *("model", "motion", "ball") * verb.moves_a_cage, *("full",) * verb.has_full]
     beside += ["json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs]
     command.__signature__ = signature(verb.shown_options(), *beside)  # type: ignore[attr-defined]
     return command
@@ -183,7 +185,7 @@ def run(verb: Verb, given: Mapping[str, Any]) -> int:
     json, quiet, cluster = given["json"], given["quiet"], given.get("cluster")
     named(cluster, "--cluster", "a scheduler, or local:N")
     place, count = folder(given["out"]), threads(given["jobs"])
-    models = {name: given[name] for name in ("motion", "ball") if given.get(name) is not None}
+    models = {name: given[name] for name in ("model", "motion", "ball") if given.get(name) is not None}
     is_kept = verb.keeps_runs and not (json and place is None)
 
     if given.get("animate") is not None and json and place is None:

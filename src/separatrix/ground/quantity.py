@@ -34,11 +34,19 @@ class Quantity:
 
 
 class Estimate(NamedTuple):
-    """A number with the ends of its 95 % interval; None where it has none."""
+    """A number with the ends of its 95 % interval; None where it has none.
+
+    Without a value but with a lower end it lies beyond what was searched, and is written "> 1.00".
+    """
 
     value: float | None
     low: float | None = None
     high: float | None = None
+
+    @property
+    def is_beyond(self) -> bool:
+        """Whether only its lower end is known."""
+        return self.value is None and self.low is not None and self.high is None
 
     @property
     def has_ends(self) -> bool:
@@ -56,6 +64,8 @@ def middle(value: Number) -> float | None:
 
 def alone(value: Number, quantity: Quantity, unit: str) -> str:
     """Return a number as it stands in a sentence, in a unit of its size, with its interval."""
+    if isinstance(value, Estimate) and value.is_beyond:
+        return f"> {alone(value.low, quantity, unit)}"
     number = middle(value)
     if number is None:
         return ABSENT
@@ -94,6 +104,8 @@ def in_column(values: Sequence[Number], quantity: Quantity, unit: str) -> tuple[
         one = text(middle(value), form)
         if isinstance(value, Estimate) and value.has_ends and value.value is not None:
             one += f" ({text(value.low, plain)} to {text(value.high, plain)})"
+        if isinstance(value, Estimate) and value.is_beyond:
+            one = f"> {text(value.low, form)}"
         found.append(one)
     return found, symbol, size
 

@@ -71,6 +71,17 @@ class PocketContact(Spelled):
     HERTZ = "hertz"
 
 
+class CageModel(Spelled):
+    """Which model answers: the best estimate, "full", or that of the paper, "paper" (docs/theory/cage.md).
+
+    Full: a ball of one state, and free balls before a cage is called UNSTABLE; in space unless the pockets
+    are square. Paper: in the plane, among dampers that add up over both races (Eq. 18).
+    """
+
+    FULL = "full"
+    PAPER = "paper"
+
+
 class BallModel(Spelled):
     """What a ball does that its pocket pushes (docs/theory/cage.md).
 
@@ -260,10 +271,15 @@ class CageDesign:
     )
     """About the axis."""
 
-    ball: BallModel = key(default=BallModel.DAMPER)
+    model: CageModel = key(default=CageModel.PAPER)
+    """The best estimate, "full", or "paper"."""
+
+    ball: BallModel | None = key(default=None, without='"auto" in the model "full", "damper" in "paper"')
     """Of a ball: "damper" as in the paper, "traction" with one state, "free" with three spins, or "auto"."""
 
-    motion: MotionModel = key(default=MotionModel.PLANE)
+    motion: MotionModel | None = key(
+        default=None, without='"plane" in the model "paper" and with square pockets, else "space"'
+    )
     """In the "plane" as in the paper, or in "space" with tilt and axial motion."""
 
     unbalance: KilogramMetre = key(not_negative(1e2), default=0.0)
@@ -292,6 +308,23 @@ class CageDesign:
     axial_gravity: MetrePerSecond2 = key(between(-1e4, 1e4), default=0.0)
     added_mass: Kilogram = key(not_negative(1e4), default=0.0)
     """Of the fluid that moves with the cage across its axis."""
+
+    @property
+    def ball_model(self) -> BallModel:
+        """Ball that is stated, else that of the model."""
+        by_model = BallModel.AUTO if self.model is CageModel.FULL else BallModel.DAMPER
+        return self.ball or by_model
+
+    @property
+    def motion_model(self) -> MotionModel:
+        """Motion that is stated, else that of the model."""
+        is_flat = self.model is CageModel.PAPER or self.pocket_shape is PocketShape.SQUARE
+        return self.motion or (MotionModel.PLANE if is_flat else MotionModel.SPACE)
+
+    @property
+    def is_of_paper(self) -> bool:
+        """Whether ball and motion are those of the paper."""
+        return (self.ball_model, self.motion_model) == (BallModel.DAMPER, MotionModel.PLANE)
 
     @property
     def has_shape(self) -> bool:
@@ -437,12 +470,12 @@ def _land_has_a_clearance(guidance: Guidance, land_clearance: Metre | None) -> F
 
 @check(CageDesign)
 def _lands_have_a_distance(
-    motion: MotionModel, guidance: Guidance, land_count: int, land_spacing: Metre | None, land_width: Metre
+    guidance: Guidance, land_count: int, land_spacing: Metre | None, land_width: Metre, cage: CageDesign
 ) -> Faults:
     name, is_guided = "land_spacing", guidance is not Guidance.BALL
     if is_guided and land_count == 1 and land_spacing is not None:
         yield Fault(name, "has no meaning for one land", "Give it with land_count = 2.")
-    if is_guided and land_count == 2 and land_spacing is None and motion is MotionModel.SPACE:
+    if is_guided and land_count == 2 and land_spacing is None and cage.motion_model is MotionModel.SPACE:
         yield Fault(name, "is missing: two lands of a cage in space have a distance", got="")
     if land_count == 2 and land_spacing is not None and land_spacing < land_width:
         rule = f"must be at least a land's width, {format_quantity(land_width, 'm')}"

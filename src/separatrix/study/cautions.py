@@ -78,7 +78,7 @@ def _cage(study: Study, cage: CageDesign) -> Iterator[str]:
     if absent and cage.guidance is not Guidance.BALL:
         verb = "is assumed: a guess" if len(absent) == 1 else "are assumed: guesses"
         yield f"[cage] {', '.join(absent)} {verb}, on which the motion on the land depends."
-    if cage.motion is MotionModel.PLANE and abs(tilt(cage)[1]) > STEEP:
+    if cage.motion_model is MotionModel.PLANE and abs(tilt(cage)[1]) > STEEP:
         play = format_quantity(half_play(cage), "m", 3)
         yield (
             "[cage] pocket_axial_offset: the contacts lean by more than 30 deg towards the bearing axis; the "

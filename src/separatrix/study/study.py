@@ -50,6 +50,7 @@ from separatrix.study.ball_bearing import Material as Material
 from separatrix.study.cage_design import SCALED
 from separatrix.study.cage_design import BallModel as BallModel
 from separatrix.study.cage_design import CageDesign as CageDesign
+from separatrix.study.cage_design import CageModel as CageModel
 from separatrix.study.cage_design import ClearanceState as ClearanceState
 from separatrix.study.cage_design import Guidance as Guidance
 from separatrix.study.cage_design import MotionModel as MotionModel
@@ -331,8 +332,12 @@ check(Study, after=_SIZES)(cage_in_bearing.body_that_can_be)
 check(Study)(cage_in_bearing.pockets_for_balls)
 
 
+MODELS: dict[str, type[Spelled]] = {"model": CageModel, "motion": MotionModel, "ball": BallModel}
+"""Keys of [cage] that choose a model."""
+
+
 def chosen_models(models: Mapping[str, str]) -> dict[str, Enum]:
-    """Models of a cage by the keys of a study file, `motion` and `ball`, as the command line names them.
+    """Models of a cage by the keys of a study file (`MODELS`), as the command line names them.
 
     Raises
     ------
@@ -340,7 +345,7 @@ def chosen_models(models: Mapping[str, str]) -> dict[str, Enum]:
         A model is not known.
     """
     chosen: dict[str, Enum] = {}
-    for name, kind in (("motion", MotionModel), ("ball", BallModel)):
+    for name, kind in MODELS.items():
         known = {str(one.value): one for one in kind}
         if name in models and models[name] not in known:
             raise InputError(f"--{name}", f"must be one of {', '.join(known)}", shown(models[name]))

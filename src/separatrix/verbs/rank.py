@@ -47,6 +47,7 @@ from separatrix.verbs.parts.verdict_blocks import (
     by_verdict,
     candidate_numbers,
     evidence_column,
+    has_safety,
     is_judged,
     motion_column,
     rank_texts,
@@ -120,6 +121,7 @@ def page(answer: Part) -> Page:
         Note(verdict_sentences(rows, own.name), "lead"),
         Heading(_title(own.name)),
         verdicts(own.name, rows, legend=True),
+        *by_paper(known),
         *footnotes(rows),
         *over_inputs(answer, rows),
         *pictures(answer),
@@ -155,18 +157,42 @@ def _title(name: str) -> str:
 
 
 def verdicts(name: str, rows: Sequence[Part], *, legend: bool = False, level: Level = Level.ALWAYS) -> Table:
-    """Return rank, friction, threshold, margin and verdict of each candidate."""
+    """Return rank, friction, what is compared with it, and verdict of each candidate."""
     ranks = dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
+    compared, order = ("restitution_threshold", "margin"), "margin"
+    if has_safety(rows):
+        compared, order = ("own_critical_friction", "safety_factor"), "safety factor"
     columns = (
-        text_column("rank", lambda row: ranks[row.name], "by margin, = a tie within the scatter"),
+        text_column("rank", lambda row: ranks[row.name], f"by {order}, = a tie within the scatter"),
         text_column("material", lambda row: row.name),
         column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
-        column("restitution_threshold"),
-        column("margin"),
+        column(compared[0], is_short=has_safety(rows)),
+        column(compared[1]),
         column("probability_stable"),
         text_column("verdict", verdict),
     )
     return Table(name, columns, tuple(rows), explained(columns) if legend else "", level)
+
+
+def by_paper(rows: Sequence[Part]) -> list[Block]:
+    """Return the answer of the paper's model beside another one, and where the two differ."""
+    if not has_safety(rows):
+        return []
+    columns = (
+        _name(),
+        column("restitution_threshold"),
+        column("margin"),
+        column("paper_probability_stable"),
+        text_column("verdict", lambda row: row.paper_verdict),
+    )
+    apart = grouped((row.paper_verdict, row.name) for row in rows if row.paper_verdict != row.verdict)
+    words = "The paper's method: in the plane, balls as dampers summed over both races (Eq. 18)."
+    if apart:
+        words += (
+            f" It has {by_verdict(apart)}: the dampings of two races act in series where the ball may spin, "
+            "and the sum is up to twice too stiff."
+        )
+    return [Table("The paper's method", columns, tuple(rows), words)]
 
 
 def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:

@@ -44,14 +44,14 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
         return
     most, limit = max(row.largest_contact_force for row in rows), transmitted_force(solution)
     design = solution.design
-    if most > limit and design.ball is BallModel.DAMPER:
+    if most > limit and design.ball_model is BallModel.DAMPER:
         yield (
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
             f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
             "the ball slides, and the linear race damping is outside its range. It then returns too much "
             "speed to the cage: `--ball auto` gives the answer with the ball's inertia and traction."
         )
-    if design.motion is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
+    if design.motion_model is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
         yield from _tilts(solution)
     yield from _beyond_strength(solution.study, rows)
     gap = (design.land_clearance or math.inf) / 2.0 if design.guidance is not Guidance.BALL else math.inf

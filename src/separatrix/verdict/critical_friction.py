@@ -122,6 +122,25 @@ def critical_friction(
     return replace(_point(eta, settings, found, lows, middles, highs), notes=_notes(responses))
 
 
+def lowest_crossing(counter: GrowthCounter, guess: Ratio) -> tuple[Found, MetrePerSecond, tuple[str, ...]]:
+    """Friction at which half the runs whirl from the disturbance from which it is lowest; that, and notes.
+
+    The race damping is the cage's own. Disturbances whose crossing may come first get most of the runs.
+    """
+    settings = counter.settings
+    responses = {kick: Response(_look(counter, None, kick), settings.runs) for kick in settings.kicks}
+    few, more = (max(1, round(part * settings.runs)) for part in (FIRST_RUNS, END_RUNS))
+    each: dict[MetrePerSecond, Found] = {}
+    for kick, response in responses.items():
+        each[kick] = response.crossing(0.5, few, guess)
+        known = [one.value for one in each.values() if isinstance(one, Crossing)]
+        guess = min(known, default=guess)
+    found, kick = _outermost(_first_settled(responses, 0.5, more, each, 1), 1)
+    if found is None:
+        raise LookupError("no disturbance")
+    return found, kick, _notes(responses)
+
+
 def _notes(responses: Mapping[MetrePerSecond, Response]) -> tuple[str, ...]:
     return tuple(note for _, response in sorted(responses.items()) for note in response.notes)
 

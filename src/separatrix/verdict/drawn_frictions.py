@@ -62,7 +62,7 @@ class DrawnBearings:
     def by_ball(self, case: Case, judged: Callable[[BallModel | None], Judgement]) -> Judgement:
         """Verdict on a case by the ball of the study, or by free balls where they have to be asked."""
         solution = self.central[case.candidate]
-        level, share = solution.design.ball, whirl_share(self.cage(case), transmitted_force(solution))
+        level, share = solution.design.ball_model, whirl_share(self.cage(case), transmitted_force(solution))
         first = judged(None)
         if not asks_free_balls(level, first, share):
             return with_reason(level, first, share)

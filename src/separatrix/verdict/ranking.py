@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 from itertools import chain
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
@@ -32,7 +31,7 @@ from separatrix.verdict.beyond_models import (
     pocket_of,
     reason,
 )
-from separatrix.verdict.critical_friction import CriticalFriction
+from separatrix.verdict.critical_friction import CriticalFriction, expected_runs
 from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
 from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement
@@ -41,7 +40,6 @@ from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
     NotMeasured,
-    OwnCurve,
     Ranked,
     RankedEnvironment,
     Ranking,
@@ -51,9 +49,11 @@ from separatrix.verdict.ranking_records import (
     measured,
     overall,
     ranks,
+    safety_interval,
     same_rank,
 )
 from separatrix.verdict.response import GrowthCounter
+from separatrix.verdict.safety_factor import CageLimit, cage_limit, safety_factor, spread
 from separatrix.verdict.stability_curve import (
     OWN_DAMPING,
     Node,
@@ -61,16 +61,37 @@ from separatrix.verdict.stability_curve import (
     StabilityCurve,
     Tracer,
     curve_of_points,
-    height,
     restitution_threshold,
     rising,
     threshold_factors,
 )
 from separatrix.verdict.which_ball import judge_solution, transmitted_force
 
-Key = tuple[Pocket, Ratio]  # a pocket, and a friction: what a verdict is about
-Piece = tuple[Pocket, Ratio | Node] | Case
-"""A verdict, or with the pocket a node of its curve; or a verdict on drawn bearings."""
+
+class Asked(NamedTuple):
+    """A verdict: on a pocket with a friction, by the study's model or by the paper's."""
+
+    pocket: Pocket
+    friction: Ratio
+    is_paper: bool = False
+
+
+class Knot(NamedTuple):
+    """A point of a pocket's curve, by the paper's model."""
+
+    pocket: Pocket
+    node: Node
+
+
+class Limit(NamedTuple):
+    """Critical friction of a pocket's cage by the study's model."""
+
+    pocket: Pocket
+
+
+Piece = Asked | Knot | Limit | Case
+"""What is computed in one go; a case is a verdict on drawn bearings."""
+Found = Judgement | CriticalFriction | CageLimit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,11 +101,14 @@ class _Question:
     settings: StabilitySettings
     solved: Sequence[Solution]  # of each candidate
     cages: Mapping[Pocket, Solution]
+    is_paper: bool  # whether the study's model is the paper's
+    spreads: Mapping[str, float]  # by candidate: what uncertain inputs do to its critical friction
+    paper: Mapping[Pocket, Solution]  # the same by the paper's model
     tracers: Mapping[Pocket, Tracer]
     pockets: Mapping[str, Pocket]
     reference: Pocket
     drawn: DrawnBearings | None
-    keys: Sequence[Key]  # of all verdicts
+    keys: Sequence[Asked]  # of all verdicts by the study's model
     runner: Runner
 
 
@@ -94,7 +118,8 @@ class _Findings:
 
     points: Mapping[Pocket, Sequence[CriticalFriction]]
     here: CriticalFriction | None
-    judgements: Mapping[Key, Judgement]
+    limits: Mapping[Pocket, CageLimit]
+    judgements: Mapping[Asked, Judgement]
     drawn: Mapping[Case, Judgement]
     traced: Mapping[Pocket, bool]
     complete: bool
@@ -103,10 +128,10 @@ class _Findings:
 def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     """Rank the candidate cage materials of a study, in each environment and overall.
 
-    Ranked by margin: where all candidates have one restitution factor, that is the order of thresholds, as
-    in the paper (its section 5, Figs 9-12). The verdict is the ensemble's at the chain's own restitution
-    factor (docs/theory/ranking.md). Only there the critical friction has its band over the kicks. The numbers
-    do not depend on the runner.
+    Ranked by safety factor, the critical friction of the candidate's cage over its friction. In the paper's
+    model by margin: where all candidates have one restitution factor, that is the order of thresholds, as in
+    the paper (its section 5, Figs 9-12). Curve, threshold and margin are always the paper's
+    (docs/theory/ranking.md). The numbers do not depend on the runner.
 
     Raises
     ------
@@ -130,7 +155,6 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
     def ranking(found: _Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
         reference = question.cages[question.reference]
-        own_eta, own_curves = _own_curves(question, found)
         return Ranking(
             environment=environment,
             candidate=reference_candidate(study, asked).name,
@@ -144,13 +168,11 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             environments=tuple(RankedEnvironment(name=name, materials=rows) for name, rows in ranked.items()),
             overall=_ranked(question, found, means, ""),
             stability=_curve(question, found),
-            own_eta=own_eta,
-            own_curves=own_curves,
             kicks=question.settings.kicks,
             runs=question.settings.runs,
             duration=question.settings.duration,
-            ball_model=reference.design.ball,
-            motion_model=reference.design.motion,
+            ball_model=reference.design.ball_model,
+            motion_model=reference.design.motion_model,
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
             complete=found.complete,
@@ -165,6 +187,7 @@ def _notes(
     """Sentences for under the table: whose curve it is, and where chain and motion leave their models."""
     points = [*chain.from_iterable(found.points.values()), *([found.here] if found.here else [])]
     notes = [note for one in question.solved for note in one.notes]
+    notes += [note for limit in found.limits.values() for note in limit.notes]
     notes += [note for tracer in question.tracers.values() for note in tracer.counter.cage.notes]
     notes += [note for point in points for note in point.notes]
     notes += [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
@@ -190,27 +213,35 @@ def _question(
     """
     pockets = {name: pocket_of(one) for name, one in solved.items()}
     cages = {pockets[name]: one for name, one in solved.items()}
+    is_paper = study.cage is not None and study.cage.is_of_paper
+    paper = {pocket: one.paper for pocket, one in cages.items()}
     reference = pockets[reference_candidate(study, asked).name]
-    keys = sorted({(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None})
+    every = {(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
+    keys = [Asked(*each) for each in sorted(every)]
     runner = runner or Runner()
-    empty = {pocket: moving_cage(one, 0.0) for pocket, one in cages.items()}
+    empty = {pocket: moving_cage(one, 0.0) for pocket, one in paper.items()}
     tracers = {
         pocket: Tracer(
             GrowthCounter(empty[pocket], study.stability, runner),
             threshold_factors(study.stability),
             band=False,
-            frictions=None if pocket == reference else [f for other, f in keys if other == pocket],
+            frictions=None if pocket == reference else [key.friction for key in keys if key.pocket == pocket],
         )
         for pocket in cages
     }
+    drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
+    spreads = {name: spread([own[name] for own in drawn.solved]) for name in solved} if drawn else {}
     return _Question(
         settings=settings_for(study.stability, empty[reference]),
         solved=[*solved.values()],
         cages=cages,
+        is_paper=is_paper,
+        spreads={} if is_paper else spreads,
+        paper=paper,
         tracers=tracers,
         pockets=pockets,
         reference=reference,
-        drawn=drawn_bearings(study, study.stability.runs) if study.distributions else None,
+        drawn=drawn,
         keys=keys,
         runner=runner,
     )
@@ -219,31 +250,38 @@ def _question(
 def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ranking:
     """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
     keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
-    nodes: list[Piece] = [(k, node) for k, tracer in question.tracers.items() for node in tracer.first]
+    nodes = [Knot(pocket, node) for pocket, tracer in question.tracers.items() for node in tracer.first]
+    beside = [] if question.is_paper else [key._replace(is_paper=True) for key in keys]
+    limits = [] if question.is_paper else [Limit(pocket) for pocket in question.cages]
+    verdicts: list[Asked | Case] = [*keys, *beside, *cases]
 
-    def ranked(results: Mapping[Piece, CriticalFriction | Judgement]) -> Ranking:
+    def ranked(results: Mapping[Piece, Found]) -> Ranking:
         points = {k: _points_of(results, k) for k in question.cages}
         here = points[question.reference].pop((OWN_DAMPING, None), None)
-        verdicts = {piece: found for piece, found in results.items() if isinstance(found, Judgement)}
-        judged = {key: verdicts[key] for key in keys if key in verdicts}
-        drawn = {case: verdicts[case] for case in cases if case in verdicts}
+        judged = {one: found for one, found in results.items() if isinstance(found, Judgement)}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-        every = (len(judged), len(drawn)) == (len(keys), len(cases))
+        known = {
+            one.pocket: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)
+        }
+        every = (len(judged), len(known)) == (len(verdicts), len(limits))
         return ranking(
             _Findings(
                 points={k: rising(found.values()) for k, found in points.items()},
                 here=here,
-                judgements=judged,
-                drawn=drawn,
+                limits=known,
+                judgements={one: found for one, found in judged.items() if isinstance(one, Asked)},
+                drawn={one: found for one, found in judged.items() if isinstance(one, Case)},
                 traced=traced,
                 complete=here is not None and all(traced.values()) and every,
             )
         )
 
+    own = Knot(question.reference, (OWN_DAMPING, None))
+    # the longest first, as its runs wait for each other; then verdicts, so that an interrupt leaves some
+    pieces: list[Piece] = [*limits, own, *scattered(keys), *scattered(beside), *scattered(cases), *nodes]
     return question.runner.work_out(
         lambda piece: _computed(question, piece),
-        # the longest first, as its runs wait for each other; then verdicts, so that an interrupt leaves some
-        [(question.reference, (OWN_DAMPING, None)), *scattered(keys), *scattered(cases), *nodes],
+        pieces,
         into=ranked,
         more=lambda piece, results: _more(question, piece, results),
         load=lambda piece: _load(question, piece),
@@ -251,47 +289,44 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
 
 
 def _load(question: _Question, piece: Piece) -> Load:
-    """Work of a piece: runs of a verdict, or those of a node."""
-    if not isinstance(piece, Case) and isinstance(piece[1], tuple):
-        return question.tracers[piece[0]].load(piece[1])
-    return Load(len(question.settings.kicks) * question.settings.runs)
+    """Work of a piece: runs of a verdict, of a limit, or those of a node."""
+    if isinstance(piece, Knot):
+        return question.tracers[piece.pocket].load(piece.node)
+    kicks = len(question.settings.kicks)
+    if isinstance(piece, Limit):
+        return Load(kicks * expected_runs(question.settings, band=False))
+    return Load(kicks * question.settings.runs)
 
 
-def _computed(question: _Question, piece: Piece) -> CriticalFriction | Judgement:
+def _computed(question: _Question, piece: Piece) -> Found:
+    settings, runner = question.settings, question.runner
     if isinstance(piece, Case):
         if question.drawn is None:
             raise LookupError(piece)
-        return question.drawn.judge(piece, question.settings.kicks, question.runner)
-    pocket, what = piece
-    if isinstance(what, tuple):
-        return question.tracers[pocket].point(what)
-    run = partial(question.runner.whole_ensemble, settings=question.settings)
-    return judge_solution(question.cages[pocket], what, run)
+        return question.drawn.judge(piece, settings.kicks, runner)
+    if isinstance(piece, Knot):
+        return question.tracers[piece.pocket].point(piece.node)
+    if isinstance(piece, Limit):
+        return cage_limit(question.cages[piece.pocket], settings, runner)
+    solved = question.paper if piece.is_paper else question.cages
+    run = partial(runner.whole_ensemble, settings=settings)
+    return judge_solution(solved[piece.pocket], piece.friction, run)
 
 
-def _more(
-    question: _Question, piece: Piece, results: Mapping[Piece, CriticalFriction | Judgement]
-) -> list[Piece]:
+def _more(question: _Question, piece: Piece, results: Mapping[Piece, Found]) -> list[Piece]:
     """Nodes of the same curve that are wanted once this one is known."""
-    if isinstance(piece, Case):
+    if not isinstance(piece, Knot):
         return []
-    pocket, node = piece
-    if not isinstance(node, tuple):
-        return []
-    wanted = question.tracers[pocket].more(node, _points_of(results, pocket))
-    return [(pocket, node) for node in wanted]
+    wanted = question.tracers[piece.pocket].more(piece.node, _points_of(results, piece.pocket))
+    return [Knot(piece.pocket, node) for node in wanted]
 
 
-def _points_of(
-    results: Mapping[Piece, CriticalFriction | Judgement], pocket: Pocket
-) -> dict[Node, CriticalFriction]:
+def _points_of(results: Mapping[Piece, Found], pocket: Pocket) -> dict[Node, CriticalFriction]:
     """Points of the curve of one pocket."""
     return {
-        what: found
-        for piece, found in results.items()
-        if isinstance(found, CriticalFriction) and not isinstance(piece, Case)
-        for k, what in [piece]
-        if k == pocket and isinstance(what, tuple)
+        one.node: found
+        for one, found in results.items()
+        if isinstance(one, Knot) and isinstance(found, CriticalFriction) and one.pocket == pocket
     }
 
 
@@ -305,24 +340,6 @@ def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
     return curve_of_points(cage, question.settings, points, band=False, here=found.here, complete=complete)
 
 
-def _own_curves(
-    question: _Question, found: _Findings
-) -> tuple[tuple[Ratio, ...], tuple[OwnCurve, ...]] | tuple[None, None]:
-    """Return each candidate's own curve at the nodes of all; None where all share one, or one is missing."""
-    if len(question.cages) < 2 or not all(found.traced.values()):
-        return None, None
-    nodes = {
-        pocket: ([point.restitution_factor for point in points], [height(point) for point in points])
-        for pocket, points in found.points.items()
-    }
-    grid = sorted({eta for etas, _ in nodes.values() for eta in etas})
-    curves = (
-        OwnCurve(name=name, own_critical_friction=tuple(np.interp(grid, *nodes[pocket]).tolist()))
-        for name, pocket in question.pockets.items()
-    )
-    return tuple(grid), tuple(curves)
-
-
 def _ranked(
     question: _Question, found: _Findings, table: Mapping[str, MeanFriction | None], environment: str
 ) -> tuple[Row, ...]:
@@ -331,13 +348,16 @@ def _ranked(
     chances = lowest_among(known)
     rows = [_row(question, found, Case(n, environment), f, chances.get(n)) for n, f in known.items()]
     judged = [row for row in rows if isinstance(row, Ranked)]
-    places = ranks(
-        [margin_interval(row) for row in judged],
-        lambda i, leader: same_rank(judged[i], judged[leader], known),
-    )
+    if question.is_paper:
+        places = ranks(
+            [margin_interval(row) for row in judged],
+            lambda i, leader: same_rank(judged[i], judged[leader], known),
+        )
+    else:
+        places = ranks([safety_interval(row) for row in judged])
     ranked = [replace(row, rank=place) for row, place in zip(judged, places, strict=True)]
     return (
-        *sorted(ranked, key=lambda row: (row.rank, -row.margin, row.friction)),
+        *sorted(ranked, key=lambda row: (row.rank, -safety_interval(row)[0], -row.margin, row.friction)),
         *sorted((row for row in rows if isinstance(row, NotFinished)), key=lambda row: row.friction),
         *(NotMeasured(name=n, reason=not_measured(environment)) for n, f in table.items() if f is None),
     )
@@ -364,15 +384,18 @@ def _row(
         restitution_factor=eta,
         reason=NOT_FINISHED,
     )
-    judgement = found.judgements.get((pocket, friction.mean))
+    judgement = found.judgements.get(Asked(pocket, friction.mean))
     if judgement is None:
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
     row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case))
     threshold = _threshold(found, pocket, friction)
-    if threshold is None:
-        return replace(row, reason=f"{judgement.reason} Its threshold: {NOT_FINISHED}.")
+    limit = found.limits.get(pocket)
+    papers = judgement if question.is_paper else found.judgements.get(Asked(pocket, friction.mean, True))
+    if threshold is None or papers is None or (limit is None and not question.is_paper):
+        missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
+        return replace(row, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
     return Ranked(
         **{f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"},
         reason=reason(threshold, judgement),
@@ -381,7 +404,18 @@ def _row(
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
         within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
+        paper_verdict=papers.verdict,
+        paper_probability_stable=papers.probability_stable,
+        **_safety(limit, friction, question.spreads.get(row.name, 0.0)),
     )
+
+
+def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> dict[str, Any]:
+    """Critical friction and safety factor, as fields of a row; none without a limit."""
+    if limit is None:
+        return {}
+    own = {f.name: getattr(limit, f.name) for f in fields(limit) if f.name != "notes"}
+    return own | asdict(safety_factor(limit, friction.mean, friction.interval(), spread))
 
 
 def _threshold(found: _Findings, pocket: Pocket, friction: MeanFriction) -> RestitutionThreshold | None:

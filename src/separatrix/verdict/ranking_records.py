@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, log, sqrt
+from math import hypot, inf, log, sqrt
 from typing import Annotated
 
 import numpy as np
@@ -21,7 +21,7 @@ from separatrix.ground.units import (
     Second,
 )
 from separatrix.study.study import BallModel, Friction, MotionModel
-from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.judgement import Judgement, Verdict
 from separatrix.verdict.stability_curve import StabilityCurve
 
 
@@ -70,7 +70,20 @@ class Ranked(MeasuredCandidate):
     restitution_threshold_low: Ratio  # lower end of its 95 % interval
     restitution_threshold_high: Ratio  # upper end of its 95 % interval
     margin: Ratio  # threshold less the restitution factor
-    rank: int = 0  # by margin; those within the scatter of the best one share its rank
+    paper_verdict: Verdict  # by the paper's model
+    paper_probability_stable: Ratio  # by the paper's model
+    own_critical_friction: Ratio | None = None
+    """At which half the runs whirl from the worst disturbance, with its own race damping; null in the paper's
+    model, and where no friction that was searched is enough."""
+    own_critical_friction_low: Ratio | None = None  # of its 95 % interval, from the number of runs
+    own_critical_friction_high: Ratio | None = None  # upper end of it
+    critical_kick: MetrePerSecond | None = None  # disturbance from which the critical friction is lowest
+    critical_ball: str | None = None  # that decided the critical friction
+    estimated_critical_friction: Ratio | None = None  # by the closed law, to check the order
+    safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
+    safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
+    safety_factor_high: Ratio | None = None  # upper end of it
+    rank: int = 0  # by safety factor, in the paper's model by margin; a tie within the scatter of the best
     within_reach: bool  # whether the threshold reaches what the paper grants solid lubrication
     judgement: Judgement  # verdict and evidence at the central values of the study
     over_inputs: Judgement | None = None
@@ -79,18 +92,6 @@ class Ranked(MeasuredCandidate):
 
 
 Row = Ranked | NotFinished | NotMeasured
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OwnCurve:
-    """Critical friction with a candidate's own pocket, at each of `Ranking.own_eta` [-].
-
-    0 where half the runs whirl without friction, the top of the searched frictions where none is enough.
-    """
-
-    name: str  # of the candidate
-    own_critical_friction: Annotated[tuple[Ratio, ...], ("own_eta",)]
-    """0: whirls without friction; the top of the search: none is enough."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,9 +125,6 @@ class Ranking:
     """The candidates with their mean friction over the environments."""
     stability: Annotated[StabilityCurve | None, Rows()]
     """Critical friction against restitution factor; null if left out."""
-    own_eta: tuple[Ratio, ...] | None  # restitution factors of the own curves
-    own_curves: Annotated[tuple[OwnCurve, ...] | None, Rows("material", label="name")]
-    """A curve for each candidate; null where all have one stiffness."""
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int  # from each disturbance
     duration: Second  # of a run
@@ -277,6 +275,16 @@ def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) ->
     if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
         return may_be_lower(known[row.name], known[leader.name])
     return _meet(margin_interval(row), margin_interval(leader))
+
+
+def safety_interval(row: Ranked) -> Interval:
+    """Safety factor with the ends of its interval; of a friction of 0 it is infinite."""
+    low, high = row.safety_factor_low, row.safety_factor_high
+    if low is None:
+        return inf, inf, inf
+    if row.safety_factor is None and high is not None:
+        return low, low, high
+    return row.safety_factor or low, low, inf if high is None else high
 
 
 def margin_interval(row: Ranked) -> Interval:

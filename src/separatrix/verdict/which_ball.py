@@ -77,7 +77,7 @@ def judge_solution(solution: Solution, friction: Ratio, run: Callable[[MovingCag
     run : callable
         Runs the ensemble of a cage, always with the same settings.
     """
-    level, capacity = solution.design.ball, transmitted_force(solution)
+    level, capacity = solution.design.ball_model, transmitted_force(solution)
     cage = moving_cage(solution, friction)
     found, share = judge(cage, run(cage), capacity=capacity), whirl_share(cage, capacity)
     if not asks_free_balls(level, found, share):

@@ -190,6 +190,17 @@ QUANTITIES: dict[str, Quantity] = {
         form=".2f",
         meaning="largest restitution factor eta at which the cage is stable from the reference disturbance",
     ),
+    "own_critical_friction": Q(
+        label="critical friction",
+        head="critical",
+        form=".3f",
+        meaning="friction at which half the runs whirl from the worst disturbance, with its own races",
+    ),
+    "estimated_critical_friction": Q(label="critical friction by the closed law", form=".2f"),
+    "safety_factor": Q(
+        label="safety factor", head="S", symbol="S", form=".2f", meaning="critical friction over friction"
+    ),
+    "critical_kick": Q(label="disturbance of the critical friction"),
     "margin": Q(label="margin", form="+.2f", meaning="threshold less the bearing's own eta"),
     "probability_stable": Q(
         label="P(stable)",
@@ -197,6 +208,7 @@ QUANTITIES: dict[str, Quantity] = {
         ends=("probability_low", "probability_high"),
         meaning="share of runs that settle, or roll in their pockets, from the worst disturbance",
     ),
+    "paper_probability_stable": Q(label="P(stable) by the paper's model", head="P(stable)", form=".2f"),
     "uncertain_probability_stable": Q(
         label="P(stable) with the uncertain inputs drawn",
         form=".2f",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from separatrix.ground.document import Part
@@ -37,7 +38,7 @@ def estimate(part: Part, name: str) -> Number:
     """Return a number of a part, with its interval if it has one."""
     value = getattr(part, name)
     low, high = quantity(name).ends or (f"{name}_low", f"{name}_high")
-    if value is None or low not in part.values or part.get(low) is None:
+    if part.get(low) is None:
         return value  # type: ignore[no-any-return]
     return Estimate(value, part.get(low), part.get(high))
 
@@ -64,13 +65,23 @@ def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
 
 
 def column(
-    name: str, *, of: Of = itself, head: str = "", mark: Callable[[Any], str] = lambda _: ""
+    name: str,
+    *,
+    of: Of = itself,
+    head: str = "",
+    mark: Callable[[Any], str] = lambda _: "",
+    is_short: bool = False,
 ) -> Column:
-    """Return the column of a quantity; `of` finds in a row the part that has it."""
+    """Return the column of a quantity; `of` finds in a row the part that has it; short: without intervals."""
     known = quantity(name)
-    return Column(
-        head or known.head or known.label, lambda row: cell(of(row), name, mark(row)), meaning=known.meaning
-    )
+
+    def one(row: Any) -> Cell:
+        found = cell(of(row), name, mark(row))
+        if is_short and isinstance(found.value, Estimate) and not found.value.is_beyond:
+            return replace(found, value=found.value.value)
+        return found
+
+    return Column(head or known.head or known.label, one, meaning=known.meaning)
 
 
 def known_columns(columns: Iterable[Column], rows: Sequence[Any]) -> tuple[Column, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import inf
 from typing import Any
 
 from separatrix.ground.document import Part
@@ -24,6 +25,11 @@ MARK = "*"
 def is_judged(row: Part) -> bool:
     """Whether a row has a verdict."""
     return row.get("verdict") is not None
+
+
+def has_safety(rows: Iterable[Part]) -> bool:
+    """Whether some of the rows have a safety factor: not in the paper's model."""
+    return any(row.get("own_critical_friction_low") is not None for row in rows)
 
 
 def verdict(row: Part) -> str:
@@ -177,6 +183,10 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     if len(first) > 1:
         words = f" ({names}): {word}" if len(each) == 1 else f": {by_verdict(each)}"
         lead = f"{len(first)} materials tie for first in {place}{words}."
+    others = grouped((verdict(row), row.name) for row in rows if row not in first)
+    rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
+    if has_safety(first):
+        return f"{lead} {_safety(first)} {rest}"
     limits = (
         told(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
     )
@@ -190,14 +200,26 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     by_it = f"{up_to}; this bearing and film have {etas}, a margin of {margins}."
     if first[0].verdict == "UNDECIDED":
         by_it += f" {first[0].name}: {first[0].reason}"
-    others = grouped((verdict(row), row.name) for row in rows if row not in first)
-    rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
     return f"{lead} {by_it} {rest}"
+
+
+def _safety(first: Sequence[Part]) -> str:
+    """Return the safety factors of the candidates that rank first, and what they are made of."""
+    criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
+    lowest = min(first, key=lambda row: row.get("safety_factor_low") or inf)
+    factor = told(lowest, "safety_factor")
+    at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
+    return (
+        f"Safety factor {at}{factor}: half the runs whirl at a friction of {criticals}, the pockets have "
+        f"{frictions}."
+    )
 
 
 def span(rows: Sequence[Part], name: str) -> str:
     """Return the least and the largest value of a quantity among some rows, one where they look alike."""
     known = sorted((row for row in rows if name in row), key=lambda row: getattr(row, name))
+    if not known:
+        return told(rows[0], name)
     ends = [Part({name: getattr(row, name)}, row.units) for row in (known[0], known[-1])]
     return " to ".join(dict.fromkeys(told(one, name) for one in ends))
 

@@ -1,0 +1,135 @@
+"""Critical friction of a cage from its worst disturbance, and the safety factor of a material against it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from separatrix.cage.moving_cage import MovingCage, moving_cage
+from separatrix.chain.solution import Solution
+from separatrix.ground.units import MetrePerSecond, Ratio
+from separatrix.study.study import BallModel, StabilitySettings
+from separatrix.verdict.critical_friction import lowest_crossing
+from separatrix.verdict.judgement import NORMAL_95
+from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.reasons import ball_words
+from separatrix.verdict.response import SEARCHED_FRICTION, Crossing, GrowthCounter, Side
+from separatrix.verdict.which_ball import ENOUGH, transmitted_force, whirl_share
+
+HAND: Ratio = 0.42
+"""Critical friction over sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings, docs/theory/ranking.md)."""
+
+TINY: Ratio = 1e-12
+"""Least friction whose logarithm is taken."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CageLimit:
+    """Critical friction of a cage at its own race damping, among the balls of its model.
+
+    Where no searched friction makes half the runs whirl, the value is None and `low` is the highest that was
+    searched; where even none does, value None and `high` 0.
+    """
+
+    own_critical_friction: Ratio | None
+    """At which half the runs whirl, from the disturbance from which that is lowest."""
+    own_critical_friction_low: Ratio  # of its 95 % interval, from the number of runs
+    own_critical_friction_high: Ratio | None  # upper end of it
+    critical_kick: MetrePerSecond  # disturbance from which the critical friction is lowest
+    critical_ball: str  # that decided the critical friction
+    estimated_critical_friction: Ratio  # by the closed law, to check the order
+    notes: tuple[str, ...] = ()  # on runs that do not show where they end
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SafetyFactor:
+    """Critical friction over the friction in the pocket, with its 95 % interval."""
+
+    safety_factor: Ratio | None = None  # critical friction over friction; null beyond what was searched
+    safety_factor_low: Ratio | None = None  # of its 95 % interval
+    safety_factor_high: Ratio | None = None  # upper end of it
+
+
+def cage_limit(
+    solution: Solution, settings: StabilitySettings, runner: Runner, guess: Ratio | None = None
+) -> CageLimit:
+    """Critical friction of a solved study's cage, by the ball that its model asks for.
+
+    With the ball "auto", by balls of one state; by free balls where the friction of a whirl at that critical
+    friction exceeds a quarter of what the races hold.
+    """
+    first = moving_cage(solution, 0.0)
+    found = _limit(first, settings, runner, guess)
+    if solution.design.ball_model is not BallModel.AUTO:
+        return found
+    at = found.own_critical_friction
+    if at is None or whirl_share(moving_cage(solution, at), transmitted_force(solution)) <= ENOUGH:
+        return found
+    return _limit(moving_cage(solution, 0.0, BallModel.FREE), settings, runner, at)
+
+
+def _limit(cage: MovingCage, settings: StabilitySettings, runner: Runner, guess: Ratio | None) -> CageLimit:
+    counter = GrowthCounter(cage, settings, runner)
+    found, kick, notes = lowest_crossing(counter, hand_estimate(cage) if guess is None else guess)
+    value, low, high = _ends(found)
+    return CageLimit(
+        own_critical_friction=value,
+        own_critical_friction_low=low,
+        own_critical_friction_high=high,
+        critical_kick=kick,
+        critical_ball=ball_words(cage),
+        estimated_critical_friction=hand_estimate(cage),
+        notes=notes,
+    )
+
+
+def _ends(found: Crossing | Side) -> tuple[Ratio | None, Ratio, Ratio | None]:
+    if isinstance(found, Crossing):
+        return found.value, found.low, found.high
+    return (None, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
+
+
+def hand_estimate(cage: MovingCage) -> Ratio:
+    """Critical friction by the closed law, 0.42 sqrt(2 k M/Z)/C with C of a slow push [-]."""
+    stiff = 2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count
+    return HAND * math.sqrt(stiff) / cage.slow_damping
+
+
+def spread(drawn: Sequence[Solution]) -> float:
+    """Half the 95 % interval of what uncertain inputs do to the logarithm of the critical friction [-].
+
+    By the closed law, which follows mass, stiffness and damping of the drawn cages.
+    """
+    logs = [math.log(hand_estimate(moving_cage(one, 0.0))) for one in drawn]
+    return NORMAL_95 * float(np.std(logs, ddof=1)) if len(logs) > 1 else 0.0
+
+
+def safety_factor(
+    limit: CageLimit, friction: Ratio, interval: tuple[Ratio, Ratio], spread: float = 0.0
+) -> SafetyFactor:
+    """Safety factor of a friction in the pocket; without friction the factor has no value.
+
+    Deviations of the logarithms add as squares. `spread` is half the 95 % interval of what uncertain inputs
+    do to the logarithm of the critical friction. Without a critical friction there are only the ends.
+    """
+    value = limit.own_critical_friction
+    low, high = limit.own_critical_friction_low, limit.own_critical_friction_high
+    least, most = interval
+    if friction <= 0.0:
+        return SafetyFactor()
+    if value is None:
+        return SafetyFactor(safety_factor_low=low / most, safety_factor_high=high and high / friction)
+
+    def reach(of_limit: Ratio, of_friction: Ratio) -> float:
+        ratios = (max(of_limit, TINY) / value, max(of_friction, TINY) / friction)
+        return math.hypot(*map(math.log, ratios), spread)
+
+    factor, upper = value / friction, value if high is None else high
+    return SafetyFactor(
+        safety_factor=factor,
+        safety_factor_low=factor * math.exp(-reach(low, most)),
+        safety_factor_high=factor * math.exp(reach(upper, least)),
+    )

@@ -1,0 +1,115 @@
+"""Critical friction of a cage from its worst disturbance, and the safety factor of a friction against it."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import separatrix
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.moving_cage import moving_cage
+from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
+from separatrix.verdict.critical_friction import critical_friction
+from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.safety_factor import CageLimit, cage_limit, hand_estimate, safety_factor
+
+SHIPPED = separatrix.read_study("cryogenic-turbopump")
+LIMIT = CageLimit(
+    own_critical_friction=0.25,
+    own_critical_friction_low=0.2,
+    own_critical_friction_high=0.3,
+    critical_kick=2.0,
+    critical_ball="free",
+    estimated_critical_friction=0.2,
+)
+
+FULL = {"model": CageModel.FULL}
+
+
+def solved(**models):
+    return separatrix.solve(replace(SHIPPED, cage=replace(SHIPPED.cage, **models)))
+
+
+def test_the_safety_factor_is_the_ratio_of_two_frictions():
+    """Its interval has both deviations as squares of logarithms, and that of uncertain inputs."""
+    found = safety_factor(LIMIT, 0.125, (0.1, 0.15))
+    assert found.safety_factor == 2.0
+    assert math.log(found.safety_factor_low / 2.0) == pytest.approx(-math.hypot(math.log(0.8), math.log(1.2)))
+    assert math.log(found.safety_factor_high / 2.0) == pytest.approx(math.hypot(math.log(1.2), math.log(0.8)))
+    wider = safety_factor(LIMIT, 0.125, (0.1, 0.15), 1.0)
+    ends = math.hypot(math.log(0.8), math.log(1.2), 1.0)
+    assert math.log(wider.safety_factor_low / 2.0) == pytest.approx(-ends)
+
+
+@pytest.mark.parametrize(
+    ("ends", "low", "high"), [((1.0, None), 1.0 / 0.3, None), ((0.0, 0.0), 0.0, 0.0)], ids=["never", "always"]
+)
+def test_beyond_what_was_searched_only_the_ends_are_known(ends, low, high):
+    """Half the runs whirl at no friction up to 1, or even without friction."""
+    beyond = replace(
+        LIMIT,
+        own_critical_friction=None,
+        own_critical_friction_low=ends[0],
+        own_critical_friction_high=ends[1],
+    )
+    found = safety_factor(beyond, 0.2, (0.1, 0.3))
+    assert (found.safety_factor, found.safety_factor_low, found.safety_factor_high) == (None, low, high)
+    assert safety_factor(LIMIT, 0.0, (0.0, 0.0)).safety_factor is None
+
+
+def test_the_closed_law_has_the_damping_of_a_slow_push():
+    """0.42 sqrt(2 k M/Z)/C (findings of this round, P2): C_mu among dampers, that of one state else."""
+    stiff = math.sqrt(2.0 * 3e6 * 0.025 / SHIPPED.bearing.ball_count)
+    damper, state = (moving_cage(solved(ball=one), 0.1) for one in (BallModel.DAMPER, BallModel.TRACTION))
+    assert hand_estimate(damper) == pytest.approx(0.42 * stiff / damper.race_damping, rel=1e-3)
+    assert hand_estimate(state) == pytest.approx(0.42 * stiff / state.traction.slope, rel=1e-3)
+    assert state.traction.slope < 0.7 * damper.race_damping
+
+
+def test_the_worst_disturbance_sets_the_critical_friction():
+    """None of the others has a lower one beyond its interval."""
+    solution = solved()
+    settings = replace(SHIPPED.stability, runs=32)
+    found = cage_limit(solution, settings, Runner())
+    cage = moving_cage(solution, 0.0)
+    for kick in settings_for(settings, cage).kicks:
+        alone = replace(settings, reference_kick=kick, kicks=(kick,))
+        assert critical_friction(cage, None, alone, band=False).scatter_high > found.own_critical_friction_low
+    assert found.critical_kick in settings_for(settings, cage).kicks
+
+
+def test_the_full_model_asks_free_balls_and_a_wider_race():
+    """Full: free balls decide where the friction of a whirl passes a quarter; the damper comes far lower.
+
+    Balls as rigid bodies on their whole slip fields had f_1/2 = 0.217 from 2 m/s, friction along e_r; along
+    the sliding of a ball that pitches by 25 degrees that is 0.217/cos 25 = 0.24 (findings of this round, P2),
+    within a tenth for 32 runs a point. The damper had 0.150.
+    """
+    settings = StabilitySettings(kicks=(2.0,), reference_kick=2.0, runs=64)
+    full = cage_limit(solved(model=CageModel.FULL), settings, Runner())
+    paper = cage_limit(solved(model=CageModel.PAPER), settings, Runner())
+    assert (full.critical_ball, paper.critical_ball) == ("free", "damper")
+    assert full.own_critical_friction == pytest.approx(0.24, rel=0.1)
+    assert paper.own_critical_friction == pytest.approx(0.150, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("models", "ball", "motion"),
+    [
+        ({}, BallModel.DAMPER, MotionModel.PLANE),
+        (FULL, BallModel.AUTO, MotionModel.PLANE),
+        (
+            {"model": CageModel.FULL, "pocket_shape": PocketShape.CYLINDRICAL},
+            BallModel.AUTO,
+            MotionModel.SPACE,
+        ),
+        (FULL | {"ball": BallModel.FREE}, BallModel.FREE, MotionModel.PLANE),
+        ({"ball": BallModel.TRACTION}, BallModel.TRACTION, MotionModel.PLANE),
+    ],
+)
+def test_one_switch_chooses_ball_and_motion(models, ball, motion):
+    """Single switches still have the last word; the paper's model is a link of every chain."""
+    solution = solved(**models)
+    assert (solution.design.ball_model, solution.design.motion_model) == (ball, motion)
+    assert solution.paper.design.is_of_paper
+    assert solution.paper.restitution is solution.restitution
