@@ -22,8 +22,7 @@ from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.helper import StudyHelper
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
-from separatrix.study.library import Library, beside, joined, library_files
-from separatrix.study.library.library_file import library_of_text
+from separatrix.study.library import Library, beside, joined, library_files, library_of_text
 from separatrix.study.library.records import Content
 from separatrix.study.study import Study, chosen_models, shipped_studies, stiffness_is_known, with_models
 from separatrix.study.uncertain import written
@@ -64,18 +63,12 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
         cage |= {name: model.value for name, model in chosen_models(models).items()}
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
-    built_study, notes = study_of(document, name)
+    built_study, notes = _study_of(document, name, library_of(document))
     if models:
         require(built_study, f"--{next(iter(models))}", "cage")
         built_study = with_models(built_study, models)
     noted: Study = built_with(built_study, notes=(*notes, *cautions(built_study)))
     return noted
-
-
-def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:
-    """Study of a document, and notes on what has no effect in it or is left out."""
-    library = library_of(document)
-    return _study_of(document, name, library)
 
 
 def study_again(content: Mapping[str, Any]) -> Study:
@@ -87,8 +80,8 @@ def study_again(content: Mapping[str, Any]) -> Study:
         The content is not that of a study, or names a file that is not kept.
     """
     files: Mapping[str, str] = content["files"]
-    libraries = [(name.partition(": ")[2], text) for name, text in files.items() if name.startswith(LIBRARY)]
-    library = joined([library_of_text(text, label) for label, text in libraries])
+    libraries = [(text, name.partition(": ")[2]) for name, text in files.items() if name.startswith(LIBRARY)]
+    library = joined([library_of_text(*one) for one in libraries])
     document = Document(content["name"], content["data"], {}, files=dict(files), is_kept=True)
     study, _ = _study_of(document, content["name"], library)
     kept: Study = built_with(study, origins=content["origins"])
@@ -96,17 +89,15 @@ def study_again(content: Mapping[str, Any]) -> Study:
 
 
 def _study_of(document: Document, name: str, library: Library) -> tuple[Study, tuple[str, ...]]:
+    """Study of a document, and notes on what has no effect in it or is left out."""
     loaded = read_document(Study, document, StudyHelper(library))
     study = loaded.value
     values = {one.name: getattr(study, one.name) for one in fields(Study)}
     values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
     data = {key: one for key, one in document.data.items() if key not in ("extends", "library")}
     values["content"] = {"name": name, "data": data, "files": document.files, "origins": values["origins"]}
-    found, table = (
-        library.fluid(study.operation.fluid or ""),
-        document.data.get("ranking", {}).get("friction"),
-    )
-    values["fluid"] = None if found is None else found.plain()
+    fluid, table = library.fluid(study.operation.fluid or ""), document.written(("ranking", "friction"))
+    values["fluid"] = None if fluid is None else fluid.plain()
     if known := library.named("friction table", table if isinstance(table, str) else ""):
         values["friction_table"] = library.friction_table(known).plain()
     if study.cage is not None:

@@ -107,9 +107,8 @@ def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) 
     """
     stated = given.conditions(content.path)
     drafts = [(one.name, _draft(one, given, stated, TextFormat(), {})) for one in content.groups]
-    for part in content.parts:
-        if (found := _first_block(part, given)) is not None:
-            drafts.append((part.sheet, _draft(found[0], given, stated, *found[1:])))
+    firsts = ((part.sheet, _first_block(part, given)) for part in content.parts)
+    drafts += [(sheet, _draft(one[0], given, stated, *one[1:])) for sheet, one in firsts if one is not None]
     if not drafts:
         raise _no_table(content)
     name, chosen = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
