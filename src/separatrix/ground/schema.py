@@ -523,11 +523,6 @@ def _arguments(
 
 def defaults_of(owner: Any) -> dict[str, Any]:
     """Value of each field that is not given; MISSING if there is none."""
-    return dict(_defaults_of(owner))
-
-
-@cache
-def _defaults_of(owner: Any) -> Mapping[str, Any]:
     made = ((one.name, one.default, one.default_factory) for one in fields(owner))
     return {name: default if factory is MISSING else factory() for name, default, factory in made}
 

@@ -6,7 +6,6 @@ Keys and rules are those of the records (`study.Study` is the schema); docs/refe
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 from difflib import get_close_matches
 from os.path import exists, isfile
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Any
 
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
-from separatrix.ground.schema import built
+from separatrix.ground.schema import Made, built, defaults_of
 from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
 from separatrix.ground.units import printable, shown
 from separatrix.study.candidates import candidate_named, fitting_environment
@@ -67,8 +66,7 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
     if models:
         require(built_study, f"--{next(iter(models))}", "cage")
         built_study = with_models(built_study, models)
-    noted: Study = built_with(built_study, notes=(*notes, *cautions(built_study)))
-    return noted
+    return built_with(built_study, notes=(*notes, *cautions(built_study)))
 
 
 def study_again(content: Mapping[str, Any]) -> Study:
@@ -84,16 +82,18 @@ def study_again(content: Mapping[str, Any]) -> Study:
     library = joined([library_of_text(*one) for one in libraries])
     document = Document(content["name"], content["data"], {}, files=dict(files), is_kept=True)
     study, _ = _study_of(document, content["name"], library)
-    kept: Study = built_with(study, origins=content["origins"])
-    return kept
+    return built_with(study, origins=content["origins"])
 
 
 def _study_of(document: Document, name: str, library: Library) -> tuple[Study, tuple[str, ...]]:
     """Study of a document, and notes on what has no effect in it or is left out."""
     loaded = read_document(Study, document, StudyHelper(library))
     study = loaded.value
-    values = {one.name: getattr(study, one.name) for one in fields(Study)}
-    values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
+    values: dict[str, Any] = {
+        "name": name,
+        "title": study.title or name,
+        "origins": _origins(loaded, document),
+    }
     data = {key: one for key, one in document.data.items() if key not in ("extends", "library")}
     values["content"] = {"name": name, "data": data, "files": document.files, "origins": values["origins"]}
     fluid, table = library.fluid(study.operation.fluid or ""), document.written(("ranking", "friction"))
@@ -106,13 +106,13 @@ def _study_of(document: Document, name: str, library: Library) -> tuple[Study, t
     if environment := fitting_environment(study, library):
         values["ranking"] = built_with(study.ranking, environment=environment)
         values["origins"]["ranking.environment"] = FROM_BEARING
-    study, left_out = _without_unknown_stiffness(built(Study, values), document)
+    study, left_out = _without_unknown_stiffness(built_with(study, **values), document)
     return _with_distributions(study, loaded, document), (*loaded.notes, *left_out)
 
 
-def built_with(record: Any, **changes: object) -> Any:
+def built_with(record: Made, **changes: object) -> Made:
     """A record with other values that no check concerns."""
-    return built(type(record), {one.name: getattr(record, one.name) for one in fields(record)} | changes)
+    return built(type(record), {name: getattr(record, name) for name in defaults_of(type(record))} | changes)
 
 
 def _where(document: Document, path: KeyPath) -> str:
@@ -149,8 +149,7 @@ def _with_distributions(study: Study, loaded: Loaded[Study], document: Document)
             problems.append(error.at(_where(document, path)))
     if problems:
         raise together(problems)
-    made: Study = built_with(study, distributions=settled)
-    return made
+    return built_with(study, distributions=settled)
 
 
 def number_name(study: Study, path: KeyPath) -> str:

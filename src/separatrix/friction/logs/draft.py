@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,6 +14,7 @@ from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, g
 from separatrix.friction.logs.log import metadata_of, two_ways
 from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
 from separatrix.ground.errors import InputError
+from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
 
 CHECK = "# guess, check"
@@ -67,7 +67,7 @@ class Draft:
 
     def head(self, i: int) -> str:
         """The head of a column, in quotes."""
-        return _toml(self.block.heads[i].strip())
+        return as_toml(self.block.heads[i].strip())
 
     def ask(self, line: str, question: str) -> str:
         """Return a line with its question, which is noted."""
@@ -78,26 +78,19 @@ class Draft:
         """The map, ready to be looked at."""
         lines = [
             f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.',
-            f"name = {_toml(f'map of {name}'[:200])}",
+            f"name = {as_toml(f'map of {name}'[:200])}",
             *("", "[format]", *self.form, "", "[columns]", *self.columns.values(), "", "[test]"),
         ]
         written = self.given.as_written
-        lines += [*(f"{key} = {_toml(value)}" for key, value in written.get("test", {}).items()), *self.test]
+        lines += [
+            *(f"{key} = {as_toml(value)}" for key, value in written.get("test", {}).items()),
+            *self.test,
+        ]
         for pattern, section in written.get("files", {}).items():
-            lines += ["", f"[files.{_toml(pattern)}]"]
-            lines += [f"{key} = {_toml(value)}" for key, value in section.items()]
+            lines += ["", f"[files.{as_toml(pattern)}]"]
+            lines += [f"{key} = {as_toml(value)}" for key, value in section.items()]
         about = "# The columns, with their first, middle and last values:"
         return "\n".join([*lines, "", about, *self.seen, ""])
-
-
-def _toml(value: object) -> str:
-    """A value in TOML."""
-    if isinstance(value, Mapping):
-        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml(key) for key in value}
-        return "{ " + ", ".join(f"{keys[key]} = {_toml(one)}" for key, one in value.items()) + " }"
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_toml, value))}]"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) -> Draft:
@@ -113,8 +106,8 @@ def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) 
         raise _no_table(content)
     name, chosen = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
     if len(drafts) > 1 and chosen.questions and not given.format.tables:
-        listed = ", ".join(_toml(one) for one, _ in drafts)
-        chosen.form.append(chosen.ask(f"tables = [{_toml(name)}]", f"one of {listed}?"))
+        listed = ", ".join(as_toml(one) for one, _ in drafts)
+        chosen.form.append(chosen.ask(f"tables = [{as_toml(name)}]", f"one of {listed}?"))
     if why is not None:
         question = f"the map of this layout does not fit: {why.rule} {why.got}"
         chosen.form.insert(0, chosen.ask(f"# {given.name}", question))
@@ -142,7 +135,7 @@ def _first_block(
     heads = _heads(part, separator, given) if separator else None
     if heads is None:
         return None
-    asked = {"separator": f"or {' or '.join(map(_toml, others))}?"} if others else {}
+    asked = {"separator": f"or {' or '.join(map(as_toml, others))}?"} if others else {}
     form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
     blocks, form = _blocks(part, form, heads, asked)
     if not blocks:
@@ -213,14 +206,14 @@ def _draft(
         cells = tables.cells_of(block, range(len(block.heads)))
     draft, options = Draft(given, stated, block, cells), Options()
     for key, value in given_in(form).items():
-        line = f"{key} = {_toml(value)}"
+        line = f"{key} = {as_toml(value)}"
         draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
     for i, column in enumerate(cells):
         for meaning, option in _options(block, i, column).items():
             options.setdefault(meaning, []).append(option)
         values = ", ".join(column[k] for k in (0, len(column) // 2, -1)) if column else ""
         beside = f" {block.below[i]}" if block.below[i] else ""
-        draft.seen.append(printable(f"# {i + 1:3d} {_toml(block.heads[i])}{beside}: {values}", 150))
+        draft.seen.append(printable(f"# {i + 1:3d} {as_toml(block.heads[i])}{beside}: {values}", 150))
     _given(draft)
     _decide(draft, options)
     _decimal(draft)
@@ -304,7 +297,7 @@ def _given(draft: Draft) -> None:
             draft.used |= set(places)
         elif not one.optional:
             name = one.names[0] if one.names else f"number {one.number}"
-            draft.questions.append(f"no column {_toml(name)}, which the column map names as {meaning}")
+            draft.questions.append(f"no column {as_toml(name)}, which the column map names as {meaning}")
 
 
 def _of_twins(draft: Draft, meaning: str, one: Column, places: Sequence[int]) -> str:
@@ -320,7 +313,7 @@ def _stated(meaning: str, one: Column) -> str:
     name = one.names[0] if len(one.names) == 1 else one.name
     more = ({"unit": one.unit} if one.unit else {}) | ({"sign": -1} if one.sign < 0 else {})
     more |= {"optional": True} if one.optional else {}
-    return f"{meaning} = {_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
+    return f"{meaning} = {as_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
 
 
 def _line(draft: Draft, meaning: str, option: Option, unit: str = "") -> str:
@@ -442,7 +435,7 @@ def _ask_column(draft: Draft, meaning: str) -> None:
         question = f"the friction by its name? There are {', '.join(map(draft.head, near[:4]))}"
         draft.columns[meaning] = draft.ask(line, question)
     else:
-        line = f"{meaning} = {_toml({'name': UNKNOWN if any(heads) else 1, 'unit': UNKNOWN})}"
+        line = f"{meaning} = {as_toml({'name': UNKNOWN if any(heads) else 1, 'unit': UNKNOWN})}"
         draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
 
 
@@ -479,7 +472,7 @@ def _conditions(draft: Draft) -> None:
         meant = naming.conditions_named(key)[:1]
         known |= set(meant)
         if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
-            question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
+            question = f"{as_toml(key)} is {as_toml(value)}: {' or '.join(ways)}? It is not used as it is"
             draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
     for name, what in NAMED.items():
         if name not in known:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
-from separatrix.friction.logs.names import ABSCISSAE, KEYS, MEANINGS, header_parts, plain, scale_in
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, conditions_named, header_parts, scale_in
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import key, positive, record
 from separatrix.ground.units import (
@@ -231,8 +231,7 @@ def of_log(error: InputError, source: str) -> InputError:
 
 def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
     """Keep the first condition whose unit the value has; return a note on a value that is not used."""
-    name, beside = header_parts(key)[0]
-    conditions = [condition for condition, names in KEYS.items() if plain(name) in names]
+    conditions, beside = conditions_named(key), header_parts(key)[0][1]
     if not conditions:
         return ""
     first, reason = conditions[0], f'"{printable(key)}" in the file'
