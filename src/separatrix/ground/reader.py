@@ -140,11 +140,8 @@ class Document(NamedTuple):
         for i, part in enumerate(rest):
             is_plain = i == 0 or str(part).replace("_", "").isalnum()
             quoted = printable(str(part)) if is_plain and part != "" else f'"{printable(str(part))}"'
-            text += (
-                f"[{part + 1}]"
-                if isinstance(part, int)
-                else f"{' ' if text.endswith(']') and not i else '.'}{quoted}"
-            )
+            before = " " if text.endswith("]") and i == 0 else "."
+            text += f"[{part + 1}]" if isinstance(part, int) else f"{before}{quoted}"
         return text
 
 
@@ -250,9 +247,8 @@ def _dropped(section: Any, variant: Mapping[str, Any]) -> Iterator[str]:
     """Keys of the base that the variant replaces by an alternative, or makes meaningless."""
     for rule in getattr(section, "RULES", ()):
         if isinstance(rule, OneOf) and any(key in variant for group in rule.groups for key in group):
-            yield from (
-                key for group in rule.groups if not any(one in variant for one in group) for key in group
-            )
+            others = (group for group in rule.groups if not any(one in variant for one in group))
+            yield from (key for group in others for key in group)
     for name, one in keys_of(section).items():
         for only in one.key.only:
             try:
@@ -301,9 +297,8 @@ class Reading:
     def in_order(self) -> list[InputError]:
         """Mistakes in the order of the file; what concerns the file as a whole comes last."""
         known = {path: place for place, path in enumerate(self.document.places)}
-        return [
-            error for _, error in sorted(self.faults, key=lambda one: _longest(known, one[0], len(known)))
-        ]
+        ordered = sorted(self.faults, key=lambda fault: _longest(known, fault[0], len(known)))
+        return [error for _, error in ordered]
 
     def record(self, owner: type[Schema], raw: Any, path: KeyPath, above: Described | None = None) -> Schema:
         """Record of a table; fields of an open unit have that of the key above."""

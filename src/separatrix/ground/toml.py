@@ -170,9 +170,8 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
     line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
     if "overwrite" in message or "twice" in message:
         key = _KEY_LINE.match(line)
-        return InputError(
-            where, f"has {printable('.'.join(_plain(key[1]))) if key else shown(line)} a second time"
-        )
+        name = printable(".".join(_plain(key[1]))) if key else shown(line)
+        return InputError(where, f"has {name} a second time")
     reason = message[: found.start()]
     rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
     return InputError(where, rule, printable(line), _cure(line))
@@ -253,14 +252,13 @@ def truth(value: object, where: str) -> bool:
     return value
 
 
-def text(value: object, where: str, longest: int = 200, cure: str = "", *, least: int = 1) -> str:
+def text(value: object, where: str, longest: int = 200, *, least: int = 1) -> str:
     """Read a line of printable text."""
     if not isinstance(value, str):
-        raise InputError(where, "must be text", shown(value), cure)
+        raise InputError(where, "must be text", shown(value))
     if not least <= len(value.strip()) <= longest or not value.isprintable():
-        raise InputError(
-            where, f"must be one line of {least} to {longest} printable characters", shown(value)
-        )
+        rule = f"must be one line of {least} to {longest} printable characters"
+        raise InputError(where, rule, shown(value))
     return value
 
 

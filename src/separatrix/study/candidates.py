@@ -291,9 +291,8 @@ def fitting_environment(study: Study, library: Library) -> str | None:
         found = []
         for name in question.environments:
             medium, comma, counterface = name.partition(",")
-            if alike(medium, fluid, "fluid") and (
-                not comma or alike(counterface, surface, "bearing material")
-            ):
+            is_surface = not comma or alike(counterface, surface, "bearing material")
+            if is_surface and alike(medium, fluid, "fluid"):
                 found.append(name)
         if len(found) == 1:
             return found[0]

@@ -167,11 +167,8 @@ def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
     """Place and text of every given key of a section, and what follows from others."""
     origins: dict[str, str] = {}
     for path, source in loaded.sources.items():
-        if (
-            source.origin is not Origin.GIVEN
-            or len(path) < 2
-            or (len(path) > 2 and path[:2] != ("film", "wear"))
-        ):
+        is_key = len(path) == 2 or path[:2] == ("film", "wear")
+        if source.origin is not Origin.GIVEN or not is_key:
             continue
         value = document.written(path)
         is_plain = not isinstance(value, dict | list) or path in loaded.distributions

@@ -19,9 +19,14 @@ from separatrix.ground.units import printable
 
 CHECK = "# guess, check"
 UNKNOWN = "..."  # is refused until it is edited
-USUAL = {"time": "s", "distance": "m", "temperature": "degC", "wear_depth": "um"} | dict.fromkeys(
-    ("friction", "cycles"), "-"
-)
+USUAL = {
+    "time": "s",
+    "distance": "m",
+    "temperature": "degC",
+    "wear_depth": "um",
+    "friction": "-",
+    "cycles": "-",
+}
 """Units that a draft offers where the file states none, to be checked; of others N."""
 
 MOST_BREAKS = 20  # kinds of lines among the rows
@@ -82,10 +87,7 @@ class Draft:
             *("", "[format]", *self.form, "", "[columns]", *self.columns.values(), "", "[test]"),
         ]
         written = self.given.as_written
-        lines += [
-            *(f"{key} = {as_toml(value)}" for key, value in written.get("test", {}).items()),
-            *self.test,
-        ]
+        lines += [f"{key} = {as_toml(value)}" for key, value in written.get("test", {}).items()] + self.test
         for pattern, section in written.get("files", {}).items():
             lines += ["", f"[files.{as_toml(pattern)}]"]
             lines += [f"{key} = {as_toml(value)}" for key, value in section.items()]
@@ -232,9 +234,9 @@ def _options(block: tables.Block, i: int, cells: Sequence[str]) -> dict[str, Opt
     if 2 * sum(not tables.is_number(cell) for cell in sample) > len(sample):
         return {}
     for name, unit in ways:
-        meanings = (
-            {} if unit.isdigit() else naming.ranks(name.rpartition(".")[2]) | naming.ranks(name)
-        )  # COF_2: a station
+        if unit.isdigit():  # COF_2: a station
+            continue
+        meanings = naming.ranks(name.rpartition(".")[2]) | naming.ranks(name)
         if naming.looks_extreme(ways[0][0]):
             meanings = {key: rank for key, rank in meanings.items() if not re.search("friction|force", key)}
         if meanings:
@@ -249,11 +251,10 @@ def _option(block: tables.Block, i: int, meaning: str, rank: int, *, is_only: bo
     scales = {naming.scale_of(one, meaning) for one in stated}
     known = (None not in scales and len(scales) == 1) or meaning == "position"
     known = known or (not stated and meaning in ("friction", "cycles") and is_only)
-    is_torque = meaning in ("friction", "tangential_force") and naming.looks_like_torque(
-        block.heads[i], block.below[i]
-    )
     unit = (stated[0] if known else ", ".join(stated)) if stated else ""
-    return Option(rank, i, unit, known and not is_torque)
+    if meaning in ("friction", "tangential_force"):
+        known = known and not naming.looks_like_torque(block.heads[i], block.below[i])
+    return Option(rank, i, unit, known)
 
 
 def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clocks: Sequence[str]) -> Option:
@@ -357,12 +358,11 @@ def _needed(draft: Draft, free: Options, sure: Options) -> set[str]:
     has_load = "normal_force" in draft.columns or sure["normal_force"] or "normal_force" in draft.stated
     by_name = any(map(naming.looks_like_friction, draft.block.heads))
     has_friction = sure["friction"] or free.get("friction") or by_name
-    by_forces = sure["tangential_force"] if has_load else []
-    by_forces = by_forces or ([] if has_friction else free.get("tangential_force", []))
+    forces = sure["tangential_force"] if has_load else []
+    forces = forces or ([] if has_friction else free.get("tangential_force", []))
+    by_forces = "tangential_force" in draft.columns or (forces and not sure["friction"])
     needed = {"friction"}
-    if "friction" not in draft.columns and (
-        "tangential_force" in draft.columns or (by_forces and not sure["friction"])
-    ):
+    if by_forces and "friction" not in draft.columns:
         needed = {"tangential_force", "normal_force"}
         sure["friction"], free["friction"] = [], []
     if not any(name in draft.columns or sure[name] for name in naming.ABSCISSAE):

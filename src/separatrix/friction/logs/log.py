@@ -238,11 +238,9 @@ def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
     if first in TEXTS:
         found.setdefault(first, (text, reason))
         return ""
-    match = _VALUE.fullmatch(text.strip())
+    match, shown = _VALUE.fullmatch(text.strip()), f"{printable(key)} {printable(text)}"
     if ways := two_ways(text, decimal):
-        return (
-            f'{printable(key)} {printable(text)} may be {" or ".join(ways)}; put {first} = "..." under [test]'
-        )
+        return f'{shown} may be {" or ".join(ways)}; put {first} = "..." under [test]'
     unit = (match[2] or beside).strip() if match else ""
     for condition in conditions:
         scale = scale_in(unit, QUANTITIES[condition])
@@ -253,7 +251,6 @@ def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
                 return ""
     if first in found:
         return ""
-    shown = f"{printable(key)} {printable(text)}"
     number = match[1].lstrip("+-") if match and not unit else ""
     if not number:
         return f'{shown} is not understood; put {first} = "..." with its unit under [test]'

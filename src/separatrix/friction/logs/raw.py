@@ -114,9 +114,8 @@ def seconds(
         if zones.any() and not zones[there].all():
             return found, np.flatnonzero(there & ~zones).tolist()
         dates = pd.Series([text.replace(",", ".") for text in texts], dtype="str")
-        moments = pd.to_datetime(
-            dates, format="ISO8601" if form == "iso" else form, errors="coerce", utc=True
-        )
+        form = "ISO8601" if form == "iso" else form
+        moments = pd.to_datetime(dates, format=form, errors="coerce", utc=True)
         fits = moments.notna().to_numpy()
         if fits.any():
             found[fits] = (moments[fits] - moments[fits].iloc[0]).dt.total_seconds()
@@ -219,9 +218,8 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
         rule = "is a force by its name, not a friction"
         raise InputError(where, rule, cure="Name it as tangential_force, with its unit.")
     if None in known.values() or len({*known.values()}) > 1:
-        rule = (
-            f"has a unit that is not one of the {meaning.replace('_', ' ')} ({naming.known_units(meaning)})"
-        )
+        quantity = f"{meaning.replace('_', ' ')} ({naming.known_units(meaning)})"
+        rule = f"has a unit that is not one of the {quantity}"
         raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure("..."))
     if not stated and meaning not in ("friction", "cycles"):
         raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure("..."))
@@ -498,10 +496,8 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
         size[beyond] = np.nan
     negative = int(((friction < 0.0) & ~beyond).sum())
     if negative:
-        notes.append(
-            f"friction is negative in {negative} of {len(size)} rows (strokes there and back, or an "
-            "offset of zero): its magnitude is used"
-        )
+        why = "(strokes there and back, or an offset of zero): its magnitude is used"
+        notes.append(f"friction is negative in {negative} of {len(size)} rows {why}")
     return size
 
 
