@@ -332,12 +332,11 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
     """The documentation of the contract is complete."""
     from pathlib import Path
 
-    from separatrix.study.library import library_file as reading
     from separatrix.study.library import records
 
     page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]
-    content = library.joined([reading.library_of_text(block, "page")])
+    content = library.joined([library.library_of_text(block, "page")])
     assert content.material("cage material", "Our compound", 77.0).elastic_modulus == 9e9
     schemas = (records.Datum, records.Solid, records.Fluid, records.FrictionTable, records.Measured)
     for key in (*records.CONFIDENCES, *(key for schema in schemas for key in keys_of(schema))):

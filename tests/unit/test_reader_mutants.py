@@ -17,7 +17,7 @@ from rich_studies import SPACE
 
 from separatrix.friction.friction_file import read_friction
 from separatrix.ground.errors import InputError
-from separatrix.study.library.library_file import read_library
+from separatrix.study.library import read_library
 from separatrix.study.reading import read_study
 
 FROZEN = Path(__file__).with_name("reader_mutants.json")

@@ -5,7 +5,8 @@ An oscillation is the strongest line of the spectrum of the rows that exceeds it
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,20 +194,11 @@ LOWEST = 12
 HARMONICS = 12  # multiples of the cycle that are its own
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Oscillation:
-    """The strongest line of the spectrum of friction."""
+class Oscillation(NamedTuple):
+    """The strongest line of the spectrum of friction; zeros if none exceeds the noise."""
 
-    frequency: float  # in cycles per SI unit of the abscissa; 0 if no line exceeds the noise
-    amplitude: Ratio  # peak to peak of the sine with its power [-]; 0 if no line exceeds the noise
-    signal_to_noise: float  # its power over all other power but the cycle's
-    frequencies: Array
-    density: Array  # spectral density of friction at the frequencies
-
-
-NONE = Oscillation(
-    frequency=0.0, amplitude=0.0, signal_to_noise=0.0, frequencies=np.empty(0), density=np.empty(0)
-)
+    frequency: float = 0.0  # in cycles per SI unit of the abscissa
+    amplitude: Ratio = 0.0  # peak to peak of the sine with its power [-]
 
 
 def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillation:
@@ -216,7 +208,7 @@ def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillati
     """
     span = float(along[-1] - along[0])
     if span <= 0.0 or along.size < SHORTEST:
-        return NONE
+        return Oscillation()
     step = span / (along.size - 1)
     even = np.interp(along[0] + step * np.arange(along.size), along, friction)
     length = int(np.clip(along.size // SEGMENTS, SHORTEST, LONGEST))
@@ -225,19 +217,12 @@ def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillati
     other = np.where(_own(frequencies, density, cycle), np.minimum(density, noise), density)
     line = _line(other, noise, averages=2 * even.size / length - 1)
     if line is None or np.ptp(even) <= ROUNDING * np.abs(even).max():
-        return replace(NONE, frequencies=frequencies, density=density)
+        return Oscillation()
     reach = 3 + line // 20  # of the places next to the line that belong to it
     part = slice(max(0, line - reach), line + reach + 1)
     power = float(np.maximum(other[part] - noise[line], 0.0).sum()) * frequencies[1]
-    rest = max(float(other.sum() * frequencies[1]) - power, 1e-300)
     frequency = float(np.average(frequencies[line - 1 : line + 2], weights=density[line - 1 : line + 2]))
-    return Oscillation(
-        frequency=frequency,
-        amplitude=float(np.sqrt(8.0 * power)),
-        signal_to_noise=power / rest,
-        frequencies=frequencies,
-        density=density,
-    )
+    return Oscillation(frequency, float(np.sqrt(8.0 * power)))
 
 
 def beside(density: Array) -> Array:

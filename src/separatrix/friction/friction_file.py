@@ -6,7 +6,6 @@ The files are TOML, one [[test]] for each test, every dimensional value as text 
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
@@ -28,7 +27,7 @@ from separatrix.ground.schema import (
     positive,
     record,
 )
-from separatrix.ground.toml import Kind
+from separatrix.ground.toml import Kind, as_toml
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
@@ -251,20 +250,13 @@ def _lines(test: FrictionTest) -> Iterator[str]:
         if value is None or value == ():
             continue
         if name in _WRITTEN:
-            low, high = (_text(f"{_scaled(one, name)} {_WRITTEN[name][1]}") for one in value)
-            value = low if low == high else f"[{low}, {high}]"
+            low, high = (f"{_scaled(one, name)} {_WRITTEN[name][1]}" for one in value)
+            value = low if low == high else [low, high]
         elif isinstance(value, Place):
-            value = _text(f"{float(value.value)!r} {UNITS[value.axis]}")
-        elif name == "flags":
-            value = f"[{', '.join(map(_text, value))}]"
-        else:
-            value = _text(value) if isinstance(value, str) else repr(float(value))
-        yield f"{name} = {value}"
-
-
-def _text(value: str) -> str:
-    """Basic string of TOML: JSON's escapes are among its own."""
-    return json.dumps(value, ensure_ascii=False)
+            value = f"{float(value.value)!r} {UNITS[value.axis]}"
+        elif not isinstance(value, str | tuple):
+            value = float(value)
+        yield f"{name} = {as_toml(value)}"
 
 
 def _scaled(value: float, name: str) -> str:

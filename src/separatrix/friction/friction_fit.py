@@ -58,7 +58,7 @@ class MaterialFit:
     """Friction of one material in one environment.
 
     `slopes` are exponents, by the name of their condition; `scatter` is the relative standard deviation of a
-    new sample [-].
+    new sample [-]; it `is_assumed` where its own tests do not show it.
     """
 
     tests: tuple[FrictionTest, ...]
@@ -68,6 +68,7 @@ class MaterialFit:
     ranges: Mapping[str, Range | None]
     scatter: Ratio
     scatter_source: str
+    is_assumed: bool
 
     def at(
         self,
@@ -102,7 +103,7 @@ class MaterialFit:
             standard_deviation=mean * hypot(self.scatter, widening),
             extrapolation=(*sentences, *other_medium(medium, media)),
             widening=mean * widening,
-            assumed_scatter=not self.scatter_source.startswith(OWN),
+            assumed_scatter=self.is_assumed,
         )
 
     def log_mean(self, *, slip_speed: Array, pressure: Array) -> Array:
@@ -185,6 +186,7 @@ def _fit(tests: tuple[FrictionTest, ...], default_scatter: Ratio) -> FrictionFit
             ranges={name: tested_range(grouped[key], name) for name in (*CONDITIONS, PRODUCT)},
             scatter=posterior.scatter,
             scatter_source=(OWN if model.freedom >= MANY else few) if model.shows_scatter else others,
+            is_assumed=not model.shows_scatter,
         )
     return FrictionFit(groups=groups, default_scatter=default_scatter)
 

@@ -51,9 +51,8 @@ def covariates(tests: Sequence[FrictionTest]) -> Covariates:
             notes.append(f"{WORDS[name]} is not stated for {missing} of {len(tests)} tests: no slope on it")
     if _spread(tests, "temperature") >= log(LEAST_SPAN):
         span = in_words(tested_range(tests, "temperature") or (0.0, 0.0), "K")
-        notes.append(
-            f"tests from {span} are taken together here; a study takes those nearest its temperature"
-        )
+        note = f"tests from {span} are taken together here; a study takes those nearest its temperature"
+        notes.append(note)
     spanned = [name for name in ("slip_speed", "pressure") if _spans(tests, name)]
     logs = [[centre(getattr(test, name)) for test in tests] for name in spanned]
     along = correlation(*logs) if len(spanned) == 2 else 0.0
@@ -191,10 +190,8 @@ def _sentence(value: float, limits: Range, name: str) -> str:
         side = "beyond" if value > limits[1] else "below"
         return f"slip speed and pressure were not tested together: pV {product} is {side} {tested} m/s"
     nearest = limits[1] if value > limits[1] else limits[0]
-    return (
-        f"{WORDS[name]} in the pocket {_text(value, name)}, "
-        f"tests cover {in_words(limits, CONDITIONS[name])}: value at {_text(nearest, name)} used"
-    )
+    tests = f"tests cover {in_words(limits, CONDITIONS[name])}: value at {_text(nearest, name)} used"
+    return f"{WORDS[name]} in the pocket {_text(value, name)}, {tests}"
 
 
 def _text(value: float, name: str) -> str:

@@ -177,9 +177,7 @@ def _tests_of(
     tests = []
     for parts in series.values():  # those of one series in several files are one test
         several = len({part.checksum for part in parts}) > 1
-        tests += [
-            (home[one[0].source], joined(one)) for one in ([parts] if several else [[p] for p in parts])
-        ]
+        tests += [(home[parts[0].source], joined(parts))] if several else [(home[p.source], p) for p in parts]
     counts = Counter(log.series for _, log in tests if log.series)
     found = []
     for path, log in tests:
@@ -224,11 +222,8 @@ def friction_test(test: TestFriction) -> FrictionTest:
     except InputError as error:
         refused = of_log(error, test.source)
         if test.friction <= 0.0:
-            cure = "Its friction is zero in every row used: check its column, or leave the log out."
+            refused.cure = "Its friction is zero in every row used: check its column, or leave the log out."
         elif test.friction > FRICTION_LIMIT:
-            cure = (
-                "If a force was read as friction, map it as tangential_force below [columns] of a column map."
-            )
-        else:
-            cure = refused.cure
-        raise refused.at(refused.path, cure=cure) from None
+            where = "below [columns] of a column map"
+            refused.cure = f"If a force was read as friction, map it as tangential_force {where}."
+        raise refused from None

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,31 +44,24 @@ EDGE = 0.05  # share of the steady part, or three spans, by which a rise may lie
 RISE = 2.0  # steady friction over that before a rise in running-in from which the rise is reported
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Event:
-    """Something that happens at one row."""
+class Event(NamedTuple):
+    """Something that single rows show: a late loading, a lost load, a seizure."""
 
-    kind: str
-    """``"loading"``, ``"seizure"`` or ``"force lost"``."""
-    row: int  # first row of it; of ``"loading"`` the first row after it
-    size: float  # largest friction, or lowest force [N]
-    usual: float  # what it is compared with
+    row: int  # first row of it; of a loading the first row after it
+    is_end: bool  # whether the test ends there
+    sentence: str
 
 
-def row_events(log: RawLog) -> tuple[Event, ...]:
-    """Return what single rows show: loading, seizure, lost load; in the order of the rows."""
-    found = [*_force_events(log), *_friction_events(log)]
-    return tuple(sorted(found, key=lambda event: event.row))
+def _events(log: RawLog, along: Array, axis: str) -> list[Event]:
+    """Events of a log in the order of its rows; the abscissa has the shape (row,)."""
+
+    def at(row: int) -> str:
+        return in_words(float(along[min(row, along.size - 1)]), axis)
+
+    return sorted([*_force_events(log, at), *_friction_events(log, at)], key=lambda event: event.row)
 
 
-def kept_rows(events: tuple[Event, ...], rows: int) -> tuple[int, int]:
-    """Return the first row after loading, and the one where a seizure or a lost load ends the test."""
-    start = max((event.row for event in events if event.kind == "loading"), default=0)
-    ends = [event.row for event in events if event.kind in ("seizure", "force lost")]
-    return start, min([row for row in ends if row > start], default=rows)
-
-
-def _friction_events(log: RawLog) -> Iterator[Event]:
+def _friction_events(log: RawLog, at: Callable[[int], str]) -> Iterator[Event]:
     # the level that a fifth of the stretches of a test stay below: no seizure can lift it
     size = max(SMOOTHED, -(-log.rows // CHUNKS))
     starts = np.arange(0, log.rows, size)
@@ -87,22 +80,28 @@ def _friction_events(log: RawLog) -> Iterator[Event]:
         if last >= log.rows - SMOOTHED or last - first >= LASTING * log.rows:  # it stays
             calm = np.flatnonzero(smooth[:first] <= usual * (1.0 + ONSET * (SEIZURE - 1.0)))
             row = int(calm[-1]) + 1 if calm.size else first
-            yield Event(kind="seizure", row=row, size=float(smooth[first:last].max()), usual=usual)
+            low, high = (format_number(size, 3) for size in (usual, float(smooth[first:last].max())))
+            sentence = (
+                f"Seizure or a failed film: friction rises from {low} to {high} at {at(row)} and stays up"
+            )
+            yield Event(row, True, f"{sentence}; the steady part ends before it.")
             return
 
 
-def _force_events(log: RawLog) -> Iterator[Event]:
+def _force_events(log: RawLog, at: Callable[[int], str]) -> Iterator[Event]:
     force = log.normal_force
     if force is None or not np.isfinite(force).any():
         return
     usual = float(np.nanmedian(np.abs(force)))
     low = np.abs(force) < FORCE_LOSS * usual
     for first, last in _stretches(low):
-        least = float(np.nanmin(np.abs(force[first:last])))
+        high, least = (format_quantity(x, "N") for x in (usual, float(np.nanmin(np.abs(force[first:last])))))
         if first == 0:
-            yield Event(kind="loading", row=last, size=least, usual=usual)
+            sentence = f"The normal force reaches its {high} only at {at(last)}: what is before is left out."
+            yield Event(last, False, sentence)
         elif last - first >= SMOOTHED or last == log.rows:
-            yield Event(kind="force lost", row=first, size=least, usual=usual)
+            sentence = f"The normal force falls from {high} to {least} at {at(first)}"
+            yield Event(first, True, f"{sentence}: the steady part ends before it.")
 
 
 def _stretches(flag: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -238,17 +237,12 @@ class Reduction:
 
     log: RawLog
     test: TestFriction
-    rows: slice  # rows between loading and the end of the test
     steady_rows: slice  # rows of the steady part
-    along: Array  # abscissa of every row of the log, shape (row,)
     stretch: cycles.Stretch  # rows in which the contact slid under its load
     run_in: RunIn | None  # how the end of running-in was found; None where it was given
     spans: cycles.Spans
     """Means of the steady part from which its error comes; in cycles where those are known."""
     mean: steady.SteadyMean
-    steady_friction: Array  # friction of the rows of the steady part, shape (row,)
-    oscillation: cycles.Oscillation
-    events: tuple[Event, ...] = ()
 
 
 def reduce_log(log: RawLog, cut: Cut | None = None) -> TestFriction:
@@ -273,8 +267,9 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     if bad.size:
         where = f"{log.source}: friction"
         raise InputError(where, "must be a finite number in each row", f"none in row {bad[0] + 1}")
-    events = row_events(log)
-    kept = slice(*kept_rows(events, log.rows))
+    events = _events(log, along, axis)
+    loaded = max((one.row for one in events if not one.is_end), default=0)
+    kept = slice(loaded, min((e.row for e in events if e.is_end and e.row > loaded), default=log.rows))
     done, cycle, notes = cycles.clock(log, along)
     rows = cycles.Stretch(
         source=log.source,
@@ -291,18 +286,14 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     one = Reduction(
         log=log,
         test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found, strongest),
-        rows=kept,
         steady_rows=steady_rows,
-        along=along,
         stretch=stretch,
         run_in=found,
         spans=spans,
         mean=mean,
-        steady_friction=friction,
-        oscillation=strongest,
-        events=events,
     )
-    return replace(one, test=replace(one.test, flags=(*flags(one), *notes, *more)))
+    sentences = (*(event.sentence for event in events), *flags(one), *notes, *more)
+    return replace(one, test=replace(one.test, flags=sentences))
 
 
 def _test(
@@ -399,30 +390,16 @@ HIGH = 1.0  # friction above which a wrong column or unit is likelier than a con
 
 def flags(one: Reduction) -> Iterator[str]:
     """Yield what a reader has to consider about a test."""
-    for part in (_ends, _run_in, _drift, _length, _size):
+    for part in (_rise, _run_in, _drift, _length, _size):
         yield from part(one)
     yield from changes(one.log, one.steady_rows)
 
 
-def _ends(one: Reduction) -> Iterator[str]:
-    """Report where the load comes late or is lost, and where a film fails."""
-    axis = one.test.run_in_axis
-    for event in one.events:
-        place = in_words(float(one.along[min(event.row, one.along.size - 1)]), axis)
-        usual = format_number(event.usual, 3)
-        force, low = format_quantity(event.usual, "N"), format_quantity(event.size, "N")
-        if event.kind == "loading":
-            yield f"The normal force reaches its {force} only at {place}: what is before is left out."
-        elif event.kind == "force lost":
-            yield f"The normal force falls from {force} to {low} at {place}: the steady part ends before it."
-        elif event.kind == "seizure":
-            yield (
-                f"Seizure or a failed film: friction rises from {usual} to {format_number(event.size, 3)} at "
-                f"{place} and stays up; the steady part ends before it."
-            )
+def _rise(one: Reduction) -> Iterator[str]:
+    """Report where a film fails in running-in."""
     if (rise := run_in_rise(one.stretch.spans(), one.spans.start, one.test.friction)) is not None:
         low, high = format_number(rise[1], 3), format_number(one.test.friction, 3)
-        place = in_words(one.stretch.place(rise[0]), axis)
+        place = in_words(one.stretch.place(rise[0]), one.test.run_in_axis)
         cut = "if running-in ends elsewhere, write run_in_end in the column map; " if one.run_in else ""
         yield (
             f"Friction rises from {low} to {high} near {place}, in or next to what is cut as running-in: a "
@@ -483,8 +460,8 @@ def _length(one: Reduction) -> Iterator[str]:
 
 def _size(one: Reduction) -> Iterator[str]:
     """Report friction that dry contacts seldom have, in the mean or in one of a hundred rows, or no noise."""
-    mean = one.test.friction
-    low, high = (float(value) for value in np.percentile(one.steady_friction, (1.0, 99.0)))
+    mean, rows = one.test.friction, one.log.friction[one.steady_rows]
+    low, high = (float(value) for value in np.percentile(rows, (1.0, 99.0)))
     if not 0.0 < mean <= 2.0 or low < 0.0 or high > 2.0:
         numbers = (format_number(value, 3) for value in (mean, low, high))
         yield (
@@ -496,7 +473,7 @@ def _size(one: Reduction) -> Iterator[str]:
             f"Friction {format_number(mean, 3)} is above {format_number(HIGH)}, which dry sliding seldom "
             "reaches: check that its column is not a force, and the units of the forces."
         )
-    if np.ptp(one.steady_friction) == 0.0:
+    if np.ptp(rows) == 0.0:
         yield (
             f"Friction is {format_number(mean)} in every row: the log does not show its noise, "
             "and the interval holds none."

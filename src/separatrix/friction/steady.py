@@ -64,19 +64,13 @@ class SteadyMean:
     """Half turns of the stretch at which the correlated part of the spectrum has fallen to half [-]."""
     floor: Ratio  # white part of the spectrum at zero frequency
     long_chance: Ratio  # weight of all spectra whose correlation is too long for the stated interval
-    power: Array  # squares of the projections on cosines 1, 2, ..., shape (cosine,) [-]
-    density: float  # spectral density at zero frequency, in units of `power`
+    density: float  # spectral density at zero frequency, in units of the squares of `cosines`
 
     @property
     def change_chance(self) -> float:
         """Probability of a change at least as large without any drift."""
         t = abs(self.change) / max(self.change_error, 1e-300)
         return float(2.0 * stdtr(self.degrees_of_freedom, -t))
-
-    @property
-    def correlation(self) -> Ratio:
-        """Time of correlation, as a share of the stretch: that of the correlated part."""
-        return 1.0 / (np.pi * self.corner)
 
     @property
     def is_long(self) -> bool:
@@ -107,7 +101,6 @@ def steady_mean(values: Array) -> SteadyMean:
         corner=float(CORNERS[best[0]]),
         floor=float(FLOORS[best[1]]),
         long_chance=float(weights[np.ix_(CORNERS < LONG, FLOORS < MIXED)].sum()),
-        power=power,
         density=density,
     )
 

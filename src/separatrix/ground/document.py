@@ -50,11 +50,8 @@ class Part:
     def unit(self, name: str) -> str:
         """The unit of a value; a dash for a pure number."""
         found = self.units.get(name)
-        return (
-            str(found[0] if isinstance(found, list) else found)
-            if found and isinstance(found, str | list)
-            else "-"
-        )
+        found = found[0] if found and isinstance(found, list) else found
+        return found if found and isinstance(found, str) else "-"
 
 
 def part_of(document: Mapping[str, Any], where: str = "The answer") -> Part:

@@ -34,6 +34,7 @@ from separatrix.ground.toml import KeyPath
 from separatrix.ground.units import format_quantity, printable, shown
 
 Schema = TypeVar("Schema")
+Made = TypeVar("Made")
 MOST_FAULTS = 100
 MOST_BASES = 8
 
@@ -111,13 +112,11 @@ class Document(NamedTuple):
 
     def folder(self, path: KeyPath) -> Path:
         """Folder of the file that gives a key."""
-        parts = (path[:length] for length in range(len(path), -1, -1))
-        return next((self.folders[part] for part in parts if part in self.folders), Path())
+        return _longest(self.folders, path, Path())
 
     def place(self, path: KeyPath) -> str:
         """Place of the longest part of a path that has one."""
-        parts = (path[:length] for length in range(len(path), 0, -1))
-        return next((self.places[part] for part in parts if part in self.places), self.label)
+        return _longest(self.places, path, self.label)
 
     def written(self, path: KeyPath) -> Any:
         """Value of a path as it is written; that of a part of it where it ends there."""
@@ -141,12 +140,15 @@ class Document(NamedTuple):
         for i, part in enumerate(rest):
             is_plain = i == 0 or str(part).replace("_", "").isalnum()
             quoted = printable(str(part)) if is_plain and part != "" else f'"{printable(str(part))}"'
-            text += (
-                f"[{part + 1}]"
-                if isinstance(part, int)
-                else f"{' ' if text.endswith(']') and not i else '.'}{quoted}"
-            )
+            before = " " if text.endswith("]") and i == 0 else "."
+            text += f"[{part + 1}]" if isinstance(part, int) else f"{before}{quoted}"
         return text
+
+
+def _longest(known: Mapping[KeyPath, Made], path: KeyPath, default: Made) -> Made:
+    """What is known of the longest part of a path, from its beginning."""
+    parts = (path[:length] for length in range(len(path), -1, -1))
+    return next((known[part] for part in parts if part in known), default)
 
 
 def read(schema: type[Schema], path: Path) -> Loaded[Schema]:
@@ -245,9 +247,8 @@ def _dropped(section: Any, variant: Mapping[str, Any]) -> Iterator[str]:
     """Keys of the base that the variant replaces by an alternative, or makes meaningless."""
     for rule in getattr(section, "RULES", ()):
         if isinstance(rule, OneOf) and any(key in variant for group in rule.groups for key in group):
-            yield from (
-                key for group in rule.groups if not any(one in variant for one in group) for key in group
-            )
+            others = (group for group in rule.groups if not any(one in variant for one in group))
+            yield from (key for group in others for key in group)
     for name, one in keys_of(section).items():
         for only in one.key.only:
             try:
@@ -296,13 +297,8 @@ class Reading:
     def in_order(self) -> list[InputError]:
         """Mistakes in the order of the file; what concerns the file as a whole comes last."""
         known = {path: place for place, path in enumerate(self.document.places)}
-        none = len(known)
-
-        def order(fault: tuple[KeyPath, InputError]) -> int:
-            parts = (fault[0][:length] for length in range(len(fault[0]), 0, -1))
-            return next((known[part] for part in parts if part in known), none)
-
-        return [error for _, error in sorted(self.faults, key=order)]
+        ordered = sorted(self.faults, key=lambda fault: _longest(known, fault[0], len(known)))
+        return [error for _, error in ordered]
 
     def record(self, owner: type[Schema], raw: Any, path: KeyPath, above: Described | None = None) -> Schema:
         """Record of a table; fields of an open unit have that of the key above."""

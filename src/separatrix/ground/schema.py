@@ -369,9 +369,7 @@ def faults_of(
 def _ordered(owner: Any) -> tuple[tuple[Check, tuple[Check, ...], bool], ...]:
     """Checks of one key, whose refusal spares it the others; of several; of the whole record, marked."""
     names = {one.name for one in fields(owner)}
-    found = [
-        (function, after, not _parameters(function).keys() <= names) for function, after in _CHECKS[owner]
-    ]
+    found = [(one, after, not _parameters(one).keys() <= names) for one, after in _CHECKS[owner]]
     return tuple(sorted(found, key=lambda one: (one[2], len(_parameters(one[0])) > 1)))
 
 
@@ -479,15 +477,12 @@ def _of_list(arguments: tuple[Any, ...], one: Described, value: Any, path: KeyPa
         return
     of_items = [tuple(_of_type(inner, one, item, (*path, i))) for i, item in enumerate(value)]
     if wrong := [fault for faults in of_items for fault in faults]:
-        ends = [
-            format_quantity(v, one.unit) if is_number(v) and math.isfinite(v) else shown(v) for v in value
-        ]
-        at = wrong[0].path[-1]
-        yield from (wrong[0]._replace(key=path, got=ends[int(at)]),) if is_pair else wrong
+        end = value[int(wrong[0].path[-1])] if is_pair else None
+        got = format_quantity(end, one.unit) if is_number(end) and math.isfinite(end) else shown(end)
+        yield from (wrong[0]._replace(key=path, got=got),) if is_pair else wrong
         return
-    if (names := one.key.distinct) and len({tuple(getattr(v, name) for name in names) for v in value}) < len(
-        value
-    ):
+    names = one.key.distinct
+    if names and len({tuple(getattr(v, name) for name in names) for v in value}) < len(value):
         rule = f"has two with the same {', '.join(names[:-1])} and {names[-1]}"
         yield Fault(path, rule, "Keep one, or give the key in which they differ.", "")
     if inner is not float:
@@ -523,11 +518,6 @@ def _arguments(
 
 def defaults_of(owner: Any) -> dict[str, Any]:
     """Value of each field that is not given; MISSING if there is none."""
-    return dict(_defaults_of(owner))
-
-
-@cache
-def _defaults_of(owner: Any) -> Mapping[str, Any]:
     made = ((one.name, one.default, one.default_factory) for one in fields(owner))
     return {name: default if factory is MISSING else factory() for name, default, factory in made}
 
@@ -547,9 +537,8 @@ def _check_itself(self: Any) -> None:
     wrong: list[InputError] = []
     for name, one in keys.items():
         value = values[name]
-        if one.unit in UNITS and (
-            isinstance(value, str) or (type(value) is tuple and str in map(type, value))
-        ):
+        has_text = isinstance(value, str) or (type(value) is tuple and str in map(type, value))
+        if has_text and one.unit in UNITS:
             with noted(wrong):
                 values[name] = _parsed(value, one.unit, f"{owner.__name__}.{name}")
                 object.__setattr__(self, name, values[name])

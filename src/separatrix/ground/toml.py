@@ -5,6 +5,7 @@ A `Reader` takes a value and the name of its place, and returns what a record ha
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
@@ -12,9 +13,9 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from separatrix.ground.errors import InputError, noted, together
+from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
 from separatrix.ground.units import NUMBER, missing_unit, parse, printable, shown
 
@@ -23,10 +24,6 @@ Choice = TypeVar("Choice", bound=Enum)
 Reader = Callable[[object, str], Made]
 KeyPath = tuple[str | int, ...]
 """Keys from the top of a file to a value; a number is the place in a list, from 0."""
-
-Values = dict[str, Any]
-"""Values of a table by their keys, each of the type that the reader of its key returns."""
-
 
 MOST_BYTES = 256 * 1024
 LONGEST_LINE = 4000
@@ -173,9 +170,8 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
     line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
     if "overwrite" in message or "twice" in message:
         key = _KEY_LINE.match(line)
-        return InputError(
-            where, f"has {printable('.'.join(_plain(key[1]))) if key else shown(line)} a second time"
-        )
+        name = printable(".".join(_plain(key[1]))) if key else shown(line)
+        return InputError(where, f"has {name} a second time")
     reason = message[: found.start()]
     rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
     return InputError(where, rule, printable(line), _cure(line))
@@ -188,6 +184,16 @@ def _cure(line: str) -> str:
     if bare := re.search(r"=\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*[A-Za-z][^#\"]{0,20})", line):
         return f'Put quantities in quotes: "{printable(bare[1].strip())}".'
     return "Put text in quotes." if re.search(r"=\s*[A-Za-z]", line) else ""
+
+
+def as_toml(value: object) -> str:
+    """A value in TOML: JSON's escapes are among its own."""
+    if isinstance(value, Mapping):
+        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else as_toml(key) for key in value}
+        return "{ " + ", ".join(f"{keys[key]} = {as_toml(one)}" for key, one in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(as_toml, value))}]"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def folded(name: str) -> str:
@@ -246,14 +252,13 @@ def truth(value: object, where: str) -> bool:
     return value
 
 
-def text(value: object, where: str, longest: int = 200, cure: str = "", *, least: int = 1) -> str:
+def text(value: object, where: str, longest: int = 200, *, least: int = 1) -> str:
     """Read a line of printable text."""
     if not isinstance(value, str):
-        raise InputError(where, "must be text", shown(value), cure)
+        raise InputError(where, "must be text", shown(value))
     if not least <= len(value.strip()) <= longest or not value.isprintable():
-        raise InputError(
-            where, f"must be one line of {least} to {longest} printable characters", shown(value)
-        )
+        rule = f"must be one line of {least} to {longest} printable characters"
+        raise InputError(where, rule, shown(value))
     return value
 
 
@@ -270,31 +275,6 @@ def choice(options: type[Choice]) -> Reader[Choice]:
         return options(found)
 
     return read
-
-
-def table(
-    value: object,
-    where: str,
-    readers: Mapping[str, Reader[object]],
-    required: tuple[str, ...] = (),
-    what: str = "this table",
-) -> Values:
-    """Read a table in place, with known keys only and all required ones; all faults are collected."""
-    if not isinstance(value, dict):
-        raise InputError(where, f"must be a table with {', '.join(required)}", shown(value))
-    given: Values = {}
-    problems: list[InputError] = []
-    for key, item in value.items():
-        at = f"{where}.{printable(key)}"
-        with noted(problems):
-            if key not in readers:
-                raise InputError(at, f"is not a key of {what}", cure=nearest(key, readers))
-            given[key] = readers[key](item, at)
-    if missing := [key for key in required if key not in value]:
-        problems.append(InputError(where, f"lacks: {', '.join(missing)}"))
-    if problems:
-        raise together(problems)
-    return given
 
 
 def _as_number(value: object) -> str:

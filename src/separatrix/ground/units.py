@@ -239,10 +239,10 @@ def unit_of(record: type, field: str) -> str:
     return found.group(1) if found else ""
 
 
-def spellings(unit: str, most: int = 4) -> str:
-    """Accepted units of a quantity, for a message: ``"m, cm, mm, um, ..."``."""
+def spellings(unit: str) -> str:
+    """Four of the accepted units of a quantity, for a message: ``"m, cm, mm, um, ..."``."""
     known = list(UNITS[unit])
-    return ", ".join(known[:most]) + (", ..." if len(known) > most else "")
+    return ", ".join(known[:4]) + (", ..." if len(known) > 4 else "")
 
 
 def shown(value: object) -> str:

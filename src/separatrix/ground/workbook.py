@@ -214,9 +214,8 @@ def _sheet(
     for row, cells in enumerate(saved.iter_rows(max_row=most), 1):
         for column, cell in enumerate(cells, 1):
             formula = formulas.get((row, column), "")
-            if (cell.value is None and not formula) or (
-                isinstance(cell.value, str) and not cell.value.strip()
-            ):
+            is_blank = isinstance(cell.value, str) and not cell.value.strip()
+            if is_blank or (cell.value is None and not formula):
                 continue
             where = sheet.at(row, column)
             if row > MOST_ROWS or column > MOST_COLUMNS:
@@ -349,9 +348,8 @@ class _Making:
         items, columns = self.counted.setdefault(home, {}), _columns(sheet, _item_of(self._found(home)[1]))
         for row in range(3, sheet.last_row + 1):
             with noted(self.problems):
-                cells = {
-                    path: cell for path, (number, _) in columns.items() if (cell := sheet.given(row, number))
-                }
+                every = ((path, sheet.given(row, number)) for path, (number, _) in columns.items())
+                cells = {path: cell for path, cell in every if cell}
                 if not cells:
                     continue
                 at = (*home, items.setdefault(f"row {row}", len(items)))
@@ -401,10 +399,8 @@ class _Making:
             elif isinstance(table, dict):
                 table = table.setdefault(part, [] if isinstance(after, int) else {})
         if not isinstance(table, dict) or path[-1] in table:
-            is_parted = isinstance(table, dict)
-            rule = (
-                "is given by rows of its parts, too" if is_parted else "is given as a value of its own, too"
-            )
+            ways = "by rows of its parts" if isinstance(table, dict) else "as a value of its own"
+            rule = f"is given {ways}, too"
             rule = "must name a key of the item" if isinstance(path[-1], int) else rule
             raise InputError(where, rule)
         table[path[-1]] = value

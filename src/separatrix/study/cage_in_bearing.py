@@ -62,9 +62,7 @@ def ring_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
 
 def lands_between_rings(cage: CageDesign, bearing: BallBearing) -> Faults:
     """Lands are on the cage, and those of the rings between the grooves; both are closer than a ball."""
-    if (
-        cage.land_clearance is not None and cage.land_clearance >= bearing.ball_diameter
-    ):  # it would lose its balls first
+    if (cage.land_clearance or 0.0) >= bearing.ball_diameter:  # it would lose its balls first
         rule = f"must be smaller than a ball, {format_quantity(bearing.ball_diameter, 'm')}"
         cure = 'It is the diametral clearance; for a cage without a land give guidance = "ball".'
         yield Fault(("cage", "land_clearance"), rule, cure)
@@ -142,8 +140,7 @@ def pockets_for_balls(cage: CageDesign, bearing: BallBearing) -> Faults:
     elif cage.pocket_angles:
         step, i = cage_design.least_step(cage.pocket_angles)
         if step <= needed:
-            rule = (
-                f"leave no bar between pockets {i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}: "
-                f"must be more than {format_quantity(needed, 'rad')} apart"
-            )
+            pockets = f"{i + 1} and {(i + 1) % len(cage.pocket_angles) + 1}"
+            least = f"must be more than {format_quantity(needed, 'rad')} apart"
+            rule = f"leave no bar between pockets {pockets}: {least}"
             yield Fault(("cage", "pocket_angles"), rule, got=format_quantity(step, "rad"))

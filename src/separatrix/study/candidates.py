@@ -173,6 +173,7 @@ def _tested(
 ) -> tuple[tuple[str, ...], tuple[Candidate, ...]]:
     """Environments and candidates of a friction file beside the study, or of a table of the library."""
     helper, name, temperature = helper_of(reading), section.friction or "", temperature_of(reading)
+    at = path
     frictions: Mapping[str, Mapping[str, Friction | None]]
     try:
         if name.endswith(".toml"):
@@ -186,25 +187,15 @@ def _tested(
                 row: {env: f and _stated(f, env, found, section.friction_scatter) for env, f in each.items()}
                 for row, each in found.rows.items()
             }
-    except InputError as error:
-        reading.refuse(path, error)
-        raise Refused from None
-    try:
+        at = (*path[:-1], "materials")
         chosen = _chosen(section, tuple(frictions), name)
     except InputError as error:
-        reading.refuse((*path[:-1], "materials"), error)
+        reading.refuse(at, error)
         raise Refused from None
-    kind = "cage material"
-    candidates = (
-        Candidate(
-            name=one,
-            friction=frictions[one],
-            material=helper.library.material(kind, one, temperature)
-            if one in helper.library.names(kind)
-            else None,
-        )
-        for one in chosen
-    )
+    library, kind = helper.library, "cage material"
+    known = library.names(kind)
+    materials = {one: library.material(kind, one, temperature) for one in chosen if one in known}
+    candidates = (Candidate(name=one, friction=frictions[one], material=materials.get(one)) for one in chosen)
     return environments, tuple(candidates)
 
 
@@ -300,9 +291,8 @@ def fitting_environment(study: Study, library: Library) -> str | None:
         found = []
         for name in question.environments:
             medium, comma, counterface = name.partition(",")
-            if alike(medium, fluid, "fluid") and (
-                not comma or alike(counterface, surface, "bearing material")
-            ):
+            is_surface = not comma or alike(counterface, surface, "bearing material")
+            if is_surface and alike(medium, fluid, "fluid"):
                 found.append(name)
         if len(found) == 1:
             return found[0]

@@ -33,11 +33,9 @@ def cautions(study: Study) -> Iterator[str]:
     """Sentences to warn with."""
     cage, operation = study.cage, study.operation
     yield from _materials(study)
-    fluid = study.fluid
-    if fluid is not None and operation.temperature is not None:
-        yield from (
-            f"[operation] fluid {sentence}" for sentence in contradictions(fluid, operation.temperature)
-        )
+    if study.fluid is not None and operation.temperature is not None:
+        for sentence in contradictions(study.fluid, operation.temperature):
+            yield f"[operation] fluid {sentence}"
     if cage is not None:
         yield from _cage(study, cage)
     yield from beyond_bearings(study)

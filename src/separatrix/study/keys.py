@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import types
-import typing
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cache
 from typing import Any
 
 from separatrix.ground.errors import InputError
@@ -51,18 +48,9 @@ class StudyNumber:
         return self.path[-1] == "mean"
 
 
-@cache
 def numbers_of(record: type) -> dict[str, str]:
     """Unit of each field of a record that is one number, perhaps absent."""
-    units: dict[str, str] = {}
-    for name, whole in typing.get_type_hints(record, include_extras=True).items():
-        is_union = typing.get_origin(whole) in (typing.Union, types.UnionType)
-        parts = typing.get_args(whole) if is_union else (whole,)
-        (hint, *others) = [part for part in parts if part is not types.NoneType]
-        unit = WHOLE if hint is int else getattr(hint, "__metadata__", (None,))[0]
-        if isinstance(unit, str) and not others:
-            units[name] = unit
-    return units
+    return {name: one.unit for name, one in keys_of(record).items() if one.hint in (int, float)}
 
 
 def study_numbers(study: Study) -> dict[str, StudyNumber]:

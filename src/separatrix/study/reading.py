@@ -6,7 +6,6 @@ Keys and rules are those of the records (`study.Study` is the schema); docs/refe
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 from difflib import get_close_matches
 from os.path import exists, isfile
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Any
 
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
-from separatrix.ground.schema import built
+from separatrix.ground.schema import Made, built, defaults_of
 from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
 from separatrix.ground.units import printable, shown
 from separatrix.study.candidates import candidate_named, fitting_environment
@@ -22,8 +21,7 @@ from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.helper import StudyHelper
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
-from separatrix.study.library import Library, beside, joined, library_files
-from separatrix.study.library.library_file import library_of_text
+from separatrix.study.library import Library, beside, joined, library_files, library_of_text
 from separatrix.study.library.records import Content
 from separatrix.study.study import Study, chosen_models, shipped_studies, stiffness_is_known, with_models
 from separatrix.study.uncertain import written
@@ -64,18 +62,11 @@ def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> St
         cage |= {name: model.value for name, model in chosen_models(models).items()}
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
-    built_study, notes = study_of(document, name)
+    built_study, notes = _study_of(document, name, library_of(document))
     if models:
         require(built_study, f"--{next(iter(models))}", "cage")
         built_study = with_models(built_study, models)
-    noted: Study = built_with(built_study, notes=(*notes, *cautions(built_study)))
-    return noted
-
-
-def study_of(document: Document, name: str) -> tuple[Study, tuple[str, ...]]:
-    """Study of a document, and notes on what has no effect in it or is left out."""
-    library = library_of(document)
-    return _study_of(document, name, library)
+    return built_with(built_study, notes=(*notes, *cautions(built_study)))
 
 
 def study_again(content: Mapping[str, Any]) -> Study:
@@ -87,26 +78,26 @@ def study_again(content: Mapping[str, Any]) -> Study:
         The content is not that of a study, or names a file that is not kept.
     """
     files: Mapping[str, str] = content["files"]
-    libraries = [(name.partition(": ")[2], text) for name, text in files.items() if name.startswith(LIBRARY)]
-    library = joined([library_of_text(text, label) for label, text in libraries])
+    libraries = [(text, name.partition(": ")[2]) for name, text in files.items() if name.startswith(LIBRARY)]
+    library = joined([library_of_text(*one) for one in libraries])
     document = Document(content["name"], content["data"], {}, files=dict(files), is_kept=True)
     study, _ = _study_of(document, content["name"], library)
-    kept: Study = built_with(study, origins=content["origins"])
-    return kept
+    return built_with(study, origins=content["origins"])
 
 
 def _study_of(document: Document, name: str, library: Library) -> tuple[Study, tuple[str, ...]]:
+    """Study of a document, and notes on what has no effect in it or is left out."""
     loaded = read_document(Study, document, StudyHelper(library))
     study = loaded.value
-    values = {one.name: getattr(study, one.name) for one in fields(Study)}
-    values |= {"name": name, "title": study.title or name, "origins": _origins(loaded, document)}
+    values: dict[str, Any] = {
+        "name": name,
+        "title": study.title or name,
+        "origins": _origins(loaded, document),
+    }
     data = {key: one for key, one in document.data.items() if key not in ("extends", "library")}
     values["content"] = {"name": name, "data": data, "files": document.files, "origins": values["origins"]}
-    found, table = (
-        library.fluid(study.operation.fluid or ""),
-        document.data.get("ranking", {}).get("friction"),
-    )
-    values["fluid"] = None if found is None else found.plain()
+    fluid, table = library.fluid(study.operation.fluid or ""), document.written(("ranking", "friction"))
+    values["fluid"] = None if fluid is None else fluid.plain()
     if known := library.named("friction table", table if isinstance(table, str) else ""):
         values["friction_table"] = library.friction_table(known).plain()
     if study.cage is not None:
@@ -115,13 +106,13 @@ def _study_of(document: Document, name: str, library: Library) -> tuple[Study, t
     if environment := fitting_environment(study, library):
         values["ranking"] = built_with(study.ranking, environment=environment)
         values["origins"]["ranking.environment"] = FROM_BEARING
-    study, left_out = _without_unknown_stiffness(built(Study, values), document)
+    study, left_out = _without_unknown_stiffness(built_with(study, **values), document)
     return _with_distributions(study, loaded, document), (*loaded.notes, *left_out)
 
 
-def built_with(record: Any, **changes: object) -> Any:
+def built_with(record: Made, **changes: object) -> Made:
     """A record with other values that no check concerns."""
-    return built(type(record), {one.name: getattr(record, one.name) for one in fields(record)} | changes)
+    return built(type(record), {name: getattr(record, name) for name in defaults_of(type(record))} | changes)
 
 
 def _where(document: Document, path: KeyPath) -> str:
@@ -158,8 +149,7 @@ def _with_distributions(study: Study, loaded: Loaded[Study], document: Document)
             problems.append(error.at(_where(document, path)))
     if problems:
         raise together(problems)
-    made: Study = built_with(study, distributions=settled)
-    return made
+    return built_with(study, distributions=settled)
 
 
 def number_name(study: Study, path: KeyPath) -> str:
@@ -177,11 +167,8 @@ def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
     """Place and text of every given key of a section, and what follows from others."""
     origins: dict[str, str] = {}
     for path, source in loaded.sources.items():
-        if (
-            source.origin is not Origin.GIVEN
-            or len(path) < 2
-            or (len(path) > 2 and path[:2] != ("film", "wear"))
-        ):
+        is_key = len(path) == 2 or path[:2] == ("film", "wear")
+        if source.origin is not Origin.GIVEN or not is_key:
             continue
         value = document.written(path)
         is_plain = not isinstance(value, dict | list) or path in loaded.distributions

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.friction.prediction import Friction as Friction
-from separatrix.ground.errors import InputError
+from separatrix.ground.errors import InputError, noted, together
 from separatrix.ground.reader import Reading
 from separatrix.ground.schema import (
     Fault,
@@ -31,7 +31,7 @@ from separatrix.ground.schema import (
     record,
 )
 from separatrix.ground.sheet import is_workbook
-from separatrix.ground.toml import KeyPath, Kind, ratio, table, whole
+from separatrix.ground.toml import KeyPath, Kind, Reader, nearest, ratio, whole
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
@@ -41,6 +41,7 @@ from separatrix.ground.units import (
     RadianPerSecond,
     Ratio,
     Second,
+    printable,
     shown,
 )
 from separatrix.study import cage_in_bearing
@@ -164,7 +165,18 @@ def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
 def read_factors(raw: Any, path: KeyPath, reading: Reading) -> tuple[float, ...]:
     """Numbers of a list, or those of ``{ from = 0.05, to = 0.95, count = 19 }``."""
     if isinstance(raw, dict):
-        given = table(raw, "", {"from": ratio, "to": ratio, "count": whole}, ("from", "to", "count"))
+        readers: dict[str, Reader[float]] = {"from": ratio, "to": ratio, "count": whole}
+        problems, given = list[InputError](), dict[str, Any]()
+        for name, value in raw.items():
+            with noted(problems):
+                if name not in readers:
+                    cure = nearest(name, readers)
+                    raise InputError(f".{printable(name)}", "is not a key of this table", cure=cure)
+                given[name] = readers[name](value, f".{name}")
+        if missing := [name for name in readers if name not in raw]:
+            problems.append(InputError("", f"lacks: {', '.join(missing)}"))
+        if problems:
+            raise together(problems)
         if not 2 <= given["count"] <= 1000:
             raise InputError("", "needs a count from 2 to 1000", shown(given["count"]))
         return evenly_spaced(given["from"], given["to"], given["count"])

@@ -128,9 +128,8 @@ class StudyKey:
         """Values to choose from, of which one must be taken if `is_word`."""
         if self.is_word:
             return tuple(str(option.value) for option in self.one.hint)
-        kind = (
-            "friction table" if (self.section, self.name) == ("ranking", "friction") else self.one.key.named
-        )
+        is_table = (self.section, self.name) == ("ranking", "friction")
+        kind = "friction table" if is_table else self.one.key.named
         return Library().names(kind) if kind else ()
 
     @property

@@ -146,9 +146,8 @@ def _between(value: dict[str, object], reader: Reader[float]) -> Distribution:
     if log and low <= 0.0:
         cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
         raise InputError(at, "must be > 0 with log = true", shown(bounds[0]), cure)
-    return _made(
-        distribution.LogUniform if log else distribution.Uniform, at, low=low, high=high, text=written(value)
-    )
+    kind = distribution.LogUniform if log else distribution.Uniform
+    return _made(kind, at, low=low, high=high, text=written(value))
 
 
 def _moments(value: dict[str, object], unit: str) -> Normal:

@@ -123,9 +123,8 @@ def _logs(content: Content, columns: ColumnMap) -> tuple[RawLog, ...]:
     wrong: InputError | None = None
     stated = columns.conditions(content.path)
     for part in _named(parts, content, columns):
-        source = f"{content.name}, {printable(part.name)}" if part.name else content.name
         try:
-            log = raw_log(part, source, content.checksum, content.words, columns, stated)
+            log = raw_log(part, content, columns, stated)
             found.append((part.name, replace(log, series=_series(part, content, columns))))
         except InputError as error:
             wrong = wrong or error
@@ -187,7 +186,7 @@ def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
     joint = replace(before, rows=rows, lines=lines)
     decimal = "," if "," in "".join(rows) and block.separator != "," else "."
     try:
-        arrays = in_si(joint, replace(columns, columns=abscissae), None, [], decimal).arrays
+        arrays = in_si(joint, replace(columns, columns=abscissae), None, decimal).arrays
     except InputError:
         return False
     clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""

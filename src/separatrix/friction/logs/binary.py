@@ -89,9 +89,8 @@ def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
     for number, used in rows.items():
         has_numbers = any(text[:1] in f"0123456789-.{ERROR}{UNCOMPUTED}" for text in used.values())
         last = max(width, *used) if has_numbers or len(used) > 1 else max(used, default=0)
-        lines[number - 1 : number] = (
-            ["\t".join(used.get(i, "") for i in range(1, last + 1))] if used else [""]
-        )
+        if used:
+            lines[number - 1] = "\t".join(used.get(i, "") for i in range(1, last + 1))
     return lines
 
 
@@ -189,11 +188,8 @@ def _tables(group: nptdms.TdmsGroup, content: nptdms.TdmsFile, label: str, size:
         if len(channel) and channel.dtype is not None and np.dtype(channel.dtype).kind in "fiubM":
             lengths.setdefault(len(channel), []).append(channel)
     pairs = {str(key): str(value) for key, value in {**content.properties, **group.properties}.items()}
-    above = [
-        f"{printable(key).replace(':', ' ')}: {printable(value, LONGEST_PROPERTY)}"
-        for key, value in pairs.items()
-        if value.strip()
-    ]
+    keys = {key: printable(key).replace(":", " ") for key, value in pairs.items() if value.strip()}
+    above = [f"{name}: {printable(pairs[key], LONGEST_PROPERTY)}" for key, name in keys.items()]
     for length, channels in sorted(lengths.items(), reverse=True):
         if len(channels) > MOST_CHANNELS or 8 * length * len(channels) > MOST_BYTES or length > size:
             rule = f"must have at most {MOST_CHANNELS} channels in a group, of {MOST_BYTES // 1024**2} MB"

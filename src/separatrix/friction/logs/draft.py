@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,13 +14,19 @@ from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, g
 from separatrix.friction.logs.log import metadata_of, two_ways
 from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
 from separatrix.ground.errors import InputError
+from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
 
 CHECK = "# guess, check"
 UNKNOWN = "..."  # is refused until it is edited
-USUAL = {"time": "s", "distance": "m", "temperature": "degC", "wear_depth": "um"} | dict.fromkeys(
-    ("friction", "cycles"), "-"
-)
+USUAL = {
+    "time": "s",
+    "distance": "m",
+    "temperature": "degC",
+    "wear_depth": "um",
+    "friction": "-",
+    "cycles": "-",
+}
 """Units that a draft offers where the file states none, to be checked; of others N."""
 
 MOST_BREAKS = 20  # kinds of lines among the rows
@@ -51,17 +56,23 @@ Options = dict[str, list[Option]]  # by meaning
 
 @dataclass(slots=True)
 class Draft:
-    """Lines of a column map, what has to be looked at, and what is not used."""
+    """Lines of the column map of a table, what has to be looked at, and what is not used."""
 
     given: ColumnMap
     stated: Mapping[str, Any]  # conditions of the file
+    block: tables.Block
+    cells: list[list[str]]  # of each column
     form: list[str] = field(default_factory=list)
     columns: dict[str, str] = field(default_factory=dict)  # by meaning
+    used: set[int] = field(default_factory=set)  # columns that have such a line
     test: list[str] = field(default_factory=list)
-    cells: list[list[str]] = field(default_factory=list)  # of each column
     seen: list[str] = field(default_factory=list)
     questions: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+
+    def head(self, i: int) -> str:
+        """The head of a column, in quotes."""
+        return as_toml(self.block.heads[i].strip())
 
     def ask(self, line: str, question: str) -> str:
         """Return a line with its question, which is noted."""
@@ -72,26 +83,16 @@ class Draft:
         """The map, ready to be looked at."""
         lines = [
             f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.',
-            f"name = {_toml(f'map of {name}'[:200])}",
+            f"name = {as_toml(f'map of {name}'[:200])}",
             *("", "[format]", *self.form, "", "[columns]", *self.columns.values(), "", "[test]"),
         ]
         written = self.given.as_written
-        lines += [*(f"{key} = {_toml(value)}" for key, value in written.get("test", {}).items()), *self.test]
+        lines += [f"{key} = {as_toml(value)}" for key, value in written.get("test", {}).items()] + self.test
         for pattern, section in written.get("files", {}).items():
-            lines += ["", f"[files.{_toml(pattern)}]"]
-            lines += [f"{key} = {_toml(value)}" for key, value in section.items()]
+            lines += ["", f"[files.{as_toml(pattern)}]"]
+            lines += [f"{key} = {as_toml(value)}" for key, value in section.items()]
         about = "# The columns, with their first, middle and last values:"
         return "\n".join([*lines, "", about, *self.seen, ""])
-
-
-def _toml(value: object) -> str:
-    """A value in TOML."""
-    if isinstance(value, Mapping):
-        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml(key) for key in value}
-        return "{ " + ", ".join(f"{keys[key]} = {_toml(one)}" for key, one in value.items()) + " }"
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_toml, value))}]"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) -> Draft:
@@ -100,21 +101,19 @@ def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) 
     `given` is what the user and a known layout state; `why` is the reason that they do not suffice, if any.
     """
     stated = given.conditions(content.path)
-    drafts = [(group.name, _draft(group, Draft(given, stated))) for group in content.groups]
-    for part in content.parts:
-        draft = Draft(given, stated)
-        if (block := _block(part, draft)) is not None:
-            drafts.append((part.sheet, _draft(block, draft)))
+    drafts = [(one.name, _draft(one, given, stated, TextFormat(), {})) for one in content.groups]
+    firsts = ((part.sheet, _first_block(part, given)) for part in content.parts)
+    drafts += [(sheet, _draft(one[0], given, stated, *one[1:])) for sheet, one in firsts if one is not None]
     if not drafts:
         raise _no_table(content)
-    name, found = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
-    if len(drafts) > 1 and found.questions and not given.format.tables:
-        listed = ", ".join(_toml(one) for one, _ in drafts)
-        found.form.append(found.ask(f"tables = [{_toml(name)}]", f"one of {listed}?"))
+    name, chosen = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
+    if len(drafts) > 1 and chosen.questions and not given.format.tables:
+        listed = ", ".join(as_toml(one) for one, _ in drafts)
+        chosen.form.append(chosen.ask(f"tables = [{as_toml(name)}]", f"one of {listed}?"))
     if why is not None:
         question = f"the map of this layout does not fit: {why.rule} {why.got}"
-        found.form.insert(0, found.ask(f"# {given.name}", question))
-    return found
+        chosen.form.insert(0, chosen.ask(f"# {given.name}", question))
+    return chosen
 
 
 def _no_table(content: tables.Content) -> InputError:
@@ -129,19 +128,18 @@ def _no_table(content: tables.Content) -> InputError:
 
 
 # --- the table ------------------------------------------------------------------------------------
-def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
-    """The first table of a text; how it is written goes into the draft."""
-    form = draft.given.format
+def _first_block(
+    part: tables.Part, given: ColumnMap
+) -> tuple[tables.Block, TextFormat, dict[str, str]] | None:
+    """The first table of a text, how it is written, and questions on that by the key of the format."""
+    form = given.format
     separator, others = tables.separator_in(part, form)
-    heads = _heads(part, separator, draft.given) if separator else None
+    heads = _heads(part, separator, given) if separator else None
     if heads is None:
         return None
-    asked = {"separator": f"or {' or '.join(map(_toml, others))}?"} if others else {}
+    asked = {"separator": f"or {' or '.join(map(as_toml, others))}?"} if others else {}
     form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
     blocks, form = _blocks(part, form, heads, asked)
-    for key, value in given_in(form).items():
-        line = f"{key} = {_toml(value)}"
-        draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
     if not blocks:
         return None
     block = blocks[0]
@@ -150,7 +148,7 @@ def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
     if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
         middle = block.rows[1000 : -1000 : len(block.rows) // 10_000]
         block.rows = [*block.rows[:1000], *middle, *block.rows[-1000:]]
-    return block
+    return block, form, asked
 
 
 def _blocks(
@@ -196,23 +194,32 @@ def _heads(part: tables.Part, separator: str, given: ColumnMap) -> tables.Heads 
 
 
 # --- its columns ----------------------------------------------------------------------------------
-def _draft(block: tables.Block, draft: Draft) -> Draft:
-    """What each column means: certain by name and unit, or asked."""
+def _draft(
+    block: tables.Block,
+    given: ColumnMap,
+    stated: Mapping[str, Any],
+    form: TextFormat,
+    asked: Mapping[str, str],
+) -> Draft:
+    """What each column of a table means: certain by name and unit, or asked."""
     if block.columns is not None:
-        draft.cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
+        cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
     else:
-        draft.cells = tables.cells_of(block, range(len(block.heads)))
-    options: Options = {}
-    for i, cells in enumerate(draft.cells):
-        for meaning, option in _options(block, i, cells).items():
+        cells = tables.cells_of(block, range(len(block.heads)))
+    draft, options = Draft(given, stated, block, cells), Options()
+    for key, value in given_in(form).items():
+        line = f"{key} = {as_toml(value)}"
+        draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
+    for i, column in enumerate(cells):
+        for meaning, option in _options(block, i, column).items():
             options.setdefault(meaning, []).append(option)
-        values = ", ".join(cells[k] for k in (0, len(cells) // 2, -1)) if cells else ""
+        values = ", ".join(column[k] for k in (0, len(column) // 2, -1)) if column else ""
         beside = f" {block.below[i]}" if block.below[i] else ""
-        draft.seen.append(printable(f"# {i + 1:3d} {_toml(block.heads[i])}{beside}: {values}", 150))
-    used = _given(block, draft)
-    _decide(block, draft, options, used)
-    _decimal(block, draft, [draft.cells[i] for i in sorted(used)])
-    _conditions(block, draft)
+        draft.seen.append(printable(f"# {i + 1:3d} {as_toml(block.heads[i])}{beside}: {values}", 150))
+    _given(draft)
+    _decide(draft, options)
+    _decimal(draft)
+    _conditions(draft)
     return draft
 
 
@@ -227,9 +234,9 @@ def _options(block: tables.Block, i: int, cells: Sequence[str]) -> dict[str, Opt
     if 2 * sum(not tables.is_number(cell) for cell in sample) > len(sample):
         return {}
     for name, unit in ways:
-        meanings = (
-            {} if unit.isdigit() else naming.ranks(name.rpartition(".")[2]) | naming.ranks(name)
-        )  # COF_2: a station
+        if unit.isdigit():  # COF_2: a station
+            continue
+        meanings = naming.ranks(name.rpartition(".")[2]) | naming.ranks(name)
         if naming.looks_extreme(ways[0][0]):
             meanings = {key: rank for key, rank in meanings.items() if not re.search("friction|force", key)}
         if meanings:
@@ -244,11 +251,10 @@ def _option(block: tables.Block, i: int, meaning: str, rank: int, *, is_only: bo
     scales = {naming.scale_of(one, meaning) for one in stated}
     known = (None not in scales and len(scales) == 1) or meaning == "position"
     known = known or (not stated and meaning in ("friction", "cycles") and is_only)
-    is_torque = meaning in ("friction", "tangential_force") and naming.looks_like_torque(
-        block.heads[i], block.below[i]
-    )
     unit = (stated[0] if known else ", ".join(stated)) if stated else ""
-    return Option(rank, i, unit, known and not is_torque)
+    if meaning in ("friction", "tangential_force"):
+        known = known and not naming.looks_like_torque(block.heads[i], block.below[i])
+    return Option(rank, i, unit, known)
 
 
 def _clock(rank: int, i: int, stated: Sequence[str], cells: Sequence[str], clocks: Sequence[str]) -> Option:
@@ -282,28 +288,25 @@ def _date_format(dates: Sequence[re.Match[str]]) -> tuple[str, bool]:
 
 
 # --- the lines of the map -------------------------------------------------------------------------
-def _given(block: tables.Block, draft: Draft) -> set[int]:
+def _given(draft: Draft) -> None:
     """Columns that are stated already, with their lines; what the table does not have is asked."""
-    used = set()
+    heads = draft.block.heads
     for meaning, one in draft.given.columns.items():
-        places = tables.matching(one.names, block.heads) if one.number is None else [one.number - 1]
-        if places and max(places) < len(block.heads):
+        places = tables.matching(one.names, heads) if one.number is None else [one.number - 1]
+        if places and max(places) < len(heads):
             draft.columns[meaning] = _of_twins(draft, meaning, one, places)
-            used |= set(places)
+            draft.used |= set(places)
         elif not one.optional:
             name = one.names[0] if one.names else f"number {one.number}"
-            draft.questions.append(f"no column {_toml(name)}, which the column map names as {meaning}")
-    return used
+            draft.questions.append(f"no column {as_toml(name)}, which the column map names as {meaning}")
 
 
 def _of_twins(draft: Draft, meaning: str, one: Column, places: Sequence[int]) -> str:
     """The line of columns of one name; asked by number where their numbers differ."""
     if all(draft.cells[i] == draft.cells[places[0]] for i in places[1:]):
         return _stated(meaning, one)
-    numbers = " or ".join(str(i + 1) for i in places[1:])
-    question = (
-        f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {places[0] + 1} or {numbers}?"
-    )
+    numbers = f"{places[0] + 1} or {' or '.join(str(i + 1) for i in places[1:])}"
+    question = f"{len(places)} columns that could be the {meaning.replace('_', ' ')}: {numbers}?"
     return draft.ask(_stated(meaning, replace(one, name=places[0] + 1)), question)
 
 
@@ -311,65 +314,57 @@ def _stated(meaning: str, one: Column) -> str:
     name = one.names[0] if len(one.names) == 1 else one.name
     more = ({"unit": one.unit} if one.unit else {}) | ({"sign": -1} if one.sign < 0 else {})
     more |= {"optional": True} if one.optional else {}
-    return f"{meaning} = {_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
+    return f"{meaning} = {as_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
 
 
-def _line(draft: Draft, block: tables.Block, meaning: str, option: Option, unit: str = "") -> str:
+def _line(draft: Draft, meaning: str, option: Option, unit: str = "") -> str:
     """One line of [columns]: the name without its unit where that is unique, else the whole or the number."""
-    head = " ".join(block.heads[option.index].split())
+    heads, i = draft.block.heads, option.index
+    head = " ".join(heads[i].split())
     bare = naming.header_parts(head)[0][0]
-    named = bare if bare and tables.matching([bare], block.heads) == [option.index] else head
+    named = bare if bare and tables.matching([bare], heads) == [i] else head
     unit = unit or (option.unit if meaning == "time" and naming.time_form(option.unit) else "")
-    choice = Column(
-        name=(named,) if named else option.index + 1,
-        unit=unit or None,
-        optional=meaning in ("temperature", "wear_depth"),
-    )
-    return _of_twins(
-        draft, meaning, choice, tables.matching([named], block.heads) if named else [option.index]
-    )
+    optional = meaning in ("temperature", "wear_depth")
+    choice = Column(name=(named,) if named else i + 1, unit=unit or None, optional=optional)
+    return _of_twins(draft, meaning, choice, tables.matching([named], heads) if named else [i])
 
 
-def _decide(block: tables.Block, draft: Draft, options: Options, used: set[int]) -> None:
+def _decide(draft: Draft, options: Options) -> None:
     """One line of the map for each meaning that is there: certain, asked, or noted as not used."""
-    free = {key: [one for one in some if one.index not in used] for key, some in options.items()}
-    sure = {
-        key: _best([one for one in free.get(key, ()) if one.known]) for key in (*naming.MEANINGS, "position")
-    }
-    needed = _needed(block, draft, free, sure)
-    for meaning in (*naming.MEANINGS, "position"):
-        chosen = [one for one in sure[meaning] if one.index not in used]
-        rest = [one for one in free.get(meaning, ()) if one.index not in used]
+    meanings = (*naming.MEANINGS, "position")
+    free = {key: [one for one in some if one.index not in draft.used] for key, some in options.items()}
+    sure = {key: _best([one for one in free.get(key, ()) if one.known]) for key in meanings}
+    needed = _needed(draft, free, sure)
+    for meaning in meanings:
         if meaning in draft.columns:
             continue
+        chosen = [one for one in sure[meaning] if one.index not in draft.used]
+        rest = [one for one in free.get(meaning, ()) if one.index not in draft.used]
         if chosen:
-            _choose(block, draft, meaning, chosen, is_needed=meaning in needed or meaning == "time")
-            used |= {one.index for one in chosen}
+            _choose(draft, meaning, chosen, is_needed=meaning in needed or meaning == "time")
+            draft.used |= {one.index for one in chosen}
         elif rest and meaning in needed:
-            _ask_unit(block, draft, meaning, _best(rest)[0])
+            _ask_unit(draft, meaning, _best(rest)[0])
         elif rest and meaning in ("temperature", "wear_depth", "normal_force", "distance"):
-            head, words = printable(block.heads[rest[0].index].strip()), meaning.replace("_", " ")
+            head, words = printable(draft.block.heads[rest[0].index].strip()), meaning.replace("_", " ")
             draft.notes.append(f'column "{head}" has no known unit and is not used as {words}')
     for meaning in sorted(needed - draft.columns.keys()):
-        _ask_column(block, draft, meaning)
-    _shapes(block, draft, options, used)
+        _ask_column(draft, meaning)
+    _shapes(draft, options)
 
 
-def _needed(block: tables.Block, draft: Draft, free: Options, sure: Options) -> set[str]:
+def _needed(draft: Draft, free: Options, sure: Options) -> set[str]:
     """Meanings that the map must have: friction, or the forces instead; and an abscissa."""
     has_load = "normal_force" in draft.columns or sure["normal_force"] or "normal_force" in draft.stated
-    has_friction = (
-        sure["friction"] or free.get("friction") or any(map(naming.looks_like_friction, block.heads))
-    )
-    by_forces = sure["tangential_force"] if has_load else []
-    by_forces = by_forces or ([] if has_friction else free.get("tangential_force", []))
-    if "friction" in draft.columns:
-        needed = {"friction"}
-    elif "tangential_force" in draft.columns or (by_forces and not sure["friction"]):
+    by_name = any(map(naming.looks_like_friction, draft.block.heads))
+    has_friction = sure["friction"] or free.get("friction") or by_name
+    forces = sure["tangential_force"] if has_load else []
+    forces = forces or ([] if has_friction else free.get("tangential_force", []))
+    by_forces = "tangential_force" in draft.columns or (forces and not sure["friction"])
+    needed = {"friction"}
+    if by_forces and "friction" not in draft.columns:
         needed = {"tangential_force", "normal_force"}
         sure["friction"], free["friction"] = [], []
-    else:
-        needed = {"friction"}
     if not any(name in draft.columns or sure[name] for name in naming.ABSCISSAE):
         needed.add(next((name for name in naming.ABSCISSAE if free.get(name)), "time"))
     return needed
@@ -380,13 +375,11 @@ def _best(options: Sequence[Option]) -> list[Option]:
     return [one for one in options if one.rank == lowest]
 
 
-def _choose(
-    block: tables.Block, draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool
-) -> None:
+def _choose(draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: bool) -> None:
     """The line of columns that are certain; asked where several of other names are."""
     count, words = len(draft.questions), meaning.replace("_", " ")
-    line = _line(draft, block, meaning, chosen[0])
-    names = list(dict.fromkeys(_toml(block.heads[one.index].strip()) for one in chosen))
+    line = _line(draft, meaning, chosen[0])
+    names = list(dict.fromkeys(draft.head(one.index) for one in chosen))
     units = {naming.scale_of(one.unit, meaning) if one.unit else None for one in chosen}
     if len(draft.questions) > count and not is_needed:
         del draft.questions[count:]
@@ -396,90 +389,91 @@ def _choose(
         if not is_needed:
             draft.notes.append(f"columns {', '.join(names)} could all be the {meaning}, and none is used")
             return
-        others = [f"{_toml(block.heads[one.index].strip())} (column {one.index + 1})" for one in chosen[1:]]
+        others = [f"{draft.head(one.index)} (column {one.index + 1})" for one in chosen[1:]]
         line = draft.ask(line, f"{names[0]}, or {' or '.join(others)}?")
     elif chosen[0].question:
         line = draft.ask(line, f"column {names[0]}: {chosen[0].question}")
     draft.columns[meaning] = line
 
 
-def _ask_unit(block: tables.Block, draft: Draft, meaning: str, option: Option) -> None:
+def _ask_unit(draft: Draft, meaning: str, option: Option) -> None:
     """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
-    head, below = block.heads[option.index], block.below[option.index]
-    if meaning == "tangential_force" and naming.looks_like_torque(head, below):
-        _ask_torque(block, draft, option.index)
+    i = option.index
+    if meaning == "tangential_force" and naming.looks_like_torque(draft.block.heads[i], draft.block.below[i]):
+        _ask_torque(draft, i)
         return
     unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
     said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
-    line = _line(draft, block, meaning, option, unit)
-    draft.columns[meaning] = draft.ask(line, f"column {_toml(head.strip())}: {said}")
+    line = _line(draft, meaning, option, unit)
+    draft.columns[meaning] = draft.ask(line, f"column {draft.head(i)}: {said}")
 
 
-def _ask_torque(block: tables.Block, draft: Draft, i: int) -> None:
-    written = (block.below[i], naming.header_parts(block.heads[i])[0][1])
+def _ask_torque(draft: Draft, i: int) -> None:
+    written = (draft.block.below[i], naming.header_parts(draft.block.heads[i])[0][1])
     unit = next((one for one in written if naming.torque_scale(one)), UNKNOWN)
-    line = _line(draft, block, "tangential_force", Option(0, i), unit)
+    line = _line(draft, "tangential_force", Option(0, i), unit)
     question = "a torque: write the radius of its track below [test]"
     draft.columns["tangential_force"] = draft.ask(line, question)
     if "track_radius" not in draft.stated:
         draft.test.append('track_radius = "... mm"')
 
 
-def _ask_column(block: tables.Block, draft: Draft, meaning: str) -> None:
+def _ask_column(draft: Draft, meaning: str) -> None:
     """The line of a column that is needed and that no name shows."""
-    torque = [i for i, head in enumerate(block.heads) if naming.looks_like_torque(head, block.below[i])]
-    near = [i for i, head in enumerate(block.heads) if naming.looks_like_friction(head)]
+    heads = draft.block.heads
+    torque = [i for i, head in enumerate(heads) if naming.looks_like_torque(head, draft.block.below[i])]
+    near = [i for i, head in enumerate(heads) if naming.looks_like_friction(head)]
     if meaning == "normal_force":
         if "normal_force" not in draft.stated:
             draft.test.append(draft.ask('normal_force = "... N"', "the log has no normal force"))
     elif meaning == "friction" and torque and not near:
-        _ask_torque(block, draft, torque[0])
+        _ask_torque(draft, torque[0])
         if "normal_force" not in draft.columns:
-            _ask_column(block, draft, "normal_force")
+            _ask_column(draft, "normal_force")
     elif meaning == "friction" and near:
-        names = ", ".join(_toml(block.heads[i].strip()) for i in near[:4])
-        line = _line(draft, block, meaning, Option(0, near[0]), "-")
-        draft.columns[meaning] = draft.ask(line, f"the friction by its name? There are {names}")
+        line = _line(draft, meaning, Option(0, near[0]), "-")
+        question = f"the friction by its name? There are {', '.join(map(draft.head, near[:4]))}"
+        draft.columns[meaning] = draft.ask(line, question)
     else:
-        line = f"{meaning} = {_toml({'name': UNKNOWN if any(block.heads) else 1, 'unit': UNKNOWN})}"
+        line = f"{meaning} = {as_toml({'name': UNKNOWN if any(heads) else 1, 'unit': UNKNOWN})}"
         draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
 
 
-def _shapes(block: tables.Block, draft: Draft, options: Options, used: set[int]) -> None:
+def _shapes(draft: Draft, options: Options) -> None:
     """Columns in any unit that show standstill and reversals."""
-    speeds = [one for key in ("slip_speed", "rotational_speed") for one in options.get(key, ())]
-    speeds = [one for one in speeds if one.index not in used and one.unit.casefold() not in ("v", "a")]
+    free = {key: [one for one in some if one.index not in draft.used] for key, some in options.items()}
+    speeds = [one for key in ("slip_speed", "rotational_speed") for one in free.get(key, ())]
+    speeds = [one for one in speeds if one.unit.casefold() not in ("v", "a")]
     if speeds and not {"slip_speed", "rotational_speed", "motion"} & draft.columns.keys():
-        draft.columns["motion"] = _line(draft, block, "motion", min(speeds, key=lambda one: one.index))
-    forces = [one for one in options.get("tangential_force", ()) if one.index not in used]
-    forces = [one for one in forces if not naming.looks_like_torque(block.heads[one.index])]
+        draft.columns["motion"] = _line(draft, "motion", min(speeds, key=lambda one: one.index))
+    forces = free.get("tangential_force", ())
+    forces = [one for one in forces if not naming.looks_like_torque(draft.block.heads[one.index])]
     if forces and "stroke" not in draft.columns and "friction" in draft.columns:
-        draft.columns["stroke"] = _line(draft, block, "stroke", forces[0])
+        draft.columns["stroke"] = _line(draft, "stroke", forces[0])
 
 
-def _decimal(block: tables.Block, draft: Draft, cells: Sequence[Sequence[str]]) -> None:
+def _decimal(draft: Draft) -> None:
     """A question where marks may be decimal signs or between thousands."""
+    block = draft.block
     if block.columns is not None or block.word == "row" or draft.given.format.decimal:
         return
     try:
-        decimal_of(cells, block.separator, block.source)
+        decimal_of([draft.cells[i] for i in sorted(draft.used)], block.separator, block.source)
     except UnfitError as error:
         draft.form.append(draft.ask(f'decimal = "{UNKNOWN}"', f"{error.rule}: {error.got}"))
 
 
-def _conditions(block: tables.Block, draft: Draft) -> None:
+def _conditions(draft: Draft) -> None:
     """A question on each condition above the table that can be read in two ways; names to fill in."""
     text = "".join("".join(column[:SAMPLE]) for column in draft.cells)
-    decimal = "," if "," in text else "." if "." in text or block.separator == "," else ""
+    decimal = "," if "," in text else "." if "." in text or draft.block.separator == "," else ""
     known = set(draft.stated)
-    for key, value in metadata_of(block.above).items():
-        meant = [
-            one for one, names in naming.KEYS.items() if naming.plain(naming.header_parts(key)[0][0]) in names
-        ]
+    for key, value in metadata_of(draft.block.above).items():
+        meant = naming.conditions_named(key)[:1]
+        known |= set(meant)
         if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
-            question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
+            question = f"{as_toml(key)} is {as_toml(value)}: {' or '.join(ways)}? It is not used as it is"
             draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
-        known |= set(meant[:1])
     for name, what in NAMED.items():
         if name not in known:
             draft.test.append(f'# {name} = "{UNKNOWN}"  # {what}; the log does not state it')

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from separatrix.friction.logs.column_map import QUANTITIES, TEXTS
-from separatrix.friction.logs.names import ABSCISSAE, KEYS, MEANINGS, header_parts, plain, scale_in
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, conditions_named, header_parts, scale_in
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import key, positive, record
 from separatrix.ground.units import (
@@ -231,19 +231,16 @@ def of_log(error: InputError, source: str) -> InputError:
 
 def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
     """Keep the first condition whose unit the value has; return a note on a value that is not used."""
-    name, beside = header_parts(key)[0]
-    conditions = [condition for condition, names in KEYS.items() if plain(name) in names]
+    conditions, beside = conditions_named(key), header_parts(key)[0][1]
     if not conditions:
         return ""
     first, reason = conditions[0], f'"{printable(key)}" in the file'
     if first in TEXTS:
         found.setdefault(first, (text, reason))
         return ""
-    match = _VALUE.fullmatch(text.strip())
+    match, shown = _VALUE.fullmatch(text.strip()), f"{printable(key)} {printable(text)}"
     if ways := two_ways(text, decimal):
-        return (
-            f'{printable(key)} {printable(text)} may be {" or ".join(ways)}; put {first} = "..." under [test]'
-        )
+        return f'{shown} may be {" or ".join(ways)}; put {first} = "..." under [test]'
     unit = (match[2] or beside).strip() if match else ""
     for condition in conditions:
         scale = scale_in(unit, QUANTITIES[condition])
@@ -254,7 +251,6 @@ def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
                 return ""
     if first in found:
         return ""
-    shown = f"{printable(key)} {printable(text)}"
     number = match[1].lstrip("+-") if match and not unit else ""
     if not number:
         return f'{shown} is not understood; put {first} = "..." with its unit under [test]'

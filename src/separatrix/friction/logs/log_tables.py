@@ -461,10 +461,8 @@ def _check_rest(block: Block, lines: Sequence[str], end: int, stop: int, width: 
         fields = fields_of(lines[i], sign)
         filled = [one for one in fields if one]
         where, got = f"{block.source}: {block.word} {i + 1}", f'"{printable(lines[i].strip())}"'
-        rule, cure = (
-            "breaks the table",
-            "Delete it, or name its beginning below [format] of a map: skip or ends.",
-        )
+        rule = "breaks the table"
+        cure = "Delete it, or name its beginning below [format] of a map: skip or ends."
         if filled and all(map(is_number, filled)):
             rule = f"has {len(fields)} fields where the rows before it have {width}"
             cure = "Mend or delete this line."

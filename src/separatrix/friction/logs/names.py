@@ -179,6 +179,12 @@ def header_parts(header: str) -> list[tuple[str, str]]:
     return [(text, "")] + [(one[1].strip(), one[2].strip()) for one in patterns if one and one[2] != "1"]
 
 
+def conditions_named(key: str) -> list[str]:
+    """Conditions that a key above a table may be of, the likelier first."""
+    name = plain(header_parts(key)[0][0])
+    return [condition for condition, names in KEYS.items() if name in names]
+
+
 def ranks(name: str) -> dict[str, int]:
     """Meanings that a name may have, each with its place in the list of names."""
     words = plain(name)

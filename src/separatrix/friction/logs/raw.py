@@ -56,12 +56,8 @@ def decimal_of(cells: Sequence[Sequence[str]], separator: str, source: str) -> s
         is_plain = len(marks) == 1 and not re.search(rf"[{marks[0]}].*[{marks[0]}]", text)
         for cell in column if marks else ():
             here = [mark for mark in marks if mark in cell]
-            if (
-                not here
-                or tables.is_clock(cell)
-                or cell.casefold() in naming.MISSING
-                or not cell[-1:].isdigit()
-            ):
+            is_other = not here or tables.is_clock(cell) or cell.casefold() in naming.MISSING
+            if is_other or not cell[-1:].isdigit():
                 continue
             found |= dict.fromkeys(here, cell)
             certain = certain or not _GROUPED.fullmatch(cell)
@@ -118,9 +114,8 @@ def seconds(
         if zones.any() and not zones[there].all():
             return found, np.flatnonzero(there & ~zones).tolist()
         dates = pd.Series([text.replace(",", ".") for text in texts], dtype="str")
-        moments = pd.to_datetime(
-            dates, format="ISO8601" if form == "iso" else form, errors="coerce", utc=True
-        )
+        form = "ISO8601" if form == "iso" else form
+        moments = pd.to_datetime(dates, format=form, errors="coerce", utc=True)
         fits = moments.notna().to_numpy()
         if fits.any():
             found[fits] = (moments[fits] - moments[fits].iloc[0]).dt.total_seconds()
@@ -149,12 +144,18 @@ def _time(text: str, form: str) -> float:
 # --- columns --------------------------------------------------------------------------------------
 @dataclass(frozen=True, slots=True)
 class Read:
-    """Columns of a table in SI units, where they are, their units, and the decimal sign of the numbers."""
+    """Columns of a table in SI units, where they are, their units, the decimal sign, notes on all that."""
 
+    block: tables.Block
     arrays: Arrays
     places: Mapping[str, int]
     units: Mapping[str, str]
     decimal: str
+    notes: list[str]
+
+    def head(self, meaning: str) -> str:
+        """Name of the column of a meaning; empty where there is none."""
+        return self.block.heads[self.places[meaning]].strip() if meaning in self.places else ""
 
 
 def places_of(block: tables.Block, columns: ColumnMap, notes: list[str]) -> dict[str, list[int]]:
@@ -203,9 +204,8 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
     where = f'{block.source}: column "{printable(head)}"'
 
     def cure(unit: str) -> str:
-        return (
-            f"Below [columns] of a column map: {meaning} = {{ name = {shown(head)}, unit = {shown(unit)} }}."
-        )
+        line = f"{meaning} = {{ name = {shown(head)}, unit = {shown(unit)} }}"
+        return f"Below [columns] of a column map: {line}."
 
     known = {unit: naming.scale_of(unit, meaning) for unit in stated}
     if column.unit is not None:
@@ -218,9 +218,8 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
         rule = "is a force by its name, not a friction"
         raise InputError(where, rule, cure="Name it as tangential_force, with its unit.")
     if None in known.values() or len({*known.values()}) > 1:
-        rule = (
-            f"has a unit that is not one of the {meaning.replace('_', ' ')} ({naming.known_units(meaning)})"
-        )
+        quantity = f"{meaning.replace('_', ' ')} ({naming.known_units(meaning)})"
+        rule = f"has a unit that is not one of the {quantity}"
         raise UnfitError(where, rule, f'"{printable(", ".join(stated))}"', cure("..."))
     if not stated and meaning not in ("friction", "cycles"):
         raise UnfitError(where, "has no unit, so that its meaning is not certain", cure=cure("..."))
@@ -235,14 +234,9 @@ def _alike(unit: str, other: str, meaning: str) -> bool:
     return naming.scale_of(unit, meaning) == naming.scale_of(other, meaning) and same
 
 
-def in_si(
-    block: tables.Block,
-    columns: ColumnMap,
-    radius: float | None,
-    notes: list[str],
-    decimal: str | None = None,
-) -> Read:
+def in_si(block: tables.Block, columns: ColumnMap, radius: float | None, decimal: str | None = None) -> Read:
     """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
+    notes = list(block.notes)
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
     every = [] if block.columns is not None else sorted(scales)
@@ -264,7 +258,7 @@ def in_si(
                 values = _values(block, cells[i], i, columns.format.missing, decimal, timed.get(i, ""))
                 values = values if i in timed else _percentages(block, cells[i], i, values, scales[i][1])
             values = np.where(np.isin(values, absent), np.nan, values) if absent else values
-            made.append(_scaled(block, values, i, meaning, scales[i], columns, radius, notes))
+            made.append(_scaled(block, values, i, meaning, *scales[i], columns, radius, notes))
         both = np.isfinite(made).all(axis=0)
         if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
             listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
@@ -274,7 +268,8 @@ def in_si(
             raise UnfitError(block.source, rule, f"columns {listed}", cure)
         arrays[meaning] = made[0]
     first = {meaning: some[0] for meaning, some in places.items()}
-    return Read(arrays, first, {meaning: scales[i][1] for meaning, i in first.items()}, decimal)
+    units = {meaning: scales[i][1] for meaning, i in first.items()}
+    return Read(block, arrays, first, units, decimal, notes)
 
 
 def _cut_off(block: tables.Block, cells: Sequence[str]) -> Iterator[str]:
@@ -329,13 +324,14 @@ def _scaled(
     values: Array,
     i: int,
     meaning: str,
-    scale: tuple[naming.Scale, str],
+    size: naming.Scale,
+    unit: str,
     columns: ColumnMap,
     radius: float | None,
     notes: list[str],
 ) -> Array:
     """A column in SI units; a torque divided by the radius of the track."""
-    head, (size, unit) = block.heads[i].strip(), scale
+    head = block.heads[i].strip()
     where = f'{block.source}: column "{printable(head)}"'
     if meaning == "tangential_force" and naming.torque_scale(unit) is not None:
         if radius is None:
@@ -356,23 +352,23 @@ def _scaled(
 
 # --- the log --------------------------------------------------------------------------------------
 def raw_log(
-    block: tables.Block, source: str, checksum: str, words: str, columns: ColumnMap, given: Mapping[str, Any]
+    block: tables.Block, content: tables.Content, columns: ColumnMap, given: Mapping[str, Any]
 ) -> RawLog:
     """Log of one table, with the conditions that the column map states for its file."""
-    force, radius = given.get("normal_force"), given.get("track_radius")
-    notes = list(block.notes)
-    read = in_si(block, columns, radius, notes)
-    head = block.heads[read.places["friction"]].strip() if "friction" in read.places else ""
-    if naming.looks_extreme(head):
+    source = f"{content.name}, {printable(block.name)}" if block.name else content.name
+    radius = given.get("track_radius")
+    read = in_si(block, columns, radius)
+    notes = read.notes
+    if naming.looks_extreme(head := read.head("friction")):
         notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
-    arrays, missing = _steady(block, read, columns, force, source, notes)
+    arrays, missing = _steady(read, columns, given.get("normal_force"), source)
     turning = arrays.pop("rotational_speed", None)
     turns = {} if turning is None else {"rotational_speed": np.abs(turning)}
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
     metadata = metadata_of(block.above, keys_above=columns.format.keys_above)
-    useful = _without_stroke_speed(metadata, block, read, arrays, notes)
+    useful = _without_stroke_speed(metadata, read, arrays)
     decimal = read.decimal if block.word == "line" or block.columns is not None else ""
     conditions, measured, sentences = conditions_of(given, useful, arrays | turns, source, decimal)
     if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
@@ -381,10 +377,10 @@ def raw_log(
     form = f", {tables.described_form(block.separator, read.decimal)}" if block.word == "line" else ""
     return RawLog(
         source=source,
-        checksum=checksum,
-        format=f"{columns.name} ({words}{form})",
+        checksum=content.checksum,
+        format=f"{columns.name} ({content.words}{form})",
         missing=missing,
-        columns=_columns_read(block, columns, read),
+        columns=_columns_read(columns, read),
         metadata=metadata,
         conditions=conditions,
         measured=measured,
@@ -393,42 +389,35 @@ def raw_log(
     )
 
 
-def _steady(
-    block: tables.Block, read: Read, columns: ColumnMap, force: float | None, source: str, notes: list[str]
-) -> tuple[Arrays, int]:
+def _steady(read: Read, columns: ColumnMap, force: float | None, source: str) -> tuple[Arrays, int]:
     """Columns in the complete rows of steady sliding, friction as magnitude; and how many are incomplete."""
-    arrays = dict(read.arrays)
+    arrays, notes = dict(read.arrays), read.notes
     _drop_empty(arrays, source, notes)
     _mend_sign(arrays, columns, source, notes, is_given=force is not None)
     signed = _friction(arrays, force, source, notes)
     arrays["friction"] = _magnitude(signed, source, notes)
-    complete = _complete(arrays, block, source)
+    complete = _complete(arrays, read.block, source)
     missing = int((~complete).sum())
     if missing:
         notes.append(f"{missing} of {complete.size} rows are left out: friction or its abscissa is missing")
     there = sorted((i, meaning) for meaning, i in read.places.items() if meaning in _SIGNALS)
-    signals = [Signal(_SIGNALS[m], printable(block.heads[i].strip()), read.arrays[m]) for i, m in there]
+    signals = [Signal(_SIGNALS[m], printable(read.head(m)), read.arrays[m]) for _, m in there]
     kept, left_out = sliding_rows(signals, signed, arrays.get("time"), complete)
     notes += [left_out] if left_out else []
     return {name: column[kept] for name, column in arrays.items() if name not in naming.SHAPES}, missing
 
 
-def _columns_read(block: tables.Block, columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
+def _columns_read(columns: ColumnMap, read: Read) -> tuple[ColumnRead, ...]:
     """How each column of the file was understood."""
     meanings = {i: meaning for meaning, i in read.places.items()}
     found = []
-    for i, head in enumerate(block.heads):
+    for i, head in enumerate(read.block.heads):
         meaning = meanings.get(i)
         why = columns.columns[meaning].origin if meaning else "not needed"
-        is_shape = meaning in naming.SHAPES
-        found.append(
-            ColumnRead(
-                header=head.strip(),
-                meaning=None if is_shape else meaning,
-                unit=read.units[meaning] if meaning else block.below[i],
-                why=f"{meaning}, {why}" if is_shape else why,
-            )
-        )
+        unit = read.units[meaning] if meaning else read.block.below[i]
+        if meaning in naming.SHAPES:
+            meaning, why = None, f"{meaning}, {why}"
+        found.append(ColumnRead(header=head.strip(), meaning=meaning, unit=unit, why=why))
     return tuple(found)
 
 
@@ -507,10 +496,8 @@ def _magnitude(friction: Array, source: str, notes: list[str]) -> Array:
         size[beyond] = np.nan
     negative = int(((friction < 0.0) & ~beyond).sum())
     if negative:
-        notes.append(
-            f"friction is negative in {negative} of {len(size)} rows (strokes there and back, or an "
-            "offset of zero): its magnitude is used"
-        )
+        why = "(strokes there and back, or an offset of zero): its magnitude is used"
+        notes.append(f"friction is negative in {negative} of {len(size)} rows {why}")
     return size
 
 
@@ -527,31 +514,22 @@ def _complete(arrays: Arrays, block: tables.Block, source: str) -> Rows:
         back = np.flatnonzero(np.diff(column) < 0.0)
         if back.size:
             i = int(back[0]) + 1
-            here, before = (
-                format_quantity(float(column[j]), naming.MEANINGS[meaning], 8) for j in (i, i - 1)
-            )
-            cure = (
-                "Split the file there; if a column numbers its tests, write below [format] of a column map:"
-            )
-            cure += ' tests = ["..."]; if this column has another meaning, state it there.'
-            raise InputError(
-                block.at(int(rows[i])), f"{meaning} must not run backwards", f"{here} after {before}", cure
-            )
+            unit, where = naming.MEANINGS[meaning], block.at(int(rows[i]))
+            got = " after ".join(format_quantity(float(column[j]), unit, 8) for j in (i, i - 1))
+            cure = "Split the file there; if a column numbers its tests, write below [format] of a column map"
+            cure += ': tests = ["..."]; if this column has another meaning, state it there.'
+            raise InputError(where, f"{meaning} must not run backwards", got, cure)
     return kept
 
 
-def _without_stroke_speed(
-    metadata: Mapping[str, str], block: tables.Block, read: Read, arrays: Arrays, notes: list[str]
-) -> dict[str, str]:
+def _without_stroke_speed(metadata: Mapping[str, str], read: Read, arrays: Arrays) -> dict[str, str]:
     """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
-    head = naming.plain(block.heads[read.places["position"]]) if "position" in read.places else ""
-    speeds = [
-        key for key in metadata if naming.plain(naming.header_parts(key)[0][0]) in naming.KEYS["slip_speed"]
-    ]
-    if not head.startswith(("linear position", "lin position")) or not (speeds or "slip_speed" in arrays):
+    speeds = [key for key in metadata if "slip_speed" in naming.conditions_named(key)]
+    is_stroke = naming.plain(read.head("position")).startswith(("linear position", "lin position"))
+    if not is_stroke or not (speeds or "slip_speed" in arrays):
         return dict(metadata)
     arrays.pop("slip_speed", None)
-    notes.append(
+    read.notes.append(
         "these are strokes there and back: the file has their greatest speed, which is not used; write "
         "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
     )

@@ -6,19 +6,22 @@ The shipped data are the TOML files in `data/`; libraries of the user have the s
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TypeVar, cast
 
+from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
-from separatrix.ground.toml import folded, path_text
+from separatrix.ground.toml import folded, label_of, path_text, read_text
 from separatrix.ground.units import Kelvin, printable, shown
 from separatrix.study.ball_bearing import ROOM, Expansion, Material
-from separatrix.study.library.library_file import read_library
 from separatrix.study.library.records import (
+    KINDS,
     AnyRecord,
+    Content,
     Fluid,
     FrictionTable,
     LibraryFile,
@@ -124,6 +127,28 @@ def as_material(record: Record[Solid], temperature: Kelvin | None = None) -> Mat
         record={**record.plain(), "taken": taken, "taken_at": temperature},
         cautions=tuple(one.caution for key, one in chosen.items() if one.caution and key in acting),
         **{key: choice.datum.value for key, choice in chosen.items()},
+    )
+
+
+def read_library(path: Path, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
+    """Records of a library file.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong, a line each: file, line, record, rule, value, cure.
+    """
+    return library_of_text(read_text(path, Content.FILE), label_of(path), shipped=shipped)
+
+
+def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
+    """Records of the text of a library file."""
+    loaded = reader.read_text(Content, text, label)
+    file = LibraryFile(label=label, checksum=hashlib.sha256(text.encode()).hexdigest(), shipped=shipped)
+    return tuple(
+        Record(kind=kind, name=name, content=content, file=file, place=loaded.sources[section, name].place)
+        for kind, section in ((kind, kind.replace(" ", "_")) for kind in KINDS)
+        for name, content in getattr(loaded.value, section).items()
     )
 
 
