@@ -37,7 +37,6 @@ def compute(study: Study, _options: NoOptions) -> CheckAnswer:
         speed_parameter=(at.bore or at.pitch_diameter) * abs(on.inner_speed - on.outer_speed),
         cage=_cage(study),
         refusals=tuple(Refusal(verb=verb, sentence=sentence) for verb, sentence in refusals(study)),
-        static=None,
     )
     try:
         static = solve(replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))).bearing

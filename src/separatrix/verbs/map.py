@@ -14,6 +14,7 @@ from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, 
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
+from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.telling import all_numbers, quantity, said, told
 from separatrix.verbs.parts.varied import parameter_axis, value_of
 from separatrix.verbs.verb import Option, Verb
@@ -86,6 +87,11 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
         return MapAnswer(solution=solution, cage=cage, map=found, notes=every)
 
     return made_into(made, lambda: stability_map(asked, runner=runner))
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why there is no cage to move."""
+    yield from refused(study, cage_motion)
 
 
 def page(answer: Part) -> Page:
@@ -353,4 +359,5 @@ VERB = Verb(
     "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
     "command to resume. With --json and no --out nothing is kept.",
     keeps_runs=True,
+    refusals=refusals,
 )

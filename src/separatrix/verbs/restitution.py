@@ -32,10 +32,9 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     solution = solve(study)
     overdamped = overdamped_notes(solution.restitution)
     _ = solution.clearances  # refused, and noted
-    thickness = study.film.thickness or 0.0
     return RestitutionAnswer(
         solution=solution,
-        film_thickness=thickness,
+        film_thickness_here=study.film.thickness or 0.0,
         lubrication=solution.lubrication,
         notes=(*solution.notes, *overdamped),
     )

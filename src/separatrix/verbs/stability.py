@@ -17,10 +17,13 @@ from separatrix.verbs.parts.curve_blocks import (
     own_point,
     pocket_friction,
 )
+from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.telling import said
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import StabilityAnswer
     from separatrix.verdict.long_jobs import Runner
@@ -43,6 +46,11 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
         ),
         lambda: stability_curve(cage, settings, runner=runner),
     )
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why there is no cage to move."""
+    yield from refused(study, cage_motion)
 
 
 def page(answer: Part) -> Page:
@@ -109,4 +117,5 @@ VERB = Verb(
     epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
     "restitution factor from each initial disturbance.",
     keeps_runs=True,
+    refusals=refusals,
 )

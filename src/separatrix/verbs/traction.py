@@ -11,7 +11,7 @@ from separatrix.ground.quantity import Quantity
 from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.refused import compared, refused, rolling
+from separatrix.verbs.parts.refused import refused, rolling
 from separatrix.verbs.parts.telling import (
     axis,
     by_race,
@@ -70,7 +70,7 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
 
 def refusals(study: Study) -> Iterator[str]:
     """Yield why there are no traction curves."""
-    yield from refused(study, rolling, compared)
+    yield from refused(study, rolling)
 
 
 def page(answer: Part) -> Page:
