@@ -245,11 +245,8 @@ def force_facts(answer: Part) -> Facts:
 def _works(answer: Part) -> str:
     """Return the work of each source up to the end of the judged part, beyond which it is not added up."""
     last = max((at for at, time in enumerate(answer.time) if time <= answer.followed), default=-1)
-    each = (
-        f"{name.replace('_', ' ')} {number_of(answer.work, name, work[last])}"
-        for name, work in answer.work.values.items()
-        if work[last]
-    )
+    known = {name: work[last] for name, work in answer.work.values.items() if work[last]}
+    each = (f"{name.replace('_', ' ')} {number_of(answer.work, name, one)}" for name, one in known.items())
     left = number_of(answer, "kinetic_energy", answer.kinetic_energy[last])
     until = "" if last == -1 else said(answer, "up to {followed}: ")
     return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"

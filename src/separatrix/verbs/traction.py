@@ -12,15 +12,7 @@ from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, No
 from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.refused import refused, rolling
-from separatrix.verbs.parts.telling import (
-    axis,
-    by_race,
-    column,
-    number_of,
-    place_column,
-    said,
-    told,
-)
+from separatrix.verbs.parts.telling import axis, by_race, column, number_of, place_column, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -29,15 +21,8 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import TractionAnswer
 
-CONTACT = (
-    "load",
-    "contact_angle",
-    "spin_roll_ratio",
-    "rolling_speed",
-    "slope",
-    "slope_error",
-    "free_rolling_offset",
-)
+SLOPE = ("slope", "slope_error", "free_rolling_offset")
+CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
 
 RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 
@@ -75,12 +60,11 @@ def refusals(study: Study) -> Iterator[str]:
 
 def page(answer: Part) -> Page:
     """Return the page of `traction`."""
-    slopes = (
-        f"{told(answer.inner, 'slope')} at the inner race, {told(answer.outer, 'slope')} at the outer race"
-    )
+    inner, outer = (told(one, "slope") for one in (answer.inner, answer.outer))
+    lead = f"{inner} at the inner race, {outer} at the outer race."
     return page_of(
         answer,
-        Note(f"Slopes $alpha$ of the traction curves of the most loaded ball: {slopes}.", "lead"),
+        Note(f"Slopes $alpha$ of the traction curves of the most loaded ball: {lead}", "lead"),
         Heading("Traction of the most loaded ball"),
         Equation(
             r"\alpha = \left.\dfrac{\partial C_T}{\partial\,\delta\xi}\right|_{\delta\xi = 0}",
