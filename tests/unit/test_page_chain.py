@@ -86,7 +86,7 @@ def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more
     """In the words of the verb itself, before anything is run."""
     study = changed(tmp_path, "momentum-wheel", *edits, more=more)
     said = {(one.verb, one.sentence) for one in answer("check", study).refusals}
-    for verb in ("stability", "map", "simulate", "rank"):
+    for verb in ("stability", "map", "simulate", "rank", "sensitivity"):
         with pytest.raises(ValueError, match=words) as refused:
             computed(verb_named(verb), study)
         assert (verb, str(refused.value)) in said

@@ -25,7 +25,7 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.verbs.parts.answer_page import friction_words
+from separatrix.verbs.parts.answer_page import friction_columns
 from separatrix.verbs.parts.telling import known_columns
 from separatrix.verbs.verb import Option, Tool
 
@@ -243,10 +243,7 @@ def _named(key: str) -> str:
 
 
 def _frictions(record: Part) -> Table:
-    def friction(place: str) -> Column:
-        return text_column(place, lambda row: friction_words(row[1].get(place)))
-
-    columns = text_column("material", itemgetter(0)), *map(friction, record.environments)
+    columns = text_column("material", itemgetter(0)), *friction_columns(record.environments, itemgetter(1))
     caption = "Mean friction, with its standard deviation where it is known."
     return Table("friction", columns, tuple(record.values["friction"].items()), caption)
 

@@ -41,7 +41,7 @@ from separatrix.present.figure import (
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
-from separatrix.verbs.parts.refused import cage_motion, refused
+from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
@@ -60,7 +60,6 @@ from separatrix.verbs.verb import NoOptions, Verb
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
@@ -105,18 +104,7 @@ def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer: 
 
 def refusals(study: Study) -> Iterator[str]:
     """Yield why there is no ranking: no environment, or no cage of a candidate to move."""
-    yield from refused(study, _rankable)
-
-
-def _rankable(solution: Solution) -> None:
-    from separatrix.chain.solution import solve
-    from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
-
-    study = solution.study
-    asked = ranking_question(study)
-    required_environment(study, asked)
-    for one in (reference_candidate(study, asked), *asked.candidates):
-        cage_motion(solve(study, one))
+    yield from refused(study, candidate_cages)
 
 
 def free_balls_decided(found: Ranking) -> list[str]:

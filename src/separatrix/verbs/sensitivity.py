@@ -38,7 +38,7 @@ from separatrix.present.figure import (
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.refused import refused
+from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.telling import (
     all_numbers,
     cell,
@@ -126,7 +126,7 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
 def refusals(study: Study) -> Iterator[str]:
     """Yield why no bearing can be drawn."""
     if study.cage is not None and study.ranking is not None:
-        yield from refused(study, _drawable)
+        yield from refused(study, candidate_cages, _drawable)
 
 
 def _drawable(solution: Solution) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
 
@@ -129,15 +129,19 @@ def _properties(study: Json) -> Iterator[tuple[str, ...]]:
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
-    def friction(place: str) -> Column:
-        return text_column(place, lambda row: friction_words(row["friction"].get(place)))
-
-    columns = (text_column("candidate", lambda row: row["name"]), *map(friction, ranking["environments"]))
+    frictions = friction_columns(ranking["environments"], itemgetter("friction"))
+    columns = (text_column("candidate", itemgetter("name")), *frictions)
     caption = f"Friction of the candidates as measured, with standard deviation. From {ranking['origin']}."
     known = [one for row in ranking["candidates"] for one in row["friction"].values() if one is not None]
     origins = dict.fromkeys(f"{one['source']} ({one['confidence']})" for one in known)
     table = Table("frictions", columns, tuple(ranking["candidates"]), caption, level)
     return [table, *(Note(f"Source of the frictions: {one}.", "legend", level) for one in origins)]
+
+
+def friction_columns(places: Iterable[str], of: Callable[[Any], Json]) -> Iterator[Column]:
+    """Yield a column of measured frictions for each environment; `of` finds in a row its frictions."""
+    for place in places:
+        yield text_column(place, lambda row, place=place: friction_words(of(row).get(place)))
 
 
 def friction_words(found: Json | None) -> str:

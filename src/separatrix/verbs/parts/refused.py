@@ -70,6 +70,18 @@ def cage_motion(solution: Solution) -> None:
     cage_of(solution)
 
 
+def candidate_cages(solution: Solution) -> None:
+    """Refuse what no candidate is judged in: no environment of the bearing, no cage of a candidate to move."""
+    from separatrix.chain.solution import solve
+    from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
+
+    study = solution.study
+    asked = ranking_question(study)
+    required_environment(study, asked)
+    for one in (reference_candidate(study, asked), *asked.candidates):
+        cage_motion(solve(study, one))
+
+
 def by_strips(solution: Solution) -> Solution:
     """Return the same chain with strips, which have no refusals of their own and take milliseconds."""
     from separatrix.chain.solution import solve
