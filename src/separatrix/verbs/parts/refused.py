@@ -71,7 +71,7 @@ def cage_motion(solution: Solution) -> None:
 
 
 def candidate_cages(solution: Solution) -> None:
-    """Refuse what no candidate is judged in: no environment of the bearing, no cage of a candidate to move."""
+    """Refuse what no candidate is judged in: no environment of the bearing, no cage that could move."""
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
 
