@@ -70,12 +70,11 @@ class CheckAnswer:
     refusals: tuple[Refusal, ...]  # what each verb would refuse of the study, or take long for
     speed_parameter: MetreRadianPerSecond  # bore, or pitch diameter where no bore is known, times speed
     cage: CheckedCage | None  # null without a cage
-    static: BearingState | None = None
-    """Contacts of the most loaded ball at standstill; null if refused."""
-    static_reason: str = ""  # why there are no contacts at standstill; empty if there are
-    clearances: Clearances | None = None  # running clearances; null if refused, or if the study states them
-    clearances_reason: str = ""  # why the running clearances were refused; empty if they were not
-    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
+    static: BearingState | None  # contacts of the most loaded ball at standstill; null if refused
+    static_reason: str  # why there are no contacts at standstill; empty if there are
+    clearances: Clearances | None  # running clearances; null if refused, or if the study states them
+    clearances_reason: str  # why the running clearances were refused; empty if they were not
+    notes: tuple[str, ...]  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

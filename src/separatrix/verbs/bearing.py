@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import Figure, Label, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import RACES, clearance_blocks, contact_blocks
 from separatrix.verbs.parts.telling import axis, cell, column, fact, told
 from separatrix.verbs.verb import NoOptions, Verb
@@ -90,11 +90,8 @@ AROUND = "Ball loads and contact angles around the bearing."
 def balls_figure(answer: Part) -> Figure:
     """Return load and contact angle around the bearing."""
     panels = _around(answer, "load", "a  Ball load"), _around(answer, "contact_angle", "b  Contact angle")
-    return Figure(
-        rows=(panels,),
-        heading=figure_heading(answer),
-        alt="Two panels against the azimuth of the ball: load and contact angle; the table has the numbers.",
-    )
+    alt = "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers."
+    return figure(answer, panels, alt=alt)
 
 
 def _around(answer: Part, name: str, title: str) -> Panel:

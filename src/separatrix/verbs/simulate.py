@@ -25,7 +25,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import Figure, Panel
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.telling import number_of, place_column, quantity, said, told
@@ -287,7 +287,7 @@ def _figure(answer: Part) -> Figure:
         (panels.offset(answer), panels.forces(answer)),
     ]
     rows += [(panels.tilt(answer),)] if "lean" in answer else []
-    return Figure(rows=tuple(rows), heading=figure_heading(answer), alt=CAPTION, height=2.2)
+    return figure(answer, *rows, alt=CAPTION, height=2.2)
 
 
 def _view(answer: Part) -> str:

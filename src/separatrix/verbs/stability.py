@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import (
     curve_blocks,
@@ -100,12 +100,8 @@ def curve_figure(answer: Part) -> Figure:
         look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
         own = [Trace(x=[answer.chain.restitution_factor], y=[friction], **look)]
     panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])
-    return Figure(
-        rows=((panel,),),
-        heading=figure_heading(answer),
-        alt="Stability curve with its band and limits, and the bearing's own restitution factor.",
-        height=3.6,
-    )
+    alt = "Stability curve with its band and limits, and the bearing's own restitution factor."
+    return figure(answer, (panel,), alt=alt, height=3.6)
 
 
 VERB = Verb(

@@ -10,6 +10,7 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.present.figure import Figure, Panel
 
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
@@ -187,6 +188,11 @@ def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tupl
         "bare races" if film.get("is_bare") else _listed(", ", *coat),
     )
     return tuple(filter(None, [answer.title, _listed("; ", *around, *more)]))
+
+
+def figure(answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5) -> Figure:
+    """Return a figure of an answer, with its operating point above it."""
+    return Figure(rows=rows, heading=figure_heading(answer), alt=alt, height=height)
 
 
 def _listed(between: str, *words: str | None) -> str:

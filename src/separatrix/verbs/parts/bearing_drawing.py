@@ -15,7 +15,7 @@ from separatrix.ground.quantity import Quantity, alone
 from separatrix.ground.units import Metre, Radian
 from separatrix.present.blocks import Picture
 from separatrix.present.figure import BLACK, GREY, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import entry_words, figure_heading
+from separatrix.verbs.parts.answer_page import entry_words, figure
 from separatrix.verbs.parts.telling import told
 
 Point = tuple[float, float]
@@ -61,8 +61,7 @@ def bearing_picture(answer: Part, contacts: Part | None) -> Picture:
     alt = "Two drawings to scale: a section through the axis, and the ring of balls in its cage."
 
     def drawing() -> Figure:
-        panels = _section(of, answer, contacts), _view(of, answer)
-        return Figure(rows=(panels,), heading=figure_heading(answer), height=3.4, alt=alt)
+        return figure(answer, (_section(of, answer, contacts), _view(of, answer)), alt=alt, height=3.4)
 
     return Picture("bearing", drawing, caption)
 

@@ -18,7 +18,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import figure_heading
+from separatrix.verbs.parts.answer_page import figure
 from separatrix.verbs.parts.study_facts import bearing_facts
 from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
@@ -80,11 +80,8 @@ def contacts_figure(answer: Part, at: Part) -> Figure:
         Panel(title="b  Pressure on the axis x = 0", x=across, y=p0, marks=tuple(pressure)),
         Panel(title="c  Creep by spin and curvature", x=across, y=xi_y, marks=tuple(creep)),
     )
-    return Figure(
-        rows=(panels,),
-        heading=figure_heading(answer),
-        alt="Three panels: both contact ellipses to scale, pressure and creep across the groove.",
-    )
+    alt = "Three panels: both contact ellipses to scale, pressure and creep across the groove."
+    return figure(answer, panels, alt=alt)
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:
