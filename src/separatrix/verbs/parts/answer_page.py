@@ -140,9 +140,12 @@ def _frictions(ranking: Json, level: Level) -> list[Block]:
 
 
 def friction_columns(places: Iterable[str], of: Callable[[Any], Json]) -> Iterator[Column]:
-    """Yield a column of measured frictions for each environment; `of` finds in a row its frictions."""
-    for place in places:
-        yield text_column(place, lambda row, place=place: friction_words(of(row).get(place)))
+    """Return a column of measured frictions for each environment; `of` finds in a row its frictions."""
+
+    def column(place: str) -> Column:
+        return text_column(place, lambda row: friction_words(of(row).get(place)))
+
+    return map(column, places)
 
 
 def friction_words(found: Json | None) -> str:

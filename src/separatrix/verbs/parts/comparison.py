@@ -134,7 +134,9 @@ def _label(key: str, row: Part, number: int) -> str:
 
 def differing(verb: str, first: Places, second: Places) -> Iterator[Row]:
     """Yield a row for each result that differs."""
-    from_runs = _from_runs()
+    from separatrix.verdict.judgement import Judgement, KickCount
+
+    from_runs = {one.name for record in (Judgement, KickCount) for one in fields(record)}
     for place in {**first, **second}:
         words, (a, b) = printable(" / ".join(place), 160), (nodes.get(place) for nodes in (first, second))
         if a is None or b is None:
@@ -149,12 +151,6 @@ def differing(verb: str, first: Places, second: Places) -> Iterator[Row]:
             row = None if name in parts else _row(value_of(name, a), value_of(name, b), exact=exact)
             if row is not None:
                 yield replace(row, place=words, name=name, unit=a.unit(name))
-
-
-def _from_runs() -> set[str]:
-    from separatrix.verdict.judgement import Judgement, KickCount
-
-    return {one.name for record in (Judgement, KickCount) for one in fields(record)}
 
 
 def _ends(name: str) -> tuple[str, str]:
