@@ -71,8 +71,8 @@ def balls(answer: Part) -> Table:
     alike = are_alike(answer)
     number = text_column("ball", lambda ball: f"all {len(answer.balls)}" if alike else str(ball.ball + 1))
     angles = [column(f"contact_angle_{race}", of=touching(race)) for race in ("inner", "outer")]
-    names = ("load_inner", "load_outer", "orbital_speed", "pitch_angle")
-    names += ("spin_roll_ratio_inner", "spin_roll_ratio_outer")
+    ratios = ("spin_roll_ratio_inner", "spin_roll_ratio_outer")
+    names = ("load_inner", "load_outer", "orbital_speed", "pitch_angle", *ratios)
     place = [] if alike else [column("azimuth")]
     columns = (number, *place, *angles, *map(column, names))
     return Table("balls", columns, tuple(answer.balls[:1] if alike else answer.balls))
