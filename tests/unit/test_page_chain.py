@@ -63,7 +63,9 @@ def test_check_names_the_verbs_that_refuse_a_soft_film(tmp_path, traction, refus
                 computed(verb_named(verb), study)
             assert said == [str(refused.value)]
         else:
-            computed(verb_named(verb), study)
+            outside = getattr(computed(verb_named(verb), study).record, "outside", ())
+            is_noted = any(one.startswith("Under Hertz's pressure") for one in outside)
+            assert is_noted == ("coated" in traction and verb == "traction")
 
 
 STEEP = ('contact_angle = "15 deg"', 'contact_angle = "45 deg"')
