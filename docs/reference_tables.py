@@ -122,13 +122,9 @@ OF_CAGE = (
 )
 RUN = (
     *OF_CAGE,
-    Line("outcome_sentence", meaning="where the motion ends, in words"),
-    Line("rubbing_power", "W", meaning="power that rubbing on the land turns to heat, in the judged part"),
-    Line("force_exceeds_races", meaning="whether the largest force is beyond what the races hold"),
     Line(
         "race_damping", "N s/m", meaning="in `cage`: null where it is infinite, at a restitution factor of 1"
     ),
-    Line("drift_rate_law", "1/s", meaning="growth rate of the offset by the linear law"),
     *(
         Line(name, "J", "time", f"in `work`: done on the cage by {what}")
         for name, what in (
@@ -227,10 +223,8 @@ TRACTION = (
     Line("by_spin_roll_ratio", meaning="curves by strips at other pivoting-to-rolling ratios"),
     Line("shear", meaning="shear of a few strips in free rolling"),
 )
-OWN_FILM = Line("film_thickness_here", "m", meaning="the study's own film")
 FILMS = (
     *CHAIN,
-    OWN_FILM,
     Line("lubrication_reason", meaning="why there is no `lubrication`"),
 )
 VERBS = {
@@ -243,14 +237,7 @@ VERBS = {
     "map": Verb((answers.MapAnswer, *CHAIN_RECORDS), (*OF_CAGE, *COUNTS)),
     "simulate": Verb((answers.SimulationAnswer, *CHAIN_RECORDS), RUN),
     "rank": Verb((answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
-    "sensitivity": Verb(
-        (answers.SensitivityAnswer, *CHAIN_RECORDS),
-        (
-            *OF_CAGE,
-            OWN_FILM,
-            Line("race_friction_here", "-", meaning="the study's own friction on the races"),
-        ),
-    ),
+    "sensitivity": Verb((answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
     "sweep": Verb(
         (Sweep, WorstCase, Duty),
         (

@@ -1,4 +1,4 @@
-"""Each verb on a small study: keys that scripts rely on, one document on standard output, files."""
+"""Each verb on a small study: keys that scripts rely on, and files."""
 
 from __future__ import annotations
 
@@ -54,9 +54,6 @@ EXTRA = {
 """Options without which a verb would take long."""
 
 VERBS = [verb_named(name) for name in NAMES]
-LONG = ("traction", "simulate", "rank", "sensitivity")
-"""Verbs that are not computed a second time for their document: `test_reproduce` and others do."""
-
 KEPT = {verb.name: {NAME} for verb in VERBS if verb.keeps_runs}
 KEPT["simulate"] = {"moving-cage.html"}
 KEPT["sweep"] = {"sweep.csv"}
@@ -99,16 +96,6 @@ def records(found, path: str) -> list[dict]:
         inside = [one[key] for one in places]
         places = [one for item in inside for one in (item if isinstance(item, list) else [item])]
     return places
-
-
-@pytest.mark.parametrize("verb", [verb.name for verb in VERBS if verb.name not in LONG])
-def test_json_is_one_document_and_writes_nothing(verb, folder, capsys):
-    """`--json --quiet` prints exactly what stands in the file, nothing else anywhere, and no NaN."""
-    assert main([verb, str(folder / "small.toml"), "--json", "--quiet", *EXTRA.get(verb, ())]) == 0
-    out, err = capsys.readouterr()
-    assert err == ""
-    assert json.loads(out, parse_constant=pytest.fail) == answer(folder, verb)
-    assert list(Path().iterdir()) == []
 
 
 @pytest.mark.parametrize("verb", [verb.name for verb in VERBS])

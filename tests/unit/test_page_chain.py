@@ -46,7 +46,7 @@ SPUTTERED = ('material = "MoS2 sputtered dense"', "")
     ("traction", "refusing"),
     [
         ('model = "exact"', ["traction", "restitution", "mobility"]),
-        ('pressure = "coated"', ["traction"]),  # which also compares with Hertz's pressure
+        ('pressure = "coated"', []),  # Hertz's pressure, by which it compares, is beyond this film
         ('model = "strips"', []),
     ],
 )
@@ -63,7 +63,35 @@ def test_check_names_the_verbs_that_refuse_a_soft_film(tmp_path, traction, refus
                 computed(verb_named(verb), study)
             assert said == [str(refused.value)]
         else:
+            outside = getattr(computed(verb_named(verb), study).record, "outside", ())
+            is_noted = any(one.startswith("Under Hertz's pressure") for one in outside)
+            assert is_noted == ("coated" in traction and verb == "traction")
+
+
+STEEP = ('contact_angle = "15 deg"', 'contact_angle = "45 deg"')
+TIGHT = ("inner_conformity = 0.57", "inner_conformity = 0.508")
+FAST = ('inner_speed = "6000 rpm"', 'inner_speed = "60000 rpm"')
+HOT = ('temperature = "20 degC"', 'temperature = "400 degC"')
+AT_REST = ("[cage]", '[cage]\nclearances = "at rest, 293 K"')
+
+
+@pytest.mark.parametrize(
+    ("edits", "more", "words"),
+    [
+        ((STEEP, TIGHT, FAST), "", "out of their grooves"),
+        ((SOFT, SPUTTERED), '\n[traction]\nmodel = "exact"\n', "film strain"),
+        ((HOT, AT_REST), "", "needs its thermal expansion"),
+    ],
+    ids=["no equilibrium", "soft film", "no clearances"],
+)
+def test_check_says_what_a_moving_cage_will_be_refused_for(tmp_path, edits, more, words):
+    """In the words of the verb itself, before anything is run."""
+    study = changed(tmp_path, "momentum-wheel", *edits, more=more)
+    said = {(one.verb, one.sentence) for one in answer("check", study).refusals}
+    for verb in ("stability", "map", "simulate", "rank", "sensitivity"):
+        with pytest.raises(ValueError, match=words) as refused:
             computed(verb_named(verb), study)
+        assert (verb, str(refused.value)) in said
 
 
 def test_a_verb_that_lacks_a_section_is_refused_for_that():

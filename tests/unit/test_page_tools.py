@@ -50,14 +50,6 @@ def test_an_answer_that_was_changed_is_refused(tmp_path, changes, rule):
     assert str(error.value).startswith((str(path), path.name))  # short in the folder of the file
 
 
-def test_an_answer_of_an_earlier_version_is_refused(tmp_path):
-    """It lacks what every answer has now."""
-    path = saved(tmp_path)
-    path.write_text(json.dumps({key: one for key, one in ANSWER.items() if key != "units"}))
-    with pytest.raises(InputError, match=r"lacks units. Compute this answer again"):
-        read_answer(path)
-
-
 def test_folders_and_reports_have_their_answers_by_verb(tmp_path):
     """An interrupted answer is read as any other; one under another name is refused."""
     saved(tmp_path, complete=False)
@@ -158,20 +150,6 @@ def test_what_cannot_be_compared_is_refused(tmp_path):
 
 
 # --- an answer again ----------------------------------------------------------------------------
-def test_a_changed_number_is_found_and_a_warning_is_not(tmp_path):
-    """The key, what the answer says, and what is computed; other words of a warning are no difference."""
-    balls = [*ANSWER["balls"]]
-    balls[2] = balls[2] | {"load_inner": 1.001 * balls[2]["load_inner"]}
-    path = saved(tmp_path, balls=balls, warnings=["another"])
-    found = json.loads(json.dumps(reproduce.compute(reproduce.Options(result=path))))
-    (one,) = found["answers"]
-    (differing_one,) = one["result"]["differences"]
-    assert (one["same"], differing_one["key"]) == (False, "balls[2].load_inner")
-    assert "different: 1 value differs." in text(reproduce.page(part_of(found)))
-    same = reproduce.compute(reproduce.Options(result=saved(tmp_path, warnings=["another"])))
-    assert same["answers"][0]["result"]["agreement"] == "bit for bit"
-
-
 @pytest.mark.parametrize(
     ("value", "kind", "is_one"),
     [

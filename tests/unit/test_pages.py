@@ -78,11 +78,14 @@ def options(verb):
 
 
 @pytest.mark.parametrize("verb", VERBS)
-def test_python_and_command_line_answer_alike(verb, small, answers, capsys):
-    """The same document to the last digit; the page of a fresh and of a saved answer are one."""
+def test_python_and_command_line_answer_alike(verb, small, answers, capsys, tmp_path, monkeypatch):
+    """The same document to the last digit, nothing else anywhere; the page of a saved answer is the same."""
+    monkeypatch.chdir(tmp_path)
     answer = answers(verb)
     assert main([verb, str(small), *options(verb), "--json", "--quiet"]) == 0
-    printed = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    out, err = capsys.readouterr()
+    assert (err, list(tmp_path.iterdir())) == ("", [])
+    printed = json.loads(out, parse_constant=pytest.fail)
     assert json.loads(json.dumps(answer.document())) == printed
     known = verb_named(verb)
     assert answer.summary() == text(page_of_document(known, printed))

@@ -173,9 +173,10 @@ def test_a_changed_study_is_found(stored, put, capsys):
 
 
 def test_another_version_is_named_and_computed_all_the_same(stored, put, capsys):
-    """One line has what differs."""
+    """One line has what differs; other words of a warning are no difference."""
 
     def older(answer):
+        answer["warnings"] = ["another"]
         answer["provenance"]["versions"]["numpy"] = "2.0.0"
         answer["separatrix_version"] = "0.0.1"
 
@@ -254,7 +255,7 @@ def test_a_kept_study_reaches_no_other_file(stored, put, capsys):
         ("[]", "is not the document"),
         ('{"verb": "rank"}', "is not the document"),
         ('{"verb": "new", "study": {}}', "must be an answer of"),
-        ('{"verb": "rank", "study": {}}', "lacks separatrix_version"),
+        ('{"verb": "rank", "study": {}}', "lacks separatrix_version. Compute this answer again"),
     ],
 )
 def test_what_is_not_an_answer_is_refused(put, capsys, content, said):

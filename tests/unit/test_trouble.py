@@ -22,6 +22,7 @@ from separatrix.study.study import StabilitySettings
 from separatrix.verbs import Computed, simulate
 from separatrix.verbs.answer_files import document
 from separatrix.verdict.judgement import Verdict, judge
+from separatrix.verdict.reasons import outcome_sentence
 
 BASE = """
 extends = "cryogenic-turbopump"
@@ -144,7 +145,8 @@ def test_an_unresolved_run_says_so():
     asked = read_study(study(""))
     answer = simulate.compute(asked, simulate.Options())
     lost = replace(answer.history, outcome=RunOutcome.UNRESOLVED, cause=Cause.FALLING)
-    answer = replace(answer, history=lost)
+    sentence = outcome_sentence(lost, limit=None, rubbing_power=0.0)
+    answer = replace(answer, history=lost, outcome_sentence=sentence)
     made = Computed(record=answer, study=asked, options=simulate.Options(), is_complete=True)
     found = document(simulate.VERB, made)
     said = " ".join(text(simulate.page(part_of(found))).split())

@@ -223,7 +223,11 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
             f"The pressure compresses the film by {strain:.0%} of its thickness: above {STRAINED:.0%} it is "
             "not linearly elastic, as every model here takes it to be."
         )
-    slip = max(map(pressure_slip, tracks))
+    try:
+        slip = max(map(pressure_slip, tracks))
+    except InputError as error:  # own pressure is bearable, Hertz's, by which strips are compared, is not
+        yield f"Under Hertz's pressure the exact contact has no answer to compare the strips with: {error}"
+        slip = 0.0
     if slip > NOTICED and asked.pressure_slip is PressureSlip.NEGLECTED:
         yield (
             f"The pressure alone makes the surfaces slip by up to {slip:.2g} of the saturation creep: "

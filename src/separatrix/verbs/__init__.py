@@ -134,25 +134,24 @@ def computed(
     from separatrix.verdict.long_jobs import Interrupted, Runner
 
     asked = verb.options() if options is None else options
+    if not verb.keeps_runs:
+        return Computed(record=verb.compute(study, asked), study=study, options=asked, is_complete=True)
     threads, is_complete = jobs or processors(), True
     ledger: Ledger | None = None
     executor: Executor | None = None
     with contextlib.ExitStack() as stack:
-        if not verb.keeps_runs:
-            record = verb.compute(study, asked)
-        else:
-            if folder is not None:
-                Path(folder).mkdir(parents=True, exist_ok=True)
-                ledger = stack.enter_context(contextlib.closing(Ledger(Path(folder) / NAME)))
-            if cluster is not None:
-                executor, threads = stack.enter_context(connected(cluster))
-            try:
-                runner = Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
-                record = verb.compute(study, asked, runner)
-            except Interrupted as stop:
-                if stop.finished is None:
-                    raise
-                record, is_complete = stop.finished, False
+        if folder is not None:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            ledger = stack.enter_context(contextlib.closing(Ledger(Path(folder) / NAME)))
+        if cluster is not None:
+            executor, threads = stack.enter_context(connected(cluster))
+        try:
+            runner = Runner(jobs=threads, progress=progress, ledger=ledger, executor=executor)
+            record = verb.compute(study, asked, runner)
+        except Interrupted as stop:
+            if stop.finished is None:
+                raise
+            record, is_complete = stop.finished, False
     taken = 0 if ledger is None else ledger.taken
     return Computed(record=record, study=study, options=asked, is_complete=is_complete, runs_taken=taken)
 

@@ -22,13 +22,13 @@ from separatrix.ground.units import (
     MetrePerSecond,
     MetreRadianPerSecond,
     Newton,
+    PerSecond,
     Radian,
     Ratio,
     Watt,
 )
 from separatrix.verdict.map_records import StabilityMap
 from separatrix.verdict.ranking_records import Ranking
-from separatrix.verdict.reasons import outcome_sentence
 from separatrix.verdict.stability_curve import StabilityCurve
 from separatrix.verdict.uncertain_records import UncertainStudy
 
@@ -67,14 +67,14 @@ class CheckAnswer:
     The clearances are also None, without a reason, for a study that states the running ones.
     """
 
+    refusals: tuple[Refusal, ...]  # what each verb would refuse of the study, or take long for
     speed_parameter: MetreRadianPerSecond  # bore, or pitch diameter where no bore is known, times speed
     cage: CheckedCage | None  # null without a cage
-    refusals: tuple[Refusal, ...]  # what each verb would refuse of the study, or take long for
     static: BearingState | None  # contacts of the most loaded ball at standstill; null if refused
-    static_reason: str = ""  # why there are no contacts at standstill; empty if there are
-    clearances: Clearances | None = None  # running clearances; null if refused, or if the study states them
-    clearances_reason: str = ""  # why the running clearances were refused; empty if they were not
-    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
+    static_reason: str  # why there are no contacts at standstill; empty if there are
+    clearances: Clearances | None  # running clearances; null if refused, or if the study states them
+    clearances_reason: str  # why the running clearances were refused; empty if they were not
+    notes: tuple[str, ...]  # where a model leaves its range, a sentence each
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +98,7 @@ class RestitutionAnswer:
     """Restitution factor, and what it would be with other films; None without a film material."""
 
     solution: Solution  # the chain
-    film_thickness: Metre  # film thickness of the study
+    film_thickness_here: Metre  # of the study's own film
     lubrication: LubricationCurve | None  # restitution factor against the thickness of other films
     notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
@@ -142,33 +142,22 @@ class SimulationAnswer(OfCage):
     `force_limit` is the force of a pocket beyond which its ball has no meaning: None without one.
     """
 
-    history: History  # the motion, sampled
-    analysis: CourseAnalysis  # means, extremes, whirl and spectra
     kick: MetrePerSecond
     run: int  # number of the run in the ensemble, from 0
     given_restitution_factor: Ratio | None  # to which the races are damped; null for that of the study
+    outcome_sentence: str  # where the motion ends, in words
     force_limit: Newton | None  # its friction is all that the races hold of a ball; null without such a limit
+    force_exceeds_races: bool  # whether the largest force is beyond what the races hold
+    drift_rate_law: PerSecond  # growth rate of the offset by the linear law
+    rubbing_power: Watt  # power that rubbing on the land turns to heat at the end of the run
+    history: History  # the motion, sampled
+    analysis: CourseAnalysis  # means, extremes, whirl and spectra
 
     @property
     def whirls(self) -> bool:
         """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
         lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
         return lasts or self.history.cause is Cause.LAND_FRICTION
-
-    @property
-    def rubbing_power(self) -> Watt:
-        """Power that rubbing on the land turns into heat at the end of the run [W]."""
-        return self.cage.land_friction * self.history.rubbing_force * self.history.rubbing_speed
-
-    @property
-    def outcome_sentence(self) -> str:
-        """Where the motion of the run ends, and how the cage then moves, rolls or rubs."""
-        return outcome_sentence(self.history, limit=self.force_limit, rubbing_power=self.rubbing_power)
-
-    @property
-    def force_exceeds_races(self) -> bool:
-        """Whether a pocket force is beyond that limit."""
-        return self.force_limit is not None and self.history.largest_contact_force > self.force_limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -180,11 +169,8 @@ class RankingAnswer(OfCage):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensitivityAnswer(OfCage):
-    """The uncertain study, and the cage of its reference candidate.
-
-    `film_thickness` (None if the races are bare) and `race_friction` are those of the study.
-    """
+    """The uncertain study, and the cage of its reference candidate."""
 
     uncertain: UncertainStudy  # verdicts over the uncertain inputs, and what decides them
-    film_thickness: Metre | None  # of the study; null if the races are bare
-    race_friction: Ratio  # of the study
+    film_thickness_here: Metre | None  # of the study's own film; null if the races are bare
+    race_friction_here: Ratio  # of the study's own races

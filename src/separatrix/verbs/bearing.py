@@ -7,17 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import (
-    Equation,
-    Heading,
-    Page,
-    Picture,
-    Table,
-    facts,
-    text_column,
-)
+from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import Figure, Label, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import RACES, clearance_blocks, contact_blocks
 from separatrix.verbs.parts.telling import axis, cell, column, fact, told
 from separatrix.verbs.verb import NoOptions, Verb
@@ -61,7 +53,7 @@ def page(answer: Part) -> Page:
         ),
         Heading("Balls"),
         balls(answer),
-        *([] if are_alike(answer) else [balls_picture(answer)]),
+        *([] if are_alike(answer) else [Picture("bearing-balls", lambda: balls_figure(answer), AROUND)]),
         *contact_blocks(answer, answer.contacts),
         *clearance_blocks(answer.clearances),
     )
@@ -79,14 +71,8 @@ def balls(answer: Part) -> Table:
     alike = are_alike(answer)
     number = text_column("ball", lambda ball: f"all {len(answer.balls)}" if alike else str(ball.ball + 1))
     angles = [column(f"contact_angle_{race}", of=touching(race)) for race in ("inner", "outer")]
-    names = (
-        "load_inner",
-        "load_outer",
-        "orbital_speed",
-        "pitch_angle",
-        "spin_roll_ratio_inner",
-        "spin_roll_ratio_outer",
-    )
+    ratios = ("spin_roll_ratio_inner", "spin_roll_ratio_outer")
+    names = ("load_inner", "load_outer", "orbital_speed", "pitch_angle", *ratios)
     place = [] if alike else [column("azimuth")]
     columns = (number, *place, *angles, *map(column, names))
     return Table("balls", columns, tuple(answer.balls[:1] if alike else answer.balls))
@@ -98,21 +84,14 @@ def are_alike(answer: Part) -> bool:
     return len({tuple(told(ball, name) for name in names) for ball in answer.balls}) == 1
 
 
-def balls_picture(answer: Part) -> Picture:
+AROUND = "Ball loads and contact angles around the bearing."
+
+
+def balls_figure(answer: Part) -> Figure:
     """Return load and contact angle around the bearing."""
-    return Picture(
-        "bearing-balls", lambda: _balls_figure(answer), "Ball loads and contact angles around the bearing."
-    )
-
-
-def _balls_figure(answer: Part) -> Figure:
-    return Figure(
-        rows=(
-            (_around(answer, "load", "a  Ball load"), _around(answer, "contact_angle", "b  Contact angle")),
-        ),
-        heading=figure_heading(answer),
-        alt="Two panels against the azimuth of the ball: load and contact angle; the table has the numbers.",
-    )
+    panels = _around(answer, "load", "a  Ball load"), _around(answer, "contact_angle", "b  Contact angle")
+    alt = "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers."
+    return figure(answer, panels, alt=alt)
 
 
 def _around(answer: Part, name: str, title: str) -> Panel:
@@ -133,10 +112,9 @@ def _around(answer: Part, name: str, title: str) -> Panel:
         marks.append(Trace(x=azimuth, y=known, hover=hover, **look))
         if known[-1] is not None:
             labels.append(Label(y=known[-1], text=race, colour=colour))
-    room = 0.15 * (max([*every, 0.0]) - min([*every, 0.0]) or 1.0)
-    y = axis(
-        name, balls[0].unit(f"{name}_inner"), every, low=min([*every, 0.0]), high=max([*every, 0.0]) + room
-    )
+    low, high = min([*every, 0.0]), max([*every, 0.0])
+    room = 0.15 * (high - low or 1.0)
+    y = axis(name, balls[0].unit(f"{name}_inner"), every, low=low, high=high + room)
     x = axis("azimuth", "rad", azimuth)
     return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
 

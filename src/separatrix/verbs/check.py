@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, facts, grouped
@@ -15,11 +15,12 @@ from separatrix.verbs.parts.telling import fact, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import CheckAnswer, CheckedCage
 
+Link = TypeVar("Link")
 FIRST = {"POCKETS": "after the pockets", "LAND": "before the pockets", "BOTH": "together with the pockets"}
 SECTIONS = ("cage", "ranking")
 """Sections that a study may lack."""
@@ -28,28 +29,33 @@ SECTIONS = ("cage", "ranking")
 def compute(study: Study, _options: NoOptions) -> CheckAnswer:
     """What follows of a study in a second, the bearing at standstill, and what verbs will refuse."""
     from separatrix.chain.solution import solve
-    from separatrix.ground.errors import SeparatrixError
     from separatrix.verbs import refusals
     from separatrix.verbs.answer_records import CheckAnswer, Refusal
 
     at, on = study.bearing, study.operation
-    found = CheckAnswer(
+    still = replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))
+    static, static_reason = _tried(lambda: solve(still).bearing)
+    clearances, clearances_reason = _tried(lambda: solve(study).clearances)
+    return CheckAnswer(
+        refusals=tuple(Refusal(verb=verb, sentence=sentence) for verb, sentence in refusals(study)),
         speed_parameter=(at.bore or at.pitch_diameter) * abs(on.inner_speed - on.outer_speed),
         cage=_cage(study),
-        refusals=tuple(Refusal(verb=verb, sentence=sentence) for verb, sentence in refusals(study)),
-        static=None,
+        static=static,
+        static_reason=static_reason,
+        clearances=clearances,
+        clearances_reason=clearances_reason,
+        notes=tuple(note for one in (static, clearances) if one is not None for note in one.notes),
     )
+
+
+def _tried(link: Callable[[], Link]) -> tuple[Link | None, str]:
+    """Return a link of the chain, or why it is refused."""
+    from separatrix.ground.errors import SeparatrixError
+
     try:
-        static = solve(replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))).bearing
-        found = replace(found, static=static, notes=static.notes)
+        return link(), ""
     except SeparatrixError as error:
-        found = replace(found, static_reason=str(error))
-    try:
-        clearances = solve(study).clearances
-    except SeparatrixError as error:
-        return replace(found, clearances_reason=str(error))
-    notes = clearances.notes if clearances else ()
-    return replace(found, clearances=clearances, notes=(*found.notes, *notes))
+        return None, str(error)
 
 
 def _cage(study: Study) -> CheckedCage | None:

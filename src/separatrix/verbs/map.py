@@ -14,6 +14,7 @@ from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, 
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
+from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.telling import all_numbers, quantity, said, told
 from separatrix.verbs.parts.varied import parameter_axis, value_of
 from separatrix.verbs.verb import Option, Verb
@@ -73,10 +74,8 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
         raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
     solution = solve(study)
     cage = cage_of(solution)
-    if options.kick is None:
-        speed = settings_for(study.stability, cage).middle_kick
-    else:
-        speed = kick_speed(options.kick)
+    usual = settings_for(study.stability, cage).middle_kick
+    speed = usual if options.kick is None else kick_speed(options.kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs, adaptive=options.adaptive)
     notes = (*solution.notes, *cage.notes, *extrapolation_notes(solution))
@@ -86,6 +85,11 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
         return MapAnswer(solution=solution, cage=cage, map=found, notes=every)
 
     return made_into(made, lambda: stability_map(asked, runner=runner))
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why there is no cage to move."""
+    yield from refused(study, cage_motion)
 
 
 def page(answer: Part) -> Page:
@@ -186,14 +190,15 @@ def inference_words(answer: Part) -> str:
         return ""
     checked = "none was checked"
     if "error_low" in found:
-        checked = (
-            f"{found.checked} more of that kind were run as a check, of which {found.decided_otherwise} "
-        )
-        checked += said(found, "are decided otherwise (95 %: {error_low} to {error_high})")
+        checked = f"{found.checked} more of that kind were run as a check, of which {found.decided_otherwise}"
+        checked += said(found, " are decided otherwise (95 %: {error_low} to {error_high})")
     return f"{found.points} points were not run, as those around them agree; {checked}"
 
 
 # Where the answer changes.
+
+
+NOTHING = Part({}, {})
 
 
 class Row(NamedTuple):
@@ -232,9 +237,7 @@ def bands(answer: Part) -> Iterator[Table]:
     x, y, every = answer.x, answer.y, answer.x.get("values")
 
     def of(name: str, head: str) -> Column:
-        return Column(
-            head, lambda row: value_of(y, y.parameter, row.change.get(name) if row.change else None)
-        )
+        return Column(head, lambda row: value_of(y, y.parameter, (row.change or NOTHING).get(name)))
 
     columns = (
         Column(quantity(x.parameter).label, lambda row: value_of(x, x.parameter, row.x)),
@@ -246,9 +249,8 @@ def bands(answer: Part) -> Iterator[Table]:
     for most, level in ((SOME_COLUMNS, Level.BRIEF), (MORE_COLUMNS, Level.LONG)):
         step = max(1.0, (len(every) - 1) / (most - 1))
         chosen = [every[round(i * step)] for i in range(min(most, len(every)))]
-        part = (
-            "" if len(chosen) == len(every) else f"{len(chosen)} of {len(every)} columns; map.json has all. "
-        )
+        cut = f"{len(chosen)} of {len(every)} columns; map.json has all. "
+        part = "" if len(chosen) == len(every) else cut
         yield Table("bands", columns, tuple(rows(answer, chosen)), part + LEGEND, level)
 
 
@@ -353,4 +355,5 @@ VERB = Verb(
     "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
     "command to resume. With --json and no --out nothing is kept.",
     keeps_runs=True,
+    refusals=refusals,
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,7 +25,7 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
-from separatrix.verbs.parts.answer_page import friction_words
+from separatrix.verbs.parts.answer_page import friction_columns
 from separatrix.verbs.parts.telling import known_columns
 from separatrix.verbs.verb import Option, Tool
 
@@ -74,6 +75,7 @@ POINTS = ("triple_temperature", "boiling_temperature", "critical_temperature", "
 
 PROPERTY, LISTED = Quantity(label="", digits=5), Quantity(label="", digits=4)
 RATIO = Quantity(label="", form=".3f")
+NOTHING = Part({}, {})
 
 
 # --- the records --------------------------------------------------------------------------------
@@ -150,6 +152,9 @@ def _served(library: Library, record: AnyRecord, at: Kelvin | None) -> Document:
     return whole | {"taken": taken, "taken_at": at, "cautions": list(material.cautions)}
 
 
+SEVERAL = "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
+
+
 # --- the pages ----------------------------------------------------------------------------------
 def list_page(answer: Part) -> Page:
     """Return the page of `materials list`: a table for each kind, of what its records have."""
@@ -157,10 +162,7 @@ def list_page(answer: Part) -> Page:
     for kind, rows in grouped((one.kind, one) for one in answer.materials).items():
         known = known_columns(COLUMNS, rows)
         blocks += [Heading(f"{kind.capitalize()}s"), Table(f"{kind}s", known, tuple(rows))]
-    several = (
-        "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
-    )
-    return Page("Library of materials", _subtitle(answer), (*blocks, Note(several)))
+    return Page("Library of materials", _subtitle(answer), (*blocks, Note(SEVERAL)))
 
 
 def _subtitle(answer: Part) -> str:
@@ -179,7 +181,7 @@ def _first(head: str, key: str, quantity: Quantity = LISTED) -> Column:
 
 
 def _data(record: Part, key: str = "elastic_modulus") -> list[Part]:
-    return (record.get("data") or Part({}, {})).get(key) or []
+    return (record.get("data") or NOTHING).get(key) or []
 
 
 def _sure(record: Part) -> str:
@@ -217,16 +219,12 @@ def show_page(answer: Part) -> Page:
 
 
 def _whole(record: Part) -> Iterator[Block]:
-    file, conditions = record.library, record.get("conditions") or Part({}, {})
-    known = {key: conditions.get(key) for key in conditions.values}
+    file, known = record.library, record.get("conditions") or NOTHING
     origin = "shipped" if file.shipped else "of the user"
     keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
     yield facts(
-        *((key.capitalize(), record.get(key)) for key in keys),
-        *(
-            (key.replace("_", " ").capitalize(), _span(one.value, one.get("unit")))
-            for key, one in known.items()
-        ),
+        *((_named(key), record.get(key)) for key in keys),
+        *((_named(key), _span(one["value"], one.get("unit"))) for key, one in known.values.items()),
         ("Also", ", ".join(record.get("aliases") or ())),
         ("Library", f"{file.file}, {origin}, sha256 {file.sha256[:12]}..."),
     )
@@ -240,11 +238,12 @@ def _whole(record: Part) -> Iterator[Block]:
     yield from (Note(one, "caveat") for one in record.get("cautions") or ())
 
 
-def _frictions(record: Part) -> Table:
-    def friction(place: str) -> Column:
-        return text_column(place, lambda row: friction_words(row[1].get(place)))
+def _named(key: str) -> str:
+    return key.replace("_", " ").capitalize()
 
-    columns = text_column("material", lambda row: row[0]), *map(friction, record.environments)
+
+def _frictions(record: Part) -> Table:
+    columns = text_column("material", itemgetter(0)), *friction_columns(record.environments, itemgetter(1))
     caption = "Mean friction, with its standard deviation where it is known."
     return Table("friction", columns, tuple(record.values["friction"].items()), caption)
 

@@ -21,7 +21,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.parts.telling import axis, cell, named, place_column, quantity, said, told
 from separatrix.verbs.verb import NoOptions, Verb
@@ -136,12 +136,9 @@ def push_figure(answer: Part) -> Figure:
     x = axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1])
     label, most = "force of the races $F$", 1.25 * capacity
     y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
-    return Figure(
-        rows=((Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks)),),),
-        heading=figure_heading(answer),
-        height=3.2,
-        alt="Force against speed: it rises with the damping, then levels off at the capacity of the races.",
-    )
+    alt = "Force against speed: it rises with the damping, then levels off at the capacity of the races."
+    panel = Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks))
+    return figure(answer, (panel,), alt=alt, height=3.2)
 
 
 VERB = Verb(

@@ -41,6 +41,7 @@ from separatrix.present.figure import (
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
+from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
@@ -58,6 +59,8 @@ from separatrix.verbs.parts.verdict_blocks import (
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
@@ -98,6 +101,11 @@ def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer: 
         return RankingAnswer(solution=solution, cage=cage, ranking=found, notes=every)
 
     return made_into(made, lambda: rank(study, runner=runner))
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why there is no ranking: no environment, or no cage of a candidate to move."""
+    yield from refused(study, candidate_cages)
 
 
 def free_balls_decided(found: Ranking) -> list[str]:
@@ -549,4 +557,5 @@ VERB = Verb(
     moves_a_cage=True,
     has_full=True,
     keeps_runs=True,
+    refusals=refusals,
 )

@@ -124,10 +124,8 @@ def _differing(found: Mapping[str, Document]) -> Iterator[str]:
     main = next(iter(found))
 
     def known(document: Document) -> dict[str, Any]:
-        inputs = {
-            f"{part}.{key}": entry.get("value", entry.get("name"))
-            for part, key, entry in inputs_of(document["study"])
-        }
+        every = inputs_of(document["study"])
+        inputs = {f"{part}.{key}": one.get("value", one.get("name")) for part, key, one in every}
         return inputs | {"seed": document["seed"], "version of separatrix": document["separatrix_version"]}
 
     ours = known(found[main])

@@ -138,9 +138,8 @@ def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         for name in {**a, **b}:
             if name not in IGNORED:
-                yield from _differing(
-                    a.get(name, ...), b.get(name, ...), f"{key}.{name}".removeprefix("."), None
-                )
+                path = f"{key}.{name}".removeprefix(".")
+                yield from _differing(a.get(name, ...), b.get(name, ...), path, None)
     elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
         size = max((abs(one) for one in (*a, *b) if is_number(one)), default=None)
         for i, (one, other) in enumerate(zip(a, b, strict=True)):

@@ -10,7 +10,7 @@ from separatrix.ground.document import Part
 from separatrix.ground.units import format_number
 from separatrix.present.blocks import Block, Cell, Column, Level, Note, Page, Picture, Table
 from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace
-from separatrix.verbs.parts.answer_page import entry_words, figure_heading, page_of
+from separatrix.verbs.parts.answer_page import entry_words, figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
 from separatrix.verbs.parts.refused import impact, refused, rolling
 from separatrix.verbs.parts.telling import axis, number_of, place_column, quantity, said
@@ -32,10 +32,9 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     solution = solve(study)
     overdamped = overdamped_notes(solution.restitution)
     _ = solution.clearances  # refused, and noted
-    thickness = study.film.thickness or 0.0
     return RestitutionAnswer(
         solution=solution,
-        film_thickness=thickness,
+        film_thickness_here=study.film.thickness or 0.0,
         lubrication=solution.lubrication,
         notes=(*solution.notes, *overdamped),
     )
@@ -90,12 +89,8 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     """Return eta against thickness for each race friction: dampings summed, and the ball free to spin."""
     summed = films_panel(answer, curve, "restitution_factor", "a  Race dampings summed (Eq. 18)")
     free = films_panel(answer, curve, "restitution_factor_free_spin", "b  Ball free to spin in the impact")
-    return Figure(
-        rows=((summed, free),),
-        heading=figure_heading(answer),
-        height=3.0,
-        alt="Two panels: restitution factor against thickness of the film, a curve for each friction.",
-    )
+    alt = "Two panels: restitution factor against thickness of the film, a curve for each friction."
+    return figure(answer, (summed, free), alt=alt, height=3.0)
 
 
 def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:

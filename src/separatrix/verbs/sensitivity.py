@@ -38,7 +38,7 @@ from separatrix.present.figure import (
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.refused import refused
+from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.telling import (
     all_numbers,
     cell,
@@ -115,8 +115,8 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
             solution=solution,
             cage=cage,
             uncertain=found,
-            film_thickness=study.film.thickness,
-            race_friction=study.film.race_friction,
+            film_thickness_here=study.film.thickness,
+            race_friction_here=study.film.race_friction,
             notes=(*solution.notes, *cage.notes, *found.notes),
         ),
         lambda: uncertain_study(study, samples, runner=runner),
@@ -126,7 +126,7 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
 def refusals(study: Study) -> Iterator[str]:
     """Yield why no bearing can be drawn."""
     if study.cage is not None and study.ranking is not None:
-        yield from refused(study, _drawable)
+        yield from refused(study, candidate_cages, _drawable)
 
 
 def _drawable(solution: Solution) -> None:

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from separatrix.cage import MovingCage
-from separatrix.cage.closed_forms import axial_half_play, drift_rate_law
+from separatrix.cage.closed_forms import axial_half_play
 from separatrix.chain.ball_mobility import Mobility
-from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.equilibrium import Equilibrium
-from separatrix.chain.shear import ShearField
 from separatrix.chain.solution import Solution
-from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.plain_data import (
     Group,
-    Item,
     Leaf,
     Node,
     Table,
@@ -33,14 +29,10 @@ from separatrix.ground.plain_data import shape as shape
 from separatrix.ground.units import Rows
 from separatrix.verbs.answer_records import (
     CheckAnswer,
-    MapAnswer,
     MobilityAnswer,
     OfCage,
-    RankingAnswer,
     RestitutionAnswer,
-    SensitivityAnswer,
     SimulationAnswer,
-    StabilityAnswer,
     TractionAnswer,
 )
 from separatrix.verdict.judgement import Judgement
@@ -81,67 +73,48 @@ def _(at: RaceContact) -> Node:
 
 @shape.register
 def _(found: BearingState) -> Node:
-    return shape(found.equilibrium) | {"contacts": _contacts(found), **_clearances(found.clearances)}
-
-
-def _clearances(found: Clearances | None) -> Node:
-    return {"clearances": Leaf(None) if found is None else Group(shape(found))}
+    return shape(found.equilibrium) | {"contacts": _contacts(found)} | fields_of(found, "clearances")
 
 
 def _contacts(found: BearingState) -> Group:
-    return Group({"inner": Group(shape(found.inner)), "outer": Group(shape(found.outer))}, "contact_")
+    return Group(fields_of(found, "inner", "outer"), "contact_")
 
 
 @shape.register
 def _(found: CheckAnswer) -> Node:
-    at_rest = Leaf(None) if found.static is None else _contacts(found.static)
-    node: Node = {
-        "refusals": Table([fields_of(one) for one in found.refusals], Rows()),
-        **fields_of(found, "speed_parameter", "cage"),
-        "static": at_rest,
-        "static_reason": Leaf(found.static_reason),
-    }
-    return node | _clearances(found.clearances) | {"clearances_reason": Leaf(found.clearances_reason)}
+    """At standstill the contacts alone."""
+    return fields_of(found) | ({"static": _contacts(found.static)} if found.static else {})
 
 
 @shape.register
 def _(found: TractionAnswer) -> Node:
+    """Each race with its contact; the curves at other ratios are at the same increments as its own."""
     races: Node = {}
-    for race in ("inner", "outer"):
-        curve, others, shear = (getattr(found, f"{race}{part}") for part in ("", "_others", "_shear"))
-        races[race] = Group(_curve(getattr(found.bearing, race), curve, others, shear))
-    return {"race_friction": Leaf(found.race_friction, "-"), **races, "outside": Leaf(found.outside)}
-
-
-def _curve(at: RaceContact, curve: TractionCurve, others: Sequence[TractionCurve], shear: ShearField) -> Node:
-    """One race; the curves at other ratios are at the same increments as its own."""
     names = ("spin_roll_ratio", "slope", "slope_error", "traction_coefficient")
-    by_ratio = Table([fields_of(other, *names) for other in others], Rows("ratio", "ratio_"))
-    return shape(at) | shape(curve) | {"by_spin_roll_ratio": by_ratio, "shear": Group(shape(shear))}
+    for race in ("inner", "outer"):
+        at = getattr(found.bearing, race)
+        curve, others, shear = (getattr(found, f"{race}{part}") for part in ("", "_others", "_shear"))
+        by_ratio = Table([fields_of(other, *names) for other in others], Rows("ratio", "ratio_"))
+        more: Node = {"by_spin_roll_ratio": by_ratio, "shear": Group(shape(shear))}
+        races[race] = Group(shape(at) | shape(curve) | more)
+    return fields_of(found, "race_friction") | races | fields_of(found, "outside")
 
 
 def _chain(found: Solution) -> Node:
     """Restitution and the contacts, which have the slopes of their traction curves."""
-    node = shape(found.restitution) | {"stiffness_source": Leaf(found.stiffness_source)}
-    node |= _clearances(found.clearances)
-    contacts, curves = found.bearing, found.slopes
-    for race, at, curve in (
-        ("inner", contacts.inner, curves.inner),
-        ("outer", contacts.outer, curves.outer),
-    ):
-        node[race] = Group(shape(at) | fields_of(curve, "slope", "slope_error", "free_rolling_offset"))
-    return node
+    clearances = Leaf(None) if found.clearances is None else Group(shape(found.clearances))
+    more: Node = {"stiffness_source": Leaf(found.stiffness_source), "clearances": clearances}
+    for race in ("inner", "outer"):
+        at, curve = (getattr(part, race) for part in (found.bearing, found.slopes))
+        more[race] = Group(shape(at) | fields_of(curve, "slope", "slope_error", "free_rolling_offset"))
+    return shape(found.restitution) | more
 
 
 @shape.register
 def _(found: RestitutionAnswer) -> Node:
-    node = _chain(found.solution) | {"film_thickness_here": Leaf(found.film_thickness, "m")}
-    if found.lubrication is not None:
-        return node | {"lubrication": Group(shape(found.lubrication))}
-    return node | {
-        "lubrication": Leaf(None),
-        "lubrication_reason": Leaf("The study names no film material."),
-    }
+    node = _chain(found.solution) | fields_of(found, "film_thickness_here", "lubrication")
+    reason = Leaf("The study names no film material.")
+    return node if found.lubrication else node | {"lubrication_reason": reason}
 
 
 @shape.register
@@ -155,7 +128,7 @@ def _(found: Mobility) -> Node:
 
 @shape.register
 def _(found: MobilityAnswer) -> Node:
-    return shape(found.mobility) | {"rigid": Group(shape(found.rigid))}
+    return shape(found.mobility) | fields_of(found, "rigid")
 
 
 # The cage.
@@ -172,19 +145,25 @@ def _(found: MovingCage) -> Node:
 
 
 @shape.register
-def _cage(found: OfCage) -> Node:
-    """The cage and the chain before it, with the leads of the balls beside their clearance."""
+def _of_cage(found: OfCage) -> Node:
+    """What was computed, its records on one level; the chain, with the leads of the balls, and the cage."""
+    node: Node = {}
+    own = [one.name for one in fields(found) if one.name not in OfCage.__slots__]
+    for name, item in fields_of(found, *own).items():
+        node |= item.fields if isinstance(item, Group) else {name: item}
     orbits: Node = {
         "half_play": Leaf(found.cage.half_play, "m"),
         "lead_amplitude": Leaf(found.cage.lead_amplitude, "m"),
         "orbital_share": Leaf(found.solution.orbital_share, "-"),
     }
-    return {"chain": Group(_chain(found.solution) | orbits), "cage": Group(shape(found.cage))}
+    return node | {"chain": Group(_chain(found.solution) | orbits), "cage": Group(shape(found.cage))}
 
 
 @shape.register
-def _(found: StabilityAnswer) -> Node:
-    return shape(found.curve) | _cage(found)
+def _(found: SimulationAnswer) -> Node:
+    """A motion that does not last has no whirl."""
+    none = {"whirl_frequency": Leaf(None, "Hz"), "whirl_speed": Leaf(None, "m/s")}
+    return _of_cage(found) | ({} if found.whirls else {**none, "whirl_direction": Leaf(0)})
 
 
 @shape.register
@@ -192,13 +171,9 @@ def _(found: StabilityMap) -> Node:
     """Places of points have the units of their axes."""
     node = fields_of(found)
     points = node["points"]
-    for row in (points.records or []) if isinstance(points, Table) else []:
-        row |= {"x": _in_unit(row["x"], found.x.unit), "y": _in_unit(row["y"], found.y.unit)}
+    for row, at in zip(points.records or () if isinstance(points, Table) else (), found.points, strict=True):
+        row |= {"x": Leaf(at.x, found.x.unit), "y": Leaf(at.y, found.y.unit)}
     return node
-
-
-def _in_unit(item: Item, unit: str | None) -> Item:
-    return item._replace(unit=unit) if isinstance(item, Leaf) else item
 
 
 @shape.register
@@ -208,68 +183,22 @@ def _(axis: MapAxis) -> Node:
 
 
 @shape.register
-def _(found: MapAnswer) -> Node:
-    return shape(found.map) | _cage(found)
-
-
-@shape.register
-def _(found: SimulationAnswer) -> Node:
-    pace = found.history.whirl_frequency if found.whirls else None
-    node: Node = {
-        "kick": Leaf(found.kick, "m/s"),
-        "run": Leaf(found.run),
-        "given_restitution_factor": Leaf(found.given_restitution_factor, "-"),
-        "outcome_sentence": Leaf(found.outcome_sentence),
-        "force_limit": Leaf(found.force_limit, "N"),
-        "force_exceeds_races": Leaf(found.force_exceeds_races),
-        "drift_rate_law": Leaf(drift_rate_law(found.cage), "1/s"),
-        "rubbing_power": Leaf(found.rubbing_power, "W"),
-    }
-    node |= shape(found.history) | shape(found.analysis) | {"whirl_frequency": Leaf(pace, "Hz")}
-    if not found.whirls:
-        node |= {"whirl_speed": Leaf(None, "m/s"), "whirl_direction": Leaf(0)}
-    return node | _cage(found)
-
-
-# Rankings. Every row has the keys of a ranked one, None where it has no value.
-
-
-@shape.register(Ranked)
-@shape.register(NotFinished)
-@shape.register(NotMeasured)
-def _(row: Ranked | NotFinished | NotMeasured) -> Node:
-    """The evidence on the level of the row."""
-    both = (getattr(row, name, None) for name in ("judgement", "over_inputs"))
-    evidence, over = (absent(Judgement) if one is None else shape(one) for one in both)
-    names = ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
-    node = evidence | absent(Ranked) | {"extrapolation": Leaf(())} | fields_of(row)
-    del node["judgement"], node["over_inputs"]
-    return node | {f"uncertain_{name}": over[name] for name in names}
-
-
-@shape.register(UncertainMaterial)
-@shape.register(NotDrawn)
-def _(row: UncertainMaterial | NotDrawn) -> Node:
-    """The evidence on the level of the row."""
-    judged = getattr(row, "judgement", None)
-    evidence = absent(Judgement) if judged is None else shape(judged)
-    node = evidence | absent(UncertainMaterial) | {"extrapolation": Leaf(())} | fields_of(row)
+def _(row: Ranked | NotFinished | NotMeasured | UncertainMaterial | NotDrawn) -> Node:
+    """The evidence on the level of the row; a row that lacks something has the keys of a whole one."""
+    is_ranked = not isinstance(row, UncertainMaterial | NotDrawn)
+    evidence, over = (_evidence(getattr(row, name, None)) for name in ("judgement", "over_inputs"))
+    whole = absent(Ranked if is_ranked else UncertainMaterial)
+    node = evidence | whole | {"extrapolation": Leaf(())} | fields_of(row)
     del node["judgement"]
+    if is_ranked:
+        del node["over_inputs"]
+        names = ("verdict", "probability_stable", "probability_low", "probability_high", "runs")
+        node |= {f"uncertain_{name}": over[name] for name in names}
     return node
 
 
-@shape.register
-def _(found: RankingAnswer) -> Node:
-    return shape(found.ranking) | _cage(found)
-
-
-@shape.register
-def _(found: SensitivityAnswer) -> Node:
-    here = {
-        "film_thickness_here": Leaf(found.film_thickness, "m"),
-        "race_friction_here": Leaf(found.race_friction, "-"),
-    }
-    return shape(found.uncertain) | here | _cage(found)
+def _evidence(found: Judgement | None) -> Node:
+    return absent(Judgement) if found is None else shape(found)
 
 
 @shape.register
@@ -283,11 +212,7 @@ def _(found: Sweep) -> Node:
         values: Node = {at.name: Leaf(value, at.unit or "-") for at, value in given}
         del case["values"]
         cases.append({"case": case.pop("case")} | values | case)
-    rest: Node = {"verdicts": Leaf(found.verdicts), "margins": Leaf(found.margins)}
-    for name, part in (("worst", found.worst), ("duty", found.duty)):
-        rest[name] = Leaf(None) if part is None else Group(shape(part))
-    rest["complete"] = Leaf(found.complete)
-    return {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case")), **rest}
+    return fields_of(found) | {"parameters": Table(named, Rows()), "cases": Table(cases, Rows("case"))}
 
 
 def to_xarray(answer: object) -> xr.Dataset:

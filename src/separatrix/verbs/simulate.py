@@ -25,9 +25,9 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import Figure, Panel
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
-from separatrix.verbs.parts.refused import refused
+from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.telling import number_of, place_column, quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
@@ -70,12 +70,13 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     """Follow one run of the ensemble, by default the first from the reference disturbance."""
     from separatrix.cage import analyse, settings_for
     from separatrix.cage import simulate as follow
+    from separatrix.cage.closed_forms import drift_rate_law
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
     from separatrix.verbs.answer_records import SimulationAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.beyond_models import Moved, beyond_motion
-    from separatrix.verdict.reasons import force_limit
+    from separatrix.verdict.reasons import force_limit, outcome_sentence
     from separatrix.verdict.response import cage_at
     from separatrix.verdict.which_ball import transmitted_force
 
@@ -92,19 +93,25 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     speed = settings.middle_kick if given is None else given
     asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
     history = follow(cage, kick=speed, run=options.run, samples=MOST_SHOWN, **asked)
-    limit, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
+    found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
+    limit = found if isfinite(found) else None
+    heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
     name = made_of.name if made_of else "The cage"
     moved = Moved(name, history.largest_contact_force, history.largest_offset)
     notes = *solution.notes, *cage.notes, *extrapolation_notes(solution), *beyond_motion(solution, [moved])
     return SimulationAnswer(
         solution=solution,
         cage=cage,
-        history=history,
-        analysis=analyse(cage, history),
         kick=speed,
         run=options.run,
         given_restitution_factor=eta,
-        force_limit=limit if isfinite(limit) else None,
+        outcome_sentence=outcome_sentence(history, limit=limit, rubbing_power=heat),
+        force_limit=limit,
+        force_exceeds_races=limit is not None and history.largest_contact_force > limit,
+        drift_rate_law=drift_rate_law(cage),
+        rubbing_power=heat,
+        history=history,
+        analysis=analyse(cage, history),
         notes=notes,
     )
 
@@ -121,11 +128,10 @@ def given_factor(options: Options) -> float | None:
 
 
 def refusals(study: Study) -> Iterator[str]:
-    """Yield why the pocket has no friction."""
+    """Yield why the pocket has no friction, or there is no cage to move."""
     from separatrix.study.candidates import require_friction
 
-    if study.cage is not None:
-        yield from refused(study, lambda solution: require_friction(solution.study))
+    yield from refused(study, lambda solution: require_friction(solution.study), cage_motion)
 
 
 def page(answer: Part) -> Page:
@@ -239,11 +245,8 @@ def force_facts(answer: Part) -> Facts:
 def _works(answer: Part) -> str:
     """Return the work of each source up to the end of the judged part, beyond which it is not added up."""
     last = max((at for at, time in enumerate(answer.time) if time <= answer.followed), default=-1)
-    each = (
-        f"{name.replace('_', ' ')} {number_of(answer.work, name, work[last])}"
-        for name, work in answer.work.values.items()
-        if work[last]
-    )
+    known = {name: work[last] for name, work in answer.work.values.items() if work[last]}
+    each = (f"{name.replace('_', ' ')} {number_of(answer.work, name, one)}" for name, one in known.items())
     left = number_of(answer, "kinetic_energy", answer.kinetic_energy[last])
     until = "" if last == -1 else said(answer, "up to {followed}: ")
     return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
@@ -284,7 +287,7 @@ def _figure(answer: Part) -> Figure:
         (panels.offset(answer), panels.forces(answer)),
     ]
     rows += [(panels.tilt(answer),)] if "lean" in answer else []
-    return Figure(rows=tuple(rows), heading=figure_heading(answer), alt=CAPTION, height=2.2)
+    return figure(answer, *rows, alt=CAPTION, height=2.2)
 
 
 def _view(answer: Part) -> str:

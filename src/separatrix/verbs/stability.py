@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import (
     curve_blocks,
@@ -17,10 +17,13 @@ from separatrix.verbs.parts.curve_blocks import (
     own_point,
     pocket_friction,
 )
+from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.telling import said
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import StabilityAnswer
     from separatrix.verdict.long_jobs import Runner
@@ -43,6 +46,11 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
         ),
         lambda: stability_curve(cage, settings, runner=runner),
     )
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why there is no cage to move."""
+    yield from refused(study, cage_motion)
 
 
 def page(answer: Part) -> Page:
@@ -92,12 +100,8 @@ def curve_figure(answer: Part) -> Figure:
         look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
         own = [Trace(x=[answer.chain.restitution_factor], y=[friction], **look)]
     panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])
-    return Figure(
-        rows=((panel,),),
-        heading=figure_heading(answer),
-        alt="Stability curve with its band and limits, and the bearing's own restitution factor.",
-        height=3.6,
-    )
+    alt = "Stability curve with its band and limits, and the bearing's own restitution factor."
+    return figure(answer, (panel,), alt=alt, height=3.6)
 
 
 VERB = Verb(
@@ -109,4 +113,5 @@ VERB = Verb(
     epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
     "restitution factor from each initial disturbance.",
     keeps_runs=True,
+    refusals=refusals,
 )

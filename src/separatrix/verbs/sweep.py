@@ -120,11 +120,7 @@ def page(answer: Part) -> Page:
             ("Verdicts", ", ".join(f"{count} {word}" for word, count in sorted(counts.items()))),
             *((f"Time {quantity(name).label}", cell(duty, name)) for name in TIMES if duty and name in duty),
         ),
-        *(
-            [Picture("envelope", lambda: envelope_figure(answer), ENVELOPE)]
-            if has(answer, "cage_speed")
-            else []
-        ),
+        *([Picture("envelope", lambda: envelope_figure(answer), ENVELOPE)] * has(answer, "cage_speed")),
         Heading("Cases"),
         *case_tables(answer),
     )
@@ -162,9 +158,8 @@ def worst_words(answer: Part) -> str:
     """Return the worst case with its values, and the number that makes it so."""
     worst = answer.get("worst")
     if worst is None:
-        is_solved = has(answer, "cage_speed")
         lacks = "The bearing alone was swept: no case has a restitution factor."
-        return lacks if is_solved else "No case has an answer."
+        return lacks if has(answer, "cage_speed") else "No case has an answer."
     name = worst.quantity
     first = next(one for one in answer.cases if one.case == worst.case)
     number = f"{quantity(name).label}, {told(first, name)}"
@@ -310,11 +305,8 @@ def _panels(answer: Part, way: Way) -> Iterator[Panel]:
         x, speed = [one.get(way.name) for one in whirling], [abs(one.orbit_frequency) for one in whirling]
         more: dict[str, Any] = {"line": "", "marker": "^", "size": 5.0, "colour": VERMILION}
         frequencies.append(Trace(x=x, y=speed, name=quantity("orbit_frequency").label, **more))
-    yield panel(
-        "Frequencies on the housing",
-        axis("shaft_frequency", "Hz", [], label="frequency", is_log=True),
-        frequencies,
-    )
+    y = axis("shaft_frequency", "Hz", [], label="frequency", is_log=True)
+    yield panel("Frequencies on the housing", y, frequencies)
 
 
 def _over(answer: Part, cases: Sequence[Part], way: Way, what: str, **look: Any) -> Trace:

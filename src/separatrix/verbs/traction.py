@@ -10,17 +10,9 @@ from separatrix.ground.document import Part
 from separatrix.ground.quantity import Quantity
 from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.refused import compared, refused, rolling
-from separatrix.verbs.parts.telling import (
-    axis,
-    by_race,
-    column,
-    number_of,
-    place_column,
-    said,
-    told,
-)
+from separatrix.verbs.parts.answer_page import figure, page_of
+from separatrix.verbs.parts.refused import refused, rolling
+from separatrix.verbs.parts.telling import axis, by_race, column, number_of, place_column, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -29,15 +21,8 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
     from separatrix.verbs.answer_records import TractionAnswer
 
-CONTACT = (
-    "load",
-    "contact_angle",
-    "spin_roll_ratio",
-    "rolling_speed",
-    "slope",
-    "slope_error",
-    "free_rolling_offset",
-)
+SLOPE = ("slope", "slope_error", "free_rolling_offset")
+CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
 
 RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 
@@ -70,17 +55,16 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
 
 def refusals(study: Study) -> Iterator[str]:
     """Yield why there are no traction curves."""
-    yield from refused(study, rolling, compared)
+    yield from refused(study, rolling)
 
 
 def page(answer: Part) -> Page:
     """Return the page of `traction`."""
-    slopes = (
-        f"{told(answer.inner, 'slope')} at the inner race, {told(answer.outer, 'slope')} at the outer race"
-    )
+    inner, outer = (told(one, "slope") for one in (answer.inner, answer.outer))
+    lead = f"{inner} at the inner race, {outer} at the outer race."
     return page_of(
         answer,
-        Note(f"Slopes $alpha$ of the traction curves of the most loaded ball: {slopes}.", "lead"),
+        Note(f"Slopes $alpha$ of the traction curves of the most loaded ball: {lead}", "lead"),
         Heading("Traction of the most loaded ball"),
         Equation(
             r"\alpha = \left.\dfrac{\partial C_T}{\partial\,\delta\xi}\right|_{\delta\xi = 0}",
@@ -139,12 +123,9 @@ def curves_figure(answer: Part) -> Figure:
     high = 1.12 * max(abs(one) for part in races for one in part.traction_coefficient)
     y = axis("traction_coefficient", answer.inner.unit("traction_coefficient"), [], low=-high, high=high)
     titles = "a  Ball on inner race", "b  Ball on outer race"
-    return Figure(
-        rows=(tuple(curves_panel(part, title, y) for part, title in zip(races, titles, strict=True)),),
-        heading=figure_heading(answer),
-        height=2.9,
-        alt="Traction coefficient against creep increment for both races; the table has their slopes.",
-    )
+    panels = tuple(curves_panel(part, title, y) for part, title in zip(races, titles, strict=True))
+    alt = "Traction coefficient against creep increment for both races; the table has their slopes."
+    return figure(answer, panels, alt=alt, height=2.9)
 
 
 def curves_panel(part: Part, title: str, y: Axis) -> Panel:
@@ -179,7 +160,7 @@ def shear_figure(answer: Part) -> Figure:
         y = axis("shear", field.unit("shear"), [high], low=-high, high=high, label=label)
         rows.append(tuple(strip_panel(field, *each, y) for each in zip(strips, letters, strict=True)))
     alt = "Six panels: shear along rolling in three strips of each contact, within what friction bears."
-    return Figure(rows=tuple(rows), heading=figure_heading(answer), height=2.1, alt=alt)
+    return figure(answer, *rows, alt=alt, height=2.1)
 
 
 def strip_panel(field: Part, strip: int, letter: str, y: Axis) -> Panel:

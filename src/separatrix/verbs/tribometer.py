@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -37,7 +38,7 @@ from separatrix.present.figure import (
     Panel,
     Trace,
 )
-from separatrix.verbs.parts.telling import Of, axis, column, itself, known_columns, quantity, told
+from separatrix.verbs.parts.telling import axis, column, itself, known_columns, quantity, told
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
@@ -150,13 +151,14 @@ def _test(one: Reduction) -> Any:
     return Group(shape(one.test) | ends | {"course": Group(shape(course(one)))})
 
 
+OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "metadata", "notes")
+
+
 def _file(log: RawLog) -> Document:
     from separatrix.friction.logs import described
     from separatrix.ground.plain_data import plain
 
-    known = {name: plain(getattr(log, name)) for name in ("source", "checksum", "format", "rows", "missing")}
-    known |= {"columns": plain(log.columns), "metadata": dict(log.metadata), "notes": list(log.notes)}
-    return known | {"described": described(log)}
+    return {name: plain(getattr(log, name)) for name in OF_A_LOG} | {"described": described(log)}
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
@@ -260,13 +262,11 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
     def numbers(one: Part) -> str:
         return ", ".join(str(flags.index(flag) + 1) for flag in one.flags) or ABSENT
 
-    def conditions(one: Part) -> Part:
-        return one.conditions  # type: ignore[no-any-return]
-
+    of = attrgetter("conditions")
     columns = (
         TEST,
-        *(_word(name, conditions) for name in PAIR),
-        *(column(name, of=conditions, head=_plain(name)) for name in ("slip_speed", "pressure")),
+        *(_word(name, of) for name in PAIR),
+        *(column(name, of=of, head=_plain(name)) for name in ("slip_speed", "pressure")),
         Column("friction", _friction),
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
         text_column("notes", numbers),
@@ -274,8 +274,8 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
     return Table("tests", known_columns(columns, tests), tuple(tests))
 
 
-def _word(name: str, of: Of = itself) -> Column:
-    return text_column(name, lambda row: (of(row) or Part({}, {})).get(name))
+def _word(name: str, of: Callable[[Part], Part] = itself) -> Column:
+    return text_column(name, lambda row: of(row).get(name))
 
 
 PAIR = ("material", "medium", "counterface")

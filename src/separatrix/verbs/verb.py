@@ -7,7 +7,7 @@ from dataclasses import MISSING, dataclass, fields
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from separatrix.ground.document import Document, Part
     from separatrix.present.blocks import Page
@@ -30,11 +30,6 @@ class Option(NamedTuple):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NoOptions:
     """Of a verb that takes none."""
-
-
-def no_refusals(study: Study) -> Iterator[str]:  # noqa: ARG001
-    """Yield nothing: what a verb needs stands in `needs`."""
-    return iter(())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +56,7 @@ class Verb:
     writes_data: bool = True
     keeps_runs: bool = False
     files: Callable[..., Iterable[tuple[str, bytes]]] | None = None
-    refusals: Callable[[Study], Iterator[str]] = no_refusals
+    refusals: Callable[[Study], Iterable[str]] = lambda study: ()  # noqa: ARG005
 
     @property
     def help(self) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.present.figure import Figure, Panel
 
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
@@ -23,8 +24,10 @@ PROPERTIES = {
     "expansion": "thermal expansion",
 }
 
-Json = Mapping[str, Any]
+MICRO = (" um", " \N{MICRO SIGN}m")
+"""A micrometre as it is written, and as it is shown."""
 
+Json = Mapping[str, Any]
 
 APPENDIX = Level.REPORT | Level.SHEET
 
@@ -61,15 +64,15 @@ def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
     study = answer.values["study"]
     known = answer.values.get("provenance") or {}
     entries = tuple(inputs_of(study))
-    found = [
+    columns = (
         text_column("input", lambda row: f"{row[0]}: {row[1].replace('_', ' ')}"),
         text_column("value", lambda row: entry_words(row[2])),
         text_column("given in", lambda row: row[2]["origin"]),
-    ]
+    )
     files = {str(name): str(one.get("sha256") or "") for name, one in (known.get("files") or {}).items()}
     return [
         Heading("Inputs and their sources", level),
-        Table("inputs", tuple(found), entries, "Inputs of the study.", level),
+        Table("inputs", columns, entries, "Inputs of the study.", level),
         *_materials(study, level),
         *(_frictions(study["ranking"], level) if study.get("ranking") else []),
         Heading("Provenance", level),
@@ -86,10 +89,8 @@ def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
 
 def entry_words(entry: Json) -> str:
     """Return the value of an input, a material's name, or a list, with its distribution."""
-    words = (
-        str(entry["name"]) if entry.get("name") else value_words(entry.get("value"), entry.get("unit") or "")
-    )
-    return str(words) + (f" ({entry['distribution']['words']})" if "distribution" in entry else "")
+    words = entry.get("name") or value_words(entry.get("value"), entry.get("unit") or "")
+    return f"{words} ({entry['distribution']['words']})" if "distribution" in entry else str(words)
 
 
 def value_words(value: Any, unit: str) -> str:
@@ -102,7 +103,7 @@ def value_words(value: Any, unit: str) -> str:
         return "-" if value is None else str(value)
     if unit in ("", "-"):
         return f"{value:g}"
-    return format_quantity(value, unit, 7).replace(" um", " \N{MICRO SIGN}m")
+    return format_quantity(value, unit, 7).replace(*MICRO)
 
 
 def _materials(study: Json, level: Level) -> list[Block]:
@@ -116,9 +117,7 @@ def _properties(study: Json) -> Iterator[tuple[str, ...]]:
     parts = [study.get(name) or {} for name in ("bearing", "film", "cage")]
     found = [one.get(key) for one in parts for key in ("ball_material", "ring_material", "material")]
     found += [one.get("material") for one in (study.get("ranking") or {}).get("candidates", [])]
-    for one in found:
-        if not isinstance(one, dict) or not one.get("name"):
-            continue
+    for one in (one for one in found if isinstance(one, dict) and one.get("name")):
         record = one.get("record") or {}
         for key, words in PROPERTIES.items():
             value = one.get(key) or {}
@@ -126,25 +125,27 @@ def _properties(study: Json) -> Iterator[tuple[str, ...]]:
                 continue
             place = (record.get("taken") or {}).get(key)
             taken = record["data"][key][place] if place is not None else {}
-            known = (taken.get(each) or one.get(each) or "-" for each in ("confidence", "source"))
-            yield (
-                str(one["name"]),
-                words,
-                value_words(value["value"], value.get("unit") or ""),
-                *map(str, known),
-            )
+            known = (str(taken.get(each) or one.get(each) or "-") for each in ("confidence", "source"))
+            yield str(one["name"]), words, value_words(value["value"], value.get("unit") or ""), *known
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
-    def friction(place: str) -> Column:
-        return text_column(place, lambda row: friction_words(row["friction"].get(place)))
-
-    columns = (text_column("candidate", lambda row: row["name"]), *map(friction, ranking["environments"]))
+    frictions = friction_columns(ranking["environments"], itemgetter("friction"))
+    columns = (text_column("candidate", itemgetter("name")), *frictions)
     caption = f"Friction of the candidates as measured, with standard deviation. From {ranking['origin']}."
     known = [one for row in ranking["candidates"] for one in row["friction"].values() if one is not None]
     origins = dict.fromkeys(f"{one['source']} ({one['confidence']})" for one in known)
     table = Table("frictions", columns, tuple(ranking["candidates"]), caption, level)
     return [table, *(Note(f"Source of the frictions: {one}.", "legend", level) for one in origins)]
+
+
+def friction_columns(places: Iterable[str], of: Callable[[Any], Json]) -> Iterator[Column]:
+    """Return a column of measured frictions for each environment; `of` finds in a row its frictions."""
+
+    def column(place: str) -> Column:
+        return text_column(place, lambda row: friction_words(of(row).get(place)))
+
+    return map(column, places)
 
 
 def friction_words(found: Json | None) -> str:
@@ -171,40 +172,31 @@ def command(answer: Part) -> str:
 
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
     """Return what stands above a figure: the title, and the operating point but for the inputs `varied`."""
-    around = [
-        ", ".join(
-            filter(
-                None,
-                [
-                    _stated(answer, "operation", "fluid", varied),
-                    _stated(answer, "operation", "temperature", varied),
-                ],
-            )
-        )
-    ]
-    for race in ("inner", "outer"):
-        speed = _stated(answer, "operation", f"{race}_speed", varied)
-        around += [f"{race} ring {speed}"] if speed else []
-    for way in ("axial", "radial"):
-        load = _stated(answer, "operation", f"{way}_load", varied)
-        around += [f"{load} {way}"] if load else []
-    film = answer.values["study"].get("film") or {}
-    if film and not film.get("is_bare"):
-        name = (film.get("material") or {}).get("name")
-        around += [", ".join(filter(None, [name, _stated(answer, "film", "thickness", varied)]))]
-    elif film:
-        around += ["bare races"]
-    return tuple(filter(None, [answer.title, "; ".join(filter(None, [*around, *more]))]))
+    study = answer.values["study"]
 
+    def stated(section: str, key: str, words: str = "{}") -> str:
+        """Return an input in words; empty if there is none, if it is 0, or if it is varied."""
+        entry = (study.get(section) or {}).get(key) or {}
+        value, unit = entry.get("value"), entry.get("unit")
+        if not value or key in varied:
+            return ""
+        return words.format(format_quantity(value, unit).replace(*MICRO) if unit else value)
 
-def _stated(answer: Part, section: str, key: str, varied: Sequence[str]) -> str:
-    """Return an input of the study as text; empty if there is none, if it is 0, or if it is varied."""
-    entry = (answer.values["study"].get(section) or {}).get(key) or {}
-    value = entry.get("value")
-    if not value or key in varied:
-        return ""
-    return (
-        format_quantity(value, entry["unit"]).replace(" um", " \N{MICRO SIGN}m")
-        if entry.get("unit")
-        else str(value)
+    film = study.get("film") or {}
+    coat = [(film.get("material") or {}).get("name"), stated("film", "thickness")]
+    around = (
+        _listed(", ", stated("operation", "fluid"), stated("operation", "temperature")),
+        *(stated("operation", f"{race}_speed", f"{race} ring {{}}") for race in ("inner", "outer")),
+        *(stated("operation", f"{way}_load", f"{{}} {way}") for way in ("axial", "radial")),
+        "bare races" if film.get("is_bare") else _listed(", ", *coat),
     )
+    return tuple(filter(None, [answer.title, _listed("; ", *around, *more)]))
+
+
+def figure(answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5) -> Figure:
+    """Return a figure of an answer, with its operating point above it."""
+    return Figure(rows=rows, heading=figure_heading(answer), alt=alt, height=height)
+
+
+def _listed(between: str, *words: str | None) -> str:
+    return between.join(filter(None, words))

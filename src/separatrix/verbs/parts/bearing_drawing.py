@@ -15,7 +15,7 @@ from separatrix.ground.quantity import Quantity, alone
 from separatrix.ground.units import Metre, Radian
 from separatrix.present.blocks import Picture
 from separatrix.present.figure import BLACK, GREY, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import entry_words, figure_heading
+from separatrix.verbs.parts.answer_page import entry_words, figure
 from separatrix.verbs.parts.telling import told
 
 Point = tuple[float, float]
@@ -61,8 +61,7 @@ def bearing_picture(answer: Part, contacts: Part | None) -> Picture:
     alt = "Two drawings to scale: a section through the axis, and the ring of balls in its cage."
 
     def drawing() -> Figure:
-        panels = _section(of, answer, contacts), _view(of, answer)
-        return Figure(rows=(panels,), heading=figure_heading(answer), height=3.4, alt=alt)
+        return figure(answer, (_section(of, answer, contacts), _view(of, answer)), alt=alt, height=3.4)
 
     return Picture("bearing", drawing, caption)
 
@@ -119,10 +118,8 @@ def _section(of: Shape, answer: Part, contacts: Part | None) -> Panel:
     found = [bearing[f"{race}_conformity"]["value"] for race in ("inner", "outer")]
     grooves = " inner, ".join(f"{one:.3g} D" for one in dict.fromkeys(found))
     nominal = bearing["contact_angle"]
-    angles, words = (
-        [nominal["value"]] * 2,
-        f"{alone(nominal['value'], LENGTH, nominal['unit'])}, without load",
-    )
+    angles = [nominal["value"]] * 2
+    words = f"{alone(nominal['value'], LENGTH, nominal['unit'])}, without load"
     if contacts is not None:
         both = contacts.inner, contacts.outer
         angles = [one.contact_angle for one in both]
@@ -179,12 +176,9 @@ def _view(of: Shape, answer: Part) -> Panel:
     words += "" if "bore" in of.guessed else f", bore {_length(2 * bore)}"
     stated, reach = answer.values["study"].get("cage"), 1.04 * outside
     if stated:
-        land = stated["land_clearance"]["value"] is not None and stated["guidance"]["value"] != "ball"
-        gap = (
-            f"{stated['guidance']['value']} land {entry_words(stated['land_clearance'])}"
-            if land
-            else "no land"
-        )
+        guidance, gap = stated["guidance"]["value"], "no land"
+        if stated["land_clearance"]["value"] is not None and guidance != "ball":
+            gap = f"{guidance} land {entry_words(stated['land_clearance'])}"
         words += f"\nclearances: pocket {entry_words(stated['pocket_clearance'])}, {gap}"
     power = 10.0 ** floor(log10(of.pitch / 3))
     bar = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= of.pitch / 3)

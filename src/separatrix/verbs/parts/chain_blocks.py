@@ -18,7 +18,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import figure_heading
+from separatrix.verbs.parts.answer_page import figure
 from separatrix.verbs.parts.study_facts import bearing_facts
 from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
 
@@ -68,30 +68,20 @@ def contacts_figure(answer: Part, at: Part) -> Figure:
         plan.append(Trace(x=(a * np.cos(angle)).tolist(), y=x.tolist(), fill=0.25, width=1.0, **look))
         plan.append(Words(x=0.0, y=2.2 * side * b, text=race, colour=colour, side="on"))
         p = found.max_pressure * np.sqrt(np.maximum(0.0, 1.0 - (y / a) ** 2))
-        hover = tuple(
-            f"{race} race: y {1e3 * u:.3g} mm, pressure {1e-9 * v:.3g} GPa" for u, v in zip(y, p, strict=True)
-        )
+        texts = (f"y {1e3 * u:.3g} mm, pressure {1e-9 * v:.3g} GPa" for u, v in zip(y, p, strict=True))
+        hover = tuple(f"{race} race: {text}" for text in texts)
         pressure.append(Trace(x=y.tolist(), y=p.tolist(), name=f"{race} race", hover=hover, **look))
         xi = found.creep_spin * y + found.creep_curvature * y * y
         creep.append(Trace(x=y.tolist(), y=xi.tolist(), **look))
-    p0 = axis("pressure", "Pa", [at.inner.max_pressure], low=0.0)
+    p0, xi_y = axis("pressure", "Pa", [at.inner.max_pressure], low=0.0), axis("creep_ratio", "-", [])
     along = Axis(label="x along rolling, same scale", size=across.size, has_ticks=False)
-    return Figure(
-        rows=(
-            (
-                Panel(title="a  Ellipses, to scale", x=across, y=along, marks=tuple(plan), is_to_scale=True),
-                Panel(title="b  Pressure on the axis x = 0", x=across, y=p0, marks=tuple(pressure)),
-                Panel(
-                    title="c  Creep by spin and curvature",
-                    x=across,
-                    y=axis("creep_ratio", "-", []),
-                    marks=tuple(creep),
-                ),
-            ),
-        ),
-        heading=figure_heading(answer),
-        alt="Three panels: both contact ellipses to scale, pressure and creep across the groove.",
+    panels = (
+        Panel(title="a  Ellipses, to scale", x=across, y=along, marks=tuple(plan), is_to_scale=True),
+        Panel(title="b  Pressure on the axis x = 0", x=across, y=p0, marks=tuple(pressure)),
+        Panel(title="c  Creep by spin and curvature", x=across, y=xi_y, marks=tuple(creep)),
     )
+    alt = "Three panels: both contact ellipses to scale, pressure and creep across the groove."
+    return figure(answer, panels, alt=alt)
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:
@@ -120,6 +110,10 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
 
 FACTORS = ("race_damping", "damping_ratio", "restitution_factor")
 DAMPING = ("load", "slope", "rolling_speed")
+DAMPING_LEGEND = (
+    "Contacts of the most loaded ball. The damping of its inner race is {inner_damping}, that of its outer "
+    "race {outer_damping}."
+)
 OVERDAMPED = " (overdamped)"
 
 
@@ -129,13 +123,10 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
     def factor(end: str) -> Column:
         head = "if the ball may spin" if end else "dampings summed (Eq. 18)"
         is_over = chain.get(f"restitution_factor{end}") == 0.0
-        return Column(
-            head,
-            lambda name: cell(
-                chain, name + end, OVERDAMPED if is_over and name == "restitution_factor" else ""
-            ),
-        )
+        mark = {"restitution_factor": OVERDAMPED} if is_over else {}
+        return Column(head, lambda name: cell(chain, name + end, mark.get(name, "")))
 
+    stiffness = "ball_cage_stiffness"
     hertz = "{restitution_factor_hertz} in an impact at the impact speed, less in a harder one"
     return [
         Heading("Restitution", level),
@@ -155,22 +146,10 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
             "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
         ),
         by_race(
-            "dampings",
-            chain.inner,
-            chain.outer,
-            *DAMPING,
-            level=level,
-            caption=said(
-                chain,
-                "Contacts of the most loaded ball. The damping of its inner race is {inner_damping}, that of "
-                "its outer race {outer_damping}.",
-            ),
+            "dampings", chain.inner, chain.outer, *DAMPING, level=level, caption=said(chain, DAMPING_LEGEND)
         ),
         facts(
-            (
-                named("ball_cage_stiffness"),
-                f"{told(chain, 'ball_cage_stiffness')} ({chain.stiffness_source})",
-            ),
+            (named(stiffness), f"{told(chain, stiffness)} ({chain.stiffness_source})"),
             fact(chain, "cage_mass", named("cage_mass")),
             ("$eta$ of a Hertzian pocket", said(chain, hertz)),
             level=level,

@@ -134,7 +134,9 @@ def _label(key: str, row: Part, number: int) -> str:
 
 def differing(verb: str, first: Places, second: Places) -> Iterator[Row]:
     """Yield a row for each result that differs."""
-    from_runs = _from_runs()
+    from separatrix.verdict.judgement import Judgement, KickCount
+
+    from_runs = {one.name for record in (Judgement, KickCount) for one in fields(record)}
     for place in {**first, **second}:
         words, (a, b) = printable(" / ".join(place), 160), (nodes.get(place) for nodes in (first, second))
         if a is None or b is None:
@@ -149,12 +151,6 @@ def differing(verb: str, first: Places, second: Places) -> Iterator[Row]:
             row = None if name in parts else _row(value_of(name, a), value_of(name, b), exact=exact)
             if row is not None:
                 yield replace(row, place=words, name=name, unit=a.unit(name))
-
-
-def _from_runs() -> set[str]:
-    from separatrix.verdict.judgement import Judgement, KickCount
-
-    return {one.name for record in (Judgement, KickCount) for one in fields(record)}
 
 
 def _ends(name: str) -> tuple[str, str]:
@@ -260,10 +256,11 @@ def compared(
         raise InputError(names[1], rule, got=", ".join(second))
     sides = [_side(name, one[shared[0]]) for name, one in zip(names, (first, second), strict=True)]
     one, other = sides
-    environment = one.environment if one.environment == other.environment else None
+    own = one.environment if one.environment == other.environment else None
+    environment = own if isinstance(own, str) else None
     rows = sorted(differing(shared[0], one.places, other.places), key=lambda row: order(row, environment))
-    keys = {*one.inputs, *other.inputs}
-    pairs = [(key, *(side.inputs.get(key, (None, None)) for side in sides)) for key in sorted(keys)]
+    keys = sorted({*one.inputs, *other.inputs})
+    pairs = [(key, *(side.inputs.get(key, (None, None)) for side in sides)) for key in keys]
     return {
         "separatrix_version": __version__,
         "verb": "compare",
@@ -286,25 +283,23 @@ class _Side(NamedTuple):
     """What is compared of an answer."""
 
     named: Document
-    environment: str | None
+    environment: object
     places: Places
-    verdicts: set[tuple[tuple[str, ...], str]]
     inputs: dict[str, Input]
+
+    @property
+    def verdicts(self) -> set[tuple[tuple[str, ...], str]]:
+        """Places and names of what is decided, but for ranks."""
+        keys = ((at, key) for at, node in self.places.items() for key in node.values)
+        return {(at, key) for at, key in keys if is_decision(key) and key != "rank"}
 
 
 def _side(name: str, one: Document) -> _Side:
     """Take from an answer what is compared; one that is damaged is refused under its name."""
     with refusing_damage(name):
-        complete, own = one.get("complete") is not False, one.get("environment")
-        named = {
-            "path": name,
-            "title": printable(one["title"], 200),
-            "seed": one["seed"],
-            "complete": complete,
-        }
-        places, inputs = results(part_of(one)), inputs_of_answer(one)
-        decided = {(at, key) for at, node in places.items() for key in node.values if is_decision(key)}
-        verdicts = {at for at in decided if at[1] != "rank"}
-    if not inputs:
+        named = {"path": name, "title": printable(one["title"], 200), "seed": one["seed"]}
+        named |= {"complete": one.get("complete") is not False}
+        found = _Side(named, one.get("environment"), results(part_of(one)), inputs_of_answer(one))
+    if not found.inputs:
         raise InputError(name, "contains a study that separatrix did not write", cure=AGAIN)
-    return _Side(named, own if isinstance(own, str) else None, places, verdicts, inputs)
+    return found

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from separatrix.chain.solution import Solution
-    from separatrix.study.study import Study, TractionSettings
+    from separatrix.study.study import Study
 
 COARSE = 8
 """Cells along and across in which an exact contact is put for its refusals."""
@@ -33,42 +34,19 @@ def refused(study: Study, *steps: Step) -> Iterator[str]:
 
 def rolling(solution: Solution) -> None:
     """Refuse what no traction is computed of: a bearing that does not roll, contacts out of their range."""
-    from separatrix.chain.contacts import require_rolling
+    from separatrix.chain.contacts import race_tracks, require_rolling
+    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.race_curve import contact_problem
     from separatrix.study.study import TractionModel
 
     asked = solution.study
     require_rolling(asked)
     if asked.traction.model is TractionModel.STRIPS:
         _ = solution.slopes
-    else:
-        _coarse(solution, asked.traction, has_idle=False)
-
-
-def compared(solution: Solution) -> None:
-    """Refuse a film whose own pressure an exact contact bears, but not Hertz's: `traction` compares both."""
-    from separatrix.ground.errors import SeparatrixError
-    from separatrix.study.study import ContactPressure, TractionModel
-
-    asked = solution.study.traction
-    if asked.pressure is not ContactPressure.COATED:
         return
-    try:
-        _coarse(solution, asked.by(TractionModel.EXACT))
-    except SeparatrixError:
-        return  # then there is nothing to compare with, and `traction` says so
-    _coarse(solution, asked.by(TractionModel.EXACT, ContactPressure.HERTZ))
-
-
-def _coarse(solution: Solution, by: TractionSettings, *, has_idle: bool = True) -> None:
-    """Compute the contacts in a few cells: enough for what refuses them."""
-    from separatrix.chain.contacts import race_tracks
-    from separatrix.chain.exact import rolling_contact
-    from separatrix.chain.race_curve import contact_problem
-
-    asked = solution.study
     for track in race_tracks(asked.bearing, asked.film, solution.bearing):
-        if has_idle or not track.is_idle:
-            rolling_contact(contact_problem(track, by), columns=COARSE, rows=COARSE)
+        if not track.is_idle:
+            rolling_contact(contact_problem(track, asked.traction), columns=COARSE, rows=COARSE)
 
 
 def impact(solution: Solution) -> None:
@@ -77,10 +55,36 @@ def impact(solution: Solution) -> None:
 
 
 def push(solution: Solution) -> None:
-    """Refuse what no mobility is computed of: by strips, whose slip fields are those of any contact."""
-    from dataclasses import replace
+    """Refuse what no mobility is computed of."""
+    _ = by_strips(solution).mobility
 
+
+def cage_motion(solution: Solution) -> None:
+    """Refuse what no cage is moved of: no restitution factor, no clearance, no body."""
+    from separatrix.study.study import TractionModel
+    from separatrix.verbs.parts.cage_of_study import cage_of
+
+    if solution.study.traction.model is TractionModel.EXACT:
+        rolling(solution)
+        solution = by_strips(solution)
+    cage_of(solution)
+
+
+def candidate_cages(solution: Solution) -> None:
+    """Refuse what no candidate is judged in: no environment of the bearing, no cage that could move."""
+    from separatrix.chain.solution import solve
+    from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
+
+    study = solution.study
+    asked = ranking_question(study)
+    required_environment(study, asked)
+    for one in (reference_candidate(study, asked), *asked.candidates):
+        cage_motion(solve(study, one))
+
+
+def by_strips(solution: Solution) -> Solution:
+    """Return the same chain with strips, which have no refusals of their own and take milliseconds."""
     from separatrix.chain.solution import solve
     from separatrix.study.study import TractionSettings
 
-    _ = solve(replace(solution.study, traction=TractionSettings())).mobility
+    return solve(replace(solution.study, traction=TractionSettings()), solution.candidate)

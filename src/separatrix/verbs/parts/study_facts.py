@@ -64,7 +64,5 @@ def film_words(study: Json) -> str:
 def contact_words(study: Json) -> str:
     """Return how the contacts are computed."""
     asked = study["traction"]
-    words = f"{MODELS[asked['model']['value']]}, {PRESSURES[asked['pressure']['value']]}"
-    return words + (
-        ", slip by the pressure included" if asked["pressure_slip"]["value"] == "included" else ""
-    )
+    slip = ", slip by the pressure included" if asked["pressure_slip"]["value"] == "included" else ""
+    return f"{MODELS[asked['model']['value']]}, {PRESSURES[asked['pressure']['value']]}{slip}"

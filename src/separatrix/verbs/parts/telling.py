@@ -54,14 +54,17 @@ def cell(part: Part | None, name: str, mark: str = "") -> Cell:
 def named(name: str) -> str:
     """Return the label of a quantity with its symbol, as a line begins with it."""
     known = quantity(name)
-    label = known.label[:1].upper() + known.label[1:]
-    return f"{label} ${known.symbol}$" if known.symbol else label
+    return begun(f"{known.label} ${known.symbol}$" if known.symbol else known.label)
+
+
+def begun(words: str) -> str:
+    """Return words as they stand at the beginning of a line."""
+    return words[:1].upper() + words[1:]
 
 
 def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
     """Return label and value of a quantity."""
-    label = label or quantity(name).label
-    return label[:1].upper() + label[1:], cell(part, name)
+    return begun(label or quantity(name).label), cell(part, name)
 
 
 def column(
@@ -136,7 +139,7 @@ def by_race(
     def race(part: Part) -> Callable[[Any], Cell]:
         return lambda row: cell(part, row)
 
-    rows = text_column("", lambda row: quantity(row).label[:1].upper() + quantity(row).label[1:])
+    rows = text_column("", lambda row: begun(quantity(row).label))
     columns = rows, Column("inner race", race(inner)), Column("outer race", race(outer))
     return Table(name, columns, names, caption, level)
 
@@ -183,11 +186,8 @@ def marks(
         values = [estimate(row, name) for row in rows]
         if any(isinstance(one, Estimate) for one in values):
             known = [one if isinstance(one, Estimate) else Estimate(one) for one in values]
-            found |= {
-                "ends_along": way,
-                "low": [one.low for one in known],
-                "high": [one.high for one in known],
-            }
+            found |= {"ends_along": way, "low": [one.low for one in known]}
+            found |= {"high": [one.high for one in known]}
             values = [one.value for one in known]
         found[way] = values
     return Trace(hover=tuple(hover(row) for row in rows) if hover else (), **found)
