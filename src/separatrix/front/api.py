@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
     from separatrix.verbs.report import Report
-    from separatrix.verbs.verb import Tool
+    from separatrix.verbs.verb import Tool, Verb
 
 Record = TypeVar("Record")
 
@@ -448,14 +448,16 @@ def report(
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.verbs.report import add_missing, report_of, wanted
+    from separatrix.verbs.report import report_of_study
 
     asked = study if isinstance(study, Study) else read_study(study)
-    found: dict[str, Document] = {}
 
-    def compute(verb: str) -> Document:
-        answer = _answer(verb, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
-        return answer.document()
+    def compute(verb: Verb) -> Computed:
+        return _answer(
+            verb.name, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress
+        ).computed
 
-    missing = add_missing(found, wanted(asked), compute)
-    return report_of(found, missing)
+    found = report_of_study(asked, None, compute)
+    if found is None:  # `_answer` has raised it with what was finished
+        raise Interrupted
+    return found

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from separatrix.friction.log_series import ReducedLogs
     from separatrix.ground.document import Document
     from separatrix.study.study import Study
+    from separatrix.verbs import Computed
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool
 
@@ -158,6 +159,7 @@ def _report(
         typesetter()
     from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
+    from separatrix.verbs.report import report_of_study
 
     writes = to is not None or not json
     with contextlib.ExitStack() as stack:
@@ -166,7 +168,11 @@ def _report(
         usual = Path(asked) if study is None else Path(study.name)
         place = stack.enter_context(writable_folder(to or usual)) if writes else None
         place = (to or usual) if writes else None
-        made = _of_folder(usual, compute) if study is None else _of_study(study, place, compute)
+        made = (
+            _of_folder(usual, compute)
+            if study is None
+            else report_of_study(study, place, partial(compute, study=study, folder=place))
+        )
         if made is None:
             return interrupted("no report was written. Run the same command to resume.")
         files = [] if place is None else made.write(place, with_pdf=pdf)
@@ -180,44 +186,20 @@ def _report(
     return ANSWERED
 
 
-def _kept(compute: Callable[..., Any], study: Study, place: Path | None, verb: str) -> Document:
-    """Compute an answer; its files are written if there is a folder, without figures."""
-    from separatrix.study.reading import require
-    from separatrix.verbs.answer_files import document, save_answer
-
-    asked = verb_named(verb)
-    require(study, verb, *asked.needs)
-    found = document(asked, compute(asked, study, folder=place))
-    if place is not None:
-        save_answer(place, asked, found, pictures=False)
-    return found
-
-
-def _of_study(study: Study, place: Path | None, compute: Callable[..., Any]) -> Report | None:
-    """Return the report of a study; None if that was interrupted."""
-    from separatrix.verbs.report import add_missing, is_answer_to, report_of, wanted
-    from separatrix.verbs.saved_answers import VERBS as SAVED
-    from separatrix.verbs.saved_answers import read_answer
-
-    kept = {verb: place / f"{verb}.json" for verb in SAVED} if place is not None else {}
-    known = {verb: read_answer(path) for verb, path in kept.items() if path.exists()}
-    found = {verb: one for verb, one in known.items() if is_answer_to(one, study)}
-    missing = add_missing(found, wanted(study), partial(_kept, compute, study, place))
-    if any(one.get("complete") is False for one in found.values()):
-        return None
-    return report_of(found, missing, str(place or study.name))
-
-
-def _of_folder(place: Path, compute: Callable[..., Any]) -> Report:
+def _of_folder(place: Path, compute: Callable[..., Computed]) -> Report:
     """Return the report of a folder, with what its chain lacks if its study can be read back."""
+    from separatrix.verbs.answer_files import document
     from separatrix.verbs.report import CHAIN, add_missing, report_of, wanted
     from separatrix.verbs.saved_answers import read_folder
 
     found, missing = read_folder(place), list[str]()
     study = _read_back(next(iter(found.values())))
     if study is not None:
-        lacking = [verb for verb in wanted(study) if verb in CHAIN]
-        missing = add_missing(found, lacking, partial(_kept, compute, study, None))
+
+        def computed(name: str) -> Document:
+            return document(verb_named(name), compute(verb_named(name), study, folder=None))
+
+        missing = add_missing(found, [verb for verb in wanted(study) if verb in CHAIN], computed)
     return report_of(found, missing, str(place))
 
 

@@ -64,7 +64,9 @@ class LeftBehind(KeyboardInterrupt):
     """An interrupt that the work did not follow in time: its thread still runs."""
 
 
-def breakable(work: Callable[[], Answer]) -> Answer:
+def breakable(
+    work: Callable[[], Answer], wait: Callable[[Future[Answer]], object] = lambda found: found.result()
+) -> Answer:
     """Result of work in another thread, so that an interrupt ends it inside a kernel or the compiler, too.
 
     Ctrl-C or SIGTERM ends a long job at its next look, and raises KeyboardInterrupt in other work; a module
@@ -90,7 +92,7 @@ def breakable(work: Callable[[], Answer]) -> Answer:
     try:
         thread.start()
         try:
-            return found.result()
+            wait(found)
         except KeyboardInterrupt:
             if thread.is_alive():
                 _end(thread)
