@@ -72,28 +72,25 @@ class Draft:
         """The map, ready to be looked at."""
         lines = [
             f'# Draft of a column map for {name}: check each line with "guess, check", then add --map.',
-            f"name = {toml_value(f'map of {name}'[:200])}",
+            f"name = {_toml(f'map of {name}'[:200])}",
             *("", "[format]", *self.form, "", "[columns]", *self.columns.values(), "", "[test]"),
         ]
         written = self.given.as_written
-        lines += [
-            *(f"{key} = {toml_value(value)}" for key, value in written.get("test", {}).items()),
-            *self.test,
-        ]
+        lines += [*(f"{key} = {_toml(value)}" for key, value in written.get("test", {}).items()), *self.test]
         for pattern, section in written.get("files", {}).items():
-            lines += ["", f"[files.{toml_value(pattern)}]"]
-            lines += [f"{key} = {toml_value(value)}" for key, value in section.items()]
+            lines += ["", f"[files.{_toml(pattern)}]"]
+            lines += [f"{key} = {_toml(value)}" for key, value in section.items()]
         about = "# The columns, with their first, middle and last values:"
         return "\n".join([*lines, "", about, *self.seen, ""])
 
 
-def toml_value(value: object) -> str:
+def _toml(value: object) -> str:
     """A value in TOML."""
     if isinstance(value, Mapping):
-        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else toml_value(key) for key in value}
-        return "{ " + ", ".join(f"{keys[key]} = {toml_value(one)}" for key, one in value.items()) + " }"
+        keys = {key: key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml(key) for key in value}
+        return "{ " + ", ".join(f"{keys[key]} = {_toml(one)}" for key, one in value.items()) + " }"
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(toml_value, value))}]"
+        return f"[{', '.join(map(_toml, value))}]"
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -112,8 +109,8 @@ def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) 
         raise _no_table(content)
     name, found = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
     if len(drafts) > 1 and found.questions and not given.format.tables:
-        listed = ", ".join(toml_value(one) for one, _ in drafts)
-        found.form.append(found.ask(f"tables = [{toml_value(name)}]", f"one of {listed}?"))
+        listed = ", ".join(_toml(one) for one, _ in drafts)
+        found.form.append(found.ask(f"tables = [{_toml(name)}]", f"one of {listed}?"))
     if why is not None:
         question = f"the map of this layout does not fit: {why.rule} {why.got}"
         found.form.insert(0, found.ask(f"# {given.name}", question))
@@ -139,11 +136,11 @@ def _block(part: tables.Part, draft: Draft) -> tables.Block | None:
     heads = _heads(part, separator, draft.given) if separator else None
     if heads is None:
         return None
-    asked = {"separator": f"or {' or '.join(map(toml_value, others))}?"} if others else {}
+    asked = {"separator": f"or {' or '.join(map(_toml, others))}?"} if others else {}
     form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
     blocks, form = _blocks(part, form, heads, asked)
     for key, value in given_in(form).items():
-        line = f"{key} = {toml_value(value)}"
+        line = f"{key} = {_toml(value)}"
         draft.form.append(draft.ask(line, asked[key]) if key in asked else line)
     if not blocks:
         return None
@@ -211,7 +208,7 @@ def _draft(block: tables.Block, draft: Draft) -> Draft:
             options.setdefault(meaning, []).append(option)
         values = ", ".join(cells[k] for k in (0, len(cells) // 2, -1)) if cells else ""
         beside = f" {block.below[i]}" if block.below[i] else ""
-        draft.seen.append(printable(f"# {i + 1:3d} {toml_value(block.heads[i])}{beside}: {values}", 150))
+        draft.seen.append(printable(f"# {i + 1:3d} {_toml(block.heads[i])}{beside}: {values}", 150))
     used = _given(block, draft)
     _decide(block, draft, options, used)
     _decimal(block, draft, [draft.cells[i] for i in sorted(used)])
@@ -295,7 +292,7 @@ def _given(block: tables.Block, draft: Draft) -> set[int]:
             used |= set(places)
         elif not one.optional:
             name = one.names[0] if one.names else f"number {one.number}"
-            draft.questions.append(f"no column {toml_value(name)}, which the column map names as {meaning}")
+            draft.questions.append(f"no column {_toml(name)}, which the column map names as {meaning}")
     return used
 
 
@@ -314,7 +311,7 @@ def _stated(meaning: str, one: Column) -> str:
     name = one.names[0] if len(one.names) == 1 else one.name
     more = ({"unit": one.unit} if one.unit else {}) | ({"sign": -1} if one.sign < 0 else {})
     more |= {"optional": True} if one.optional else {}
-    return f"{meaning} = {toml_value({'name': name} | more if more or isinstance(name, tuple) else name)}"
+    return f"{meaning} = {_toml({'name': name} | more if more or isinstance(name, tuple) else name)}"
 
 
 def _line(draft: Draft, block: tables.Block, meaning: str, option: Option, unit: str = "") -> str:
@@ -389,7 +386,7 @@ def _choose(
     """The line of columns that are certain; asked where several of other names are."""
     count, words = len(draft.questions), meaning.replace("_", " ")
     line = _line(draft, block, meaning, chosen[0])
-    names = list(dict.fromkeys(toml_value(block.heads[one.index].strip()) for one in chosen))
+    names = list(dict.fromkeys(_toml(block.heads[one.index].strip()) for one in chosen))
     units = {naming.scale_of(one.unit, meaning) if one.unit else None for one in chosen}
     if len(draft.questions) > count and not is_needed:
         del draft.questions[count:]
@@ -399,9 +396,7 @@ def _choose(
         if not is_needed:
             draft.notes.append(f"columns {', '.join(names)} could all be the {meaning}, and none is used")
             return
-        others = [
-            f"{toml_value(block.heads[one.index].strip())} (column {one.index + 1})" for one in chosen[1:]
-        ]
+        others = [f"{_toml(block.heads[one.index].strip())} (column {one.index + 1})" for one in chosen[1:]]
         line = draft.ask(line, f"{names[0]}, or {' or '.join(others)}?")
     elif chosen[0].question:
         line = draft.ask(line, f"column {names[0]}: {chosen[0].question}")
@@ -417,7 +412,7 @@ def _ask_unit(block: tables.Block, draft: Draft, meaning: str, option: Option) -
     unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
     said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
     line = _line(draft, block, meaning, option, unit)
-    draft.columns[meaning] = draft.ask(line, f"column {toml_value(head.strip())}: {said}")
+    draft.columns[meaning] = draft.ask(line, f"column {_toml(head.strip())}: {said}")
 
 
 def _ask_torque(block: tables.Block, draft: Draft, i: int) -> None:
@@ -442,11 +437,11 @@ def _ask_column(block: tables.Block, draft: Draft, meaning: str) -> None:
         if "normal_force" not in draft.columns:
             _ask_column(block, draft, "normal_force")
     elif meaning == "friction" and near:
-        names = ", ".join(toml_value(block.heads[i].strip()) for i in near[:4])
+        names = ", ".join(_toml(block.heads[i].strip()) for i in near[:4])
         line = _line(draft, block, meaning, Option(0, near[0]), "-")
         draft.columns[meaning] = draft.ask(line, f"the friction by its name? There are {names}")
     else:
-        line = f"{meaning} = {toml_value({'name': UNKNOWN if any(block.heads) else 1, 'unit': UNKNOWN})}"
+        line = f"{meaning} = {_toml({'name': UNKNOWN if any(block.heads) else 1, 'unit': UNKNOWN})}"
         draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
 
 
@@ -482,9 +477,7 @@ def _conditions(block: tables.Block, draft: Draft) -> None:
             one for one, names in naming.KEYS.items() if naming.plain(naming.header_parts(key)[0][0]) in names
         ]
         if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
-            question = (
-                f"{toml_value(key)} is {toml_value(value)}: {' or '.join(ways)}? It is not used as it is"
-            )
+            question = f"{_toml(key)} is {_toml(value)}: {' or '.join(ways)}? It is not used as it is"
             draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
         known |= set(meant[:1])
     for name, what in NAMED.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import threading
 import zipfile
@@ -15,7 +16,6 @@ from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from markupsafe import escape
 
-from separatrix.friction.logs.draft import toml_value
 from separatrix.front.page.folder import LOG, Form, Page
 from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
@@ -196,8 +196,8 @@ def at_point(
     if RESTITUTION in axes:
         question["restitution_factor"] = f"{axes.pop(RESTITUTION)[0]:.7g}"
     values = {LONG.get(key, key): _literal(value, unit) for key, (value, unit) in axes.items()}
-    title = toml_value(f"{found['title']}: {', '.join(words)}")
-    values = {"extends": toml_value(study.name), "title": title, **values}
+    title = json.dumps(f"{found['title']}: {', '.join(words)}")
+    values = {"extends": json.dumps(study.name), "title": title, **values}
     text = "".join(f"{key} = {value}\n" for key, value in values.items())
     path = study.with_name(f"{study.stem[:40]} {' '.join(words)}.toml"[:100])
     if not (page.folder.has(path) and path.read_text(encoding="utf-8") == text):
@@ -208,7 +208,7 @@ def at_point(
 
 def _literal(value: float, unit: str) -> str:
     """Return a value of a map as a study file has it: in SI, plain without a unit."""
-    return f"{value:.9g}" if unit not in UNITS or unit == "-" else toml_value(f"{value:.9g} {unit}")
+    return f"{value:.9g}" if unit not in UNITS or unit == "-" else json.dumps(f"{value:.9g} {unit}")
 
 
 def _nearest(values: list[float], text: str) -> float:

@@ -15,7 +15,6 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, Table
 
-from separatrix.friction.logs.draft import toml_value
 from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
 from separatrix.ground.reader import document_of
@@ -171,7 +170,13 @@ def _values(data: Mapping[str, Any], section: str) -> Mapping[str, Any]:
 
 def as_typed(value: object) -> str:
     """Return a value as it is typed into a field: text as it is, lists and tables as TOML has them."""
-    return value or "" if value is None or isinstance(value, str) else toml_value(value)
+    if value is None or isinstance(value, str):
+        return value or ""
+    table = tomlkit.inline_table()
+    if isinstance(value, dict):
+        table.update(value)
+        return table.as_string()
+    return str(tomlkit.item(value).as_string())
 
 
 # ---- one key changed
