@@ -21,7 +21,7 @@ from separatrix.ground.errors import InputError
 from separatrix.verbs.verb import Option
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
-PATIENCE = 300.0
+PATIENCE = 1200.0
 """Time for a job, kernels compiled first [s]."""
 
 AXES = {"x": "restitution_factor=0.3..0.9:2", "y": "film.thickness=0.4..0.8um:2"}

@@ -9,7 +9,7 @@ from commands import SMALL
 from separatrix.front.console import is_importing
 from separatrix.front.page.worker import Jobs
 
-PATIENCE = 120.0
+PATIENCE = 600.0
 """Time for a job on a loaded machine [s]."""
 
 

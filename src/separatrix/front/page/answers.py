@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 import threading
 import zipfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import quote
@@ -20,11 +18,12 @@ from separatrix.front.page.folder import LOG, Form, Page
 from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import reading_only_in
-from separatrix.ground.units import UNITS, format_number, shown
+from separatrix.ground.units import shown
 from separatrix.present import blocks, draw, html
 from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
 from separatrix.verbs import tool_named, verb_named
+from separatrix.verbs.map import at_point
 from separatrix.verbs.report import asked_by, differing
 from separatrix.verbs.saved_answers import AGAIN, refusing_damage
 from separatrix.verbs.verb import Tool, Verb
@@ -108,8 +107,18 @@ def routes(page: Page) -> APIRouter:
 
     @router.post("/point/{name:path}", response_class=HTMLResponse)
     def point(name: str, sent: Form) -> Response:
-        variant, question = at_point(page, name, page.loaded(file_of(page, "map", name)), sent)
-        page.jobs.ask("simulate", variant, question)
+        study, found = page.folder.study(name), page.loaded(file_of(page, "map", name))
+        try:
+            x, y = (float(sent.get(way, "")) for way in "xy")
+        except ValueError:
+            raise InputError("The point", "must have two numbers", got=shown(sent)) from None
+        with refusing_damage(name):
+            words, text, question = at_point(found, study.name, x, y)
+        path = study.with_name(f"{study.stem[:40]} {words.replace(',', '')}.toml"[:100])
+        if not (page.folder.has(path) and path.read_text(encoding="utf-8") == text):
+            path = page.folder.new(path.name, page.folder.name(path.parent))
+            path.write_text(text, encoding="utf-8", newline="\n")
+        page.jobs.ask("simulate", page.folder.name(path), question)
         return page.running()
 
     return router
@@ -171,48 +180,3 @@ def changed(page: Page, name: str, found: dict[str, Any]) -> str:
     except InputError as error:
         return f"The study or this answer cannot be read: {(error.problems or (error,))[0]}"
     return f"Changed after this answer: {names}. Run it again." if names else ""
-
-
-def at_point(
-    page: Page, name: str, found: Mapping[str, Any], sent: Mapping[str, str]
-) -> tuple[str, dict[str, object]]:
-    """Return the variant of a study at the point of its map that was clicked, and what is asked of it.
-
-    The variant is a study of its own that extends the first; restitution factor and disturbance are options.
-    """
-    from separatrix.verdict.map_records import KICK, LONG, RESTITUTION
-
-    study, cage = page.folder.study(name), found["study"]["cage"]
-    axes = {
-        axis["parameter"]: (_nearest(axis["values"], sent.get(way, "")), axis["unit"])
-        for way, axis in (("x", found["x"]), ("y", found["y"]))
-    }
-    words = [
-        f"{key.rpartition('.')[2].replace('_', ' ')} {format_number(value, 4)}"
-        for key, (value, _) in axes.items()
-    ]
-    question: dict[str, object] = {one: str(cage[one]["value"]) for one in ("motion", "ball") if one in cage}
-    question["kick"] = f"{axes.pop(KICK, (found['kick'], ''))[0]:.7g} m/s"
-    if RESTITUTION in axes:
-        question["restitution_factor"] = f"{axes.pop(RESTITUTION)[0]:.7g}"
-    values = {LONG.get(key, key): _literal(value, unit) for key, (value, unit) in axes.items()}
-    title = json.dumps(f"{found['title']}: {', '.join(words)}")
-    values = {"extends": json.dumps(study.name), "title": title, **values}
-    text = "".join(f"{key} = {value}\n" for key, value in values.items())
-    path = study.with_name(f"{study.stem[:40]} {' '.join(words)}.toml"[:100])
-    if not (page.folder.has(path) and path.read_text(encoding="utf-8") == text):
-        path = page.folder.new(path.name, page.folder.name(path.parent))
-        path.write_text(text, encoding="utf-8", newline="\n")
-    return page.folder.name(path), question
-
-
-def _literal(value: float, unit: str) -> str:
-    """Return a value of a map as a study file has it: in SI, plain without a unit."""
-    return f"{value:.9g}" if unit not in UNITS or unit == "-" else json.dumps(f"{value:.9g} {unit}")
-
-
-def _nearest(values: list[float], text: str) -> float:
-    try:
-        return min(values, key=lambda one: abs(one - float(text)))
-    except ValueError:
-        raise InputError("The point", "must have two numbers", got=shown(text)) from None

@@ -111,22 +111,19 @@ def routes(page: Page) -> APIRouter:
 
     router.get("/jobs")(page.running)
 
-    @router.post("/jobs/{number:int}/cancel")
-    def cancel(number: int) -> Response:
-        page.jobs.cancel(number)
-        return page.running()
-
     @router.post("/jobs/forget")
     def forget() -> Response:
         page.jobs.forget_ended()
         return page.running()
 
+    @router.post("/jobs/{number:int}/cancel")
+    def cancel(number: int) -> Response:
+        page.jobs.cancel(number)
+        return page.running()
+
     @router.post("/jobs/{number:int}/resume")
     def resume(number: int) -> Response:
-        job = page.jobs.job(number)
-        if job is None:
-            raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
-        page.jobs.ask(job.verb, job.name, job.question)
+        page.jobs.resume(number)
         return page.running()
 
     return router

@@ -18,12 +18,15 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from separatrix.front.console import LOOK, LeftBehind, Pace, breakable
 from separatrix.front.page.folder import LOG, REPORT, Folder
 from separatrix.ground.errors import InputError, SeparatrixError, json_text
 from separatrix.ground.files import reading_only_in, staged
+
+if TYPE_CHECKING:
+    from separatrix.verdict.long_jobs import Progress
 
 WAITING, RUNNING = "waiting", "running"
 INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
@@ -34,9 +37,6 @@ _AT_THE_END = 10.0
 
 KEPT = "Finished runs are kept: resume to go on."
 LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {KEPT}"
-
-EVERY = 0.2
-"""Least time between two reports of progress [s]."""
 
 Send = Callable[..., None]
 """Sends the page what has changed of a job, by the names of its fields."""
@@ -120,6 +120,13 @@ class Jobs:
                 with contextlib.suppress(OSError):  # its process has just ended
                     self._pipe.send(number)
 
+    def resume(self, number: int) -> None:
+        """Ask a question again: it goes on with the runs that are kept."""
+        job = self.job(number)
+        if job is None:
+            raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
+        self.ask(job.verb, job.name, job.question)
+
     def forget_ended(self) -> None:
         """Drop the jobs that have ended from the list; their answers stay."""
         with self._lock:
@@ -137,14 +144,14 @@ class Jobs:
     def _hand_over(self) -> None:
         """Hand one job after another to the process, and follow it to its end."""
         while (number := self._waiting.get()) is not None:
-            with self._lock:
-                job = self._jobs.get(number)
-                if job is None or job.state != WAITING:  # cancelled
-                    continue
-                job = self._change(number, state=RUNNING, started=time.monotonic())
-                pipe = self._pipe_of_process()
             try:
-                pipe.send(job)
+                with self._lock:
+                    job = self._jobs.get(number)
+                    if job is None or job.state != WAITING:  # cancelled
+                        continue
+                    job = self._change(number, state=RUNNING, started=time.monotonic())
+                    pipe = self._pipe_of_process()
+                    pipe.send(job)
                 while job.is_active:
                     changes = pipe.recv()
                     with self._lock:
@@ -178,20 +185,15 @@ class Jobs:
 # ---- the process, whose kernels stay loaded
 
 
-class Reporter(Pace):
-    """Reports how far a long job is."""
+def reporting(send: Send) -> Progress:
+    """Return what reports how far a long job is: the share that is done, and the time left."""
+    pace = Pace()
 
-    def __init__(self, send: Send) -> None:
-        super().__init__()
-        self.send, self._last = send, 0.0
+    def progress(done: float, total: float) -> None:
+        pace(done, total)
+        send(share=pace.share or None, left=pace.left)
 
-    def __call__(self, done: float, total: float) -> None:
-        """Report the share that is done and the time left, now and then and at the end."""
-        super().__call__(done, total)
-        now = time.monotonic()
-        if done == total or now - self._last > EVERY:
-            self._last = now
-            self.send(share=self.share or None, left=self.left)
+    return progress
 
 
 def work(pipe: Connection, root: Path) -> None:
@@ -255,7 +257,7 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
             return _reported(source, place, send)
         verb = verb_named(job.verb)
         study, options = asked_study(verb, source, models), verb.options(**question)
-        found = computed(verb, study, options, folder=place, progress=Reporter(send))
+        found = computed(verb, study, options, folder=place, progress=reporting(send))
         send(message="Drawing the figures and writing the files.")
         save_answer(place, verb, document(verb, found), options=options)
         if not found.is_complete:
@@ -275,7 +277,7 @@ def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
 
     def compute(verb: Verb) -> Computed:
         send(message=f"Computing {verb.name} for the report.")
-        return computed(verb, study, folder=place, progress=Reporter(send))
+        return computed(verb, study, folder=place, progress=reporting(send))
 
     report = report_of_study(study, place, compute, pictures=True)
     if report is None:
@@ -292,7 +294,7 @@ def _reduced(log: Path, place: Path, question: Mapping[str, object], send: Send)
 
     tool = tool_named(LOG)
     try:
-        found = tool.compute(tool.options(files=(log,), **question), processors(), Reporter(send))
+        found = tool.compute(tool.options(files=(log,), **question), processors(), reporting(send))
     except UnmappedError as error:
         if not error.place.exists():
             error.place.write_text(error.draft, encoding="utf-8", newline="\n")
