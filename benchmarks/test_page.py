@@ -50,8 +50,8 @@ def test_first_view(benchmark, page, server):
 @pytest.mark.parametrize(
     "place",
     [
-        *("study/small.toml", "answer/rank/small.toml", "cage/small.toml"),
-        *("plot/rank/candidates/small.toml", "plot/map/map/small.toml"),
+        *("study/small.toml", "answer/rank/small.toml", "view/simulate/moving-cage/small.toml"),
+        *("figure/rank/rank-overview.json/small.toml", "figure/map/stability-map.json/small.toml"),
     ],
 )
 def test_what_needs_no_run(benchmark, page, server, place):

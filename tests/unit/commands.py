@@ -41,11 +41,11 @@ materials = ["Armalon", "Meldin HTC 100"]
 """A study with an ensemble of no weight."""
 
 
-def work_undrawn(pipe: Connection) -> None:
+def work_undrawn(pipe: Connection, root: Path) -> None:
     """Compute for the page as `separatrix.front.page.worker.work` does, but leave pictures out."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)
-        work(pipe)
+        work(pipe, root)
 
 
 def document(capsys, *arguments: str, status: int = 0) -> dict:

@@ -7,8 +7,9 @@ import pytest
 from commands import SMALL
 from fastapi.testclient import TestClient
 
+from separatrix.front.page.folder import Folder
 from separatrix.front.page.server import application
-from separatrix.front.page.worker import Task, _answered
+from separatrix.front.page.worker import Job, answered
 from separatrix.ground.errors import InputError
 from separatrix.verdict.ledger import NAME
 
@@ -111,9 +112,9 @@ def test_nothing_is_written_through_a_link(page, outside, inside):
     if inside:
         place.mkdir()
     (place / inside).symlink_to(outside / "new" if inside else outside)
-    task = Task(number=1, verb="bearing", study=root / "small.toml", folder=place, root=root)
+    job = Job(number=1, verb="bearing", name="small.toml")
     with pytest.raises(InputError, match="leads out of the folder of the studies"):
-        _answered(task, lambda **_: None)
+        answered(job, Folder(root=root), lambda **_: None)
     assert before(outside) == kept
 
 

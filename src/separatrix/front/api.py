@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from separatrix.chain.contacts import BearingState
-from separatrix.ground.document import Document, part_of
+from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.reading import read_study, require
 from separatrix.study.study import Study
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
     from separatrix.verbs.report import Report
-    from separatrix.verbs.verb import Tool
+    from separatrix.verbs.verb import Tool, Verb
 
 Record = TypeVar("Record")
 
@@ -49,13 +49,18 @@ Asked = Study | str | Path
 class Shown(ABC):
     """What every answer can show of itself, from its document and its page."""
 
+    asked: Verb | Tool
+    record: Any
+
     @abstractmethod
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
 
-    @abstractmethod
     def page(self) -> Page:
         """Page of blocks: what text, report, workbook and local page show."""
+        from separatrix.verbs.answer_files import page_of_document
+
+        return page_of_document(self.asked, self.document())
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
@@ -76,6 +81,16 @@ class Shown(ABC):
 
         return plot(self.page(), name)
 
+    def __getattr__(self, name: str) -> Any:
+        """Name of the record; of an answer without one, of its document."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if self.record is not None:
+            return getattr(self.record, name)
+        if name not in self.document():
+            raise AttributeError(name)
+        return self.document()[name]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Answer(Shown, Generic[Record]):
@@ -84,16 +99,19 @@ class Answer(Shown, Generic[Record]):
     `record` was computed for `study`; `notes` are about where a model leaves its range.
     """
 
-    verb: str
+    asked: Verb = field(repr=False)
     record: Record
-    study: Study
     computed: Computed = field(repr=False)
 
-    def __getattr__(self, name: str) -> Any:
-        """Name of the record."""
-        if name.startswith("_"):
-            raise AttributeError(name)
-        return getattr(self.record, name)
+    @property
+    def verb(self) -> str:
+        """Name of the verb."""
+        return self.asked.name
+
+    @property
+    def study(self) -> Study:
+        """The study that was asked."""
+        return self.computed.study
 
     def __repr__(self) -> str:
         """Verb and study; `summary` has the answer."""
@@ -110,17 +128,11 @@ class Answer(Shown, Generic[Record]):
     def _document(self) -> Document:
         from separatrix.verbs.answer_files import document
 
-        return document(verb_named(self.verb), self.computed)
+        return document(self.asked, self.computed)
 
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
         return self._document
-
-    def page(self) -> Page:
-        """Page of blocks: what text, report, workbook and local page show."""
-        from separatrix.verbs.answer_files import page_of_document
-
-        return page_of_document(verb_named(self.verb), self.document())
 
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
@@ -139,41 +151,27 @@ class Answer(Shown, Generic[Record]):
 class ToolAnswer(Shown):
     """What a tool answers: the names of its record are its own, too; without one those of its document."""
 
-    tool: Tool
+    asked: Tool
     found: Document = field(repr=False)
     record: Any = field(default=None, repr=False)
-
-    def __getattr__(self, name: str) -> Any:
-        """Name of the record, or of the document."""
-        if name.startswith("_"):
-            raise AttributeError(name)
-        if self.record is not None:
-            return getattr(self.record, name)
-        if name not in self.found:
-            raise AttributeError(name)
-        return self.found[name]
 
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
         return self.found
 
-    def page(self) -> Page:
-        """Page of blocks: what text and files show."""
-        return self.tool.page(part_of(self.found))
-
     def to_dataframe(self) -> pd.DataFrame:
         """One row for each test, record or result."""
         import pandas as pd
 
-        return pd.json_normalize(self.found[self.tool.rows])
+        return pd.json_normalize(self.found[self.asked.rows])
 
 
 def _answer(verb: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
     """Answer of a verb; `how` is as for `computed`."""
-    asked, known = study if isinstance(study, Study) else read_study(study), verb_named(verb)
-    require(asked, verb, *known.needs)
-    found = computed(known, asked, known.options(**(options or {})), **how)
-    answer = Answer(verb=verb, record=found.record, study=asked, computed=found)
+    study, known = study if isinstance(study, Study) else read_study(study), verb_named(verb)
+    require(study, verb, *known.needs)
+    found = computed(known, study, known.options(**(options or {})), **how)
+    answer = Answer(asked=known, record=found.record, computed=found)
     if not found.is_complete:
         raise Interrupted(answer)
     return answer
@@ -448,14 +446,16 @@ def report(
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.verbs.report import add_missing, report_of, wanted
+    from separatrix.verbs.report import report_of_study
 
     asked = study if isinstance(study, Study) else read_study(study)
-    found: dict[str, Document] = {}
 
-    def compute(verb: str) -> Document:
-        answer = _answer(verb, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
-        return answer.document()
+    def compute(verb: Verb) -> Computed:
+        return _answer(
+            verb.name, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress
+        ).computed
 
-    missing = add_missing(found, wanted(asked), compute)
-    return report_of(found, missing)
+    found = report_of_study(asked, None, compute)
+    if found is None:  # `_answer` has raised it with what was finished
+        raise Interrupted
+    return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json as plain_json
 import webbrowser
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -18,17 +17,16 @@ from separatrix.front.commands import (
     Jobs,
     Json,
     Quiet,
-    command_of,
+    command,
     compute_tool,
     computed_with_progress,
-    deliver_tool,
     folder,
     named,
     options_of,
-    save_tool,
-    signature,
+    run_tool,
     threads,
     tool_command,
+    verb_command,
     whole_number,
 )
 from separatrix.front.console import (
@@ -49,6 +47,7 @@ if TYPE_CHECKING:
     from separatrix.friction.log_series import ReducedLogs
     from separatrix.ground.document import Document
     from separatrix.study.study import Study
+    from separatrix.verbs import Computed
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool
 
@@ -105,7 +104,7 @@ def _new(
 
     write_new(path, template_workbook() if excel else template().encode())
     if json:
-        answer(plain_json.dumps({"path": str(path)}) + "\n")
+        answer_json({"path": str(path)})
     elif not quiet:
         answer(f"{path} is written. Fill it in, then: separatrix check {path}\n")
     return ANSWERED
@@ -139,7 +138,6 @@ def _page(
 # The report.
 
 
-@interruptible("no report was written.")
 def _report(
     asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=ASKED_HELP)],
     pdf: Annotated[bool, typer.Option("--pdf", help=PDF_HELP)] = False,
@@ -149,7 +147,7 @@ def _report(
     jobs: Jobs = None,
 ) -> int:
     """Write the report of a study or of a folder, and return the exit status."""
-    to, compute = folder(out), partial(computed_with_progress, options=None, quiet=quiet, jobs=threads(jobs))
+    to, compute = folder(out), partial(computed_with_progress, quiet=quiet, jobs=threads(jobs))
     if pdf:
         from separatrix.present.pdf import typesetter
 
@@ -158,66 +156,44 @@ def _report(
         typesetter()
     from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
+    from separatrix.verbs.report import report_of_study
 
-    writes = to is not None or not json
-    with contextlib.ExitStack() as stack:
+    with interruptible("no report was written."), contextlib.ExitStack() as stack:
         is_folder = Path(asked).is_dir() and asked not in shipped_studies()
         study = None if is_folder else read_study(asked)
         usual = Path(asked) if study is None else Path(study.name)
-        place = stack.enter_context(writable_folder(to or usual)) if writes else None
-        place = (to or usual) if writes else None
-        made = _of_folder(usual, compute) if study is None else _of_study(study, place, compute)
+        place = None if to is None and json else to or usual
+        if place is not None:
+            stack.enter_context(writable_folder(place))
+        if study is None:
+            made: Report | None = _of_folder(usual, compute)
+        else:
+            made = report_of_study(study, place, partial(compute, study=study, folder=place))
         if made is None:
             return interrupted("no report was written. Run the same command to resume.")
         files = [] if place is None else made.write(place, with_pdf=pdf)
         if json:
             answer_json(made.document(files))
-        else:
-            lines = [harmless(made.summary())]
-            if files and not quiet:
-                lines += ["", f"The report is {' and '.join(map(str, files))}"]
-            answer("\n".join(lines) + "\n")
+            return ANSWERED
+        written = f"\nThe report is {' and '.join(map(str, files))}\n" if files and not quiet else ""
+        answer(f"{harmless(made.summary())}\n{written}")
     return ANSWERED
 
 
-def _kept(compute: Callable[..., Any], study: Study, place: Path | None, verb: str) -> Document:
-    """Compute an answer; its files are written if there is a folder, without figures."""
-    from separatrix.study.reading import require
-    from separatrix.verbs.answer_files import document, save_answer
-
-    asked = verb_named(verb)
-    require(study, verb, *asked.needs)
-    found = document(asked, compute(asked, study, folder=place))
-    if place is not None:
-        save_answer(place, asked, found, pictures=False)
-    return found
-
-
-def _of_study(study: Study, place: Path | None, compute: Callable[..., Any]) -> Report | None:
-    """Return the report of a study; None if that was interrupted."""
-    from separatrix.verbs.report import add_missing, is_answer_to, report_of, wanted
-    from separatrix.verbs.saved_answers import VERBS as SAVED
-    from separatrix.verbs.saved_answers import read_answer
-
-    kept = {verb: place / f"{verb}.json" for verb in SAVED} if place is not None else {}
-    known = {verb: read_answer(path) for verb, path in kept.items() if path.exists()}
-    found = {verb: one for verb, one in known.items() if is_answer_to(one, study)}
-    missing = add_missing(found, wanted(study), partial(_kept, compute, study, place))
-    if any(one.get("complete") is False for one in found.values()):
-        return None
-    return report_of(found, missing, str(place or study.name))
-
-
-def _of_folder(place: Path, compute: Callable[..., Any]) -> Report:
+def _of_folder(place: Path, compute: Callable[..., Computed]) -> Report:
     """Return the report of a folder, with what its chain lacks if its study can be read back."""
+    from separatrix.verbs.answer_files import document
     from separatrix.verbs.report import CHAIN, add_missing, report_of, wanted
     from separatrix.verbs.saved_answers import read_folder
 
     found, missing = read_folder(place), list[str]()
     study = _read_back(next(iter(found.values())))
     if study is not None:
-        lacking = [verb for verb in wanted(study) if verb in CHAIN]
-        missing = add_missing(found, lacking, partial(_kept, compute, study, None))
+
+        def computed(name: str) -> Document:
+            return document(verb_named(name), compute(verb_named(name), study, folder=None))
+
+        missing = add_missing(found, [verb for verb in wanted(study) if verb in CHAIN], computed)
     return report_of(found, missing, str(place))
 
 
@@ -237,23 +213,11 @@ def _read_back(found: Document) -> Study | None:
 # Tools that write files.
 
 
-def _comparing(tool: Tool) -> Callable[..., int]:
-    """Return the command that compares two answers, and writes document, text and pictures."""
-
-    @interruptible("nothing was compared.")
-    def command(**given: Any) -> int:
-        to = folder(given["out"]) or (None if given["json"] else Path("compare"))
-        with contextlib.nullcontext() if to is None else writable_folder(to):
-            found = compute_tool(tool, given)
-            if to is not None:
-                save_tool(to, tool, found)
-        deliver_tool(tool, found, given)
-        if to is not None and not given["json"] and not given["quiet"]:
-            answer(f"\nText, data and figures are in {to}/\n")
-        return ANSWERED
-
-    command.__signature__ = signature(tool.shown_options(), "full", "json", "out", "quiet")  # type: ignore[attr-defined]
-    return command
+def _compare(tool: Tool, given: Mapping[str, Any]) -> int:
+    """Compare two answers; write document, text and pictures."""
+    to = folder(given["out"]) or (None if given["json"] else Path("compare"))
+    what = "Text, data and figures"
+    return run_tool(tool, given, ended="nothing was compared.", folder=to, what=what)
 
 
 FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
@@ -264,30 +228,22 @@ WRITTEN: dict[str, tuple[Any, Any]] = {
 }
 
 
-def _reducing(tool: Tool) -> Callable[..., int]:
-    """Return the command that reduces logs, and writes a friction file and pictures of the tests."""
-
-    @interruptible("no friction file was written.")
-    def command(**given: Any) -> int:
-        to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
-        if to is not None:
-            _refuse_out(to)
-            pages = pages or to.with_name(f"{to.stem}-plots")
-        with contextlib.ExitStack() as folders:
-            for one in (to and to.parent, pages):
-                if one is not None:
-                    folders.enter_context(writable_folder(one))
-            found = _reduced(tool, given, to)
-            if pages is not None:
-                save_tool(pages, tool, found, pictures_only=True)
-            deliver_tool(tool, found, given)
-            if pages is not None and not given["json"] and not given["quiet"]:
-                answer(f"\nPictures of the tests are in {pages}/\n")
-        return ANSWERED
-
-    beside = ("full", "json", "quiet", "jobs")
-    command.__signature__ = signature(tool.shown_options(), *beside, more=WRITTEN)  # type: ignore[attr-defined]
-    return command
+def _reduce(tool: Tool, given: Mapping[str, Any]) -> int:
+    """Reduce logs; write a friction file and pictures of the tests."""
+    to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
+    if to is not None:
+        _refuse_out(to)
+        pages = pages or to.with_name(f"{to.stem}-plots")
+    with contextlib.nullcontext() if to is None else writable_folder(to.parent):
+        return run_tool(
+            tool,
+            given,
+            ended="no friction file was written.",
+            compute=partial(_reduced, tool, given, to),
+            folder=pages,
+            what="Pictures of the tests",
+            pictures_only=True,
+        )
 
 
 def _reduced(tool: Tool, given: Mapping[str, Any], to: Path | None) -> Document:
@@ -324,39 +280,46 @@ def _refuse_out(out: Path) -> None:
     refuse_existing(out)
 
 
-OWN: dict[str, Callable[[Tool], Callable[..., int]]] = {"compare": _comparing, "tribometer": _reducing}
-"""Tools whose command writes files."""
-
-
-def _new_application() -> typer.Typer:
-    return typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+PLAIN: dict[str, Any] = {
+    "add_completion": False,
+    "rich_markup_mode": None,
+    "pretty_exceptions_enable": False,
+}
+"""How typer shows commands: as text."""
 
 
 def _command(name: str) -> Any:
     """Return a command; only its own module is loaded."""
-    app = _new_application()
+    app = typer.Typer(**PLAIN)
     if name == "materials":
         from separatrix.verbs.materials import LIST, SHOW
 
         app.callback(help=OTHERS[name])(lambda: None)
-        for tool in (LIST, SHOW):
-            app.command(tool.name.split()[-1], help=tool.help, epilog=tool.epilog)(tool_command(tool))
-    elif name in VERBS:
+        for one in (LIST, SHOW):
+            app.command(one.name.split()[-1], help=one.help, epilog=one.epilog)(tool_command(one))
+        return typer.main.get_command(app)
+    if name in VERBS:
         verb = verb_named(name)
-        app.command(name, help=VERBS[name], epilog=verb.epilog)(command_of(verb))
+        made, epilog = verb_command(verb), verb.epilog
     elif name in TOOLS:
         tool = tool_named(name)
-        app.command(name, help=TOOLS[name], epilog=tool.epilog)(OWN.get(name, tool_command)(tool))
+        made, epilog = tool_command(tool), tool.epilog
+        if name == "compare":
+            made = command(_compare, tool, "full", "json", "out", "quiet")
+        elif name == "tribometer":
+            made = command(_reduce, tool, "full", "json", "quiet", "jobs", more=WRITTEN)
     else:
-        own: dict[str, tuple[Callable[..., int], str | None]] = {
-            "new": (_new, None),
-            "report": (_report, REPORT_EPILOG),
-            "app": (_page, PAGE_EPILOG),
-        }
-        command, epilog = own[name]
-        app.command(name, help=OTHERS[name], epilog=epilog)(command)
+        made, epilog = OWN[name]
+    app.command(name, help=COMMANDS[name], epilog=epilog)(made)
     return typer.main.get_command(app)
 
+
+OWN: dict[str, tuple[Callable[..., int], str | None]] = {
+    "new": (_new, None),
+    "report": (_report, REPORT_EPILOG),
+    "app": (_page, PAGE_EPILOG),
+}
+"""Commands without a verb -> function and epilog."""
 
 OTHERS = {
     "new": "Write a commented study file to fill in.",
@@ -389,15 +352,6 @@ class _Commands(typer.core.TyperGroup):
             formatter.write_dl([*COMMANDS.items()])
 
 
-def _application() -> typer.Typer:
-    """Return the command line."""
-    app = typer.Typer(
-        cls=_Commands, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
-    )
-    app.callback(invoke_without_command=True, help=HELP)(_start)
-    return app
-
-
 def _start(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Show the version and stop.")] = False,
@@ -415,9 +369,12 @@ def _start(
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
     """Run the command line; return its exit status, that of `separatrix.front.main`."""
-    command = typer.main.get_command(_application())
+    app = typer.Typer(cls=_Commands, **PLAIN)
+    app.callback(invoke_without_command=True, help=HELP)(_start)
     try:
-        status = command.main(arguments, prog_name="separatrix", standalone_mode=False)
+        status = typer.main.get_command(app).main(arguments, prog_name="separatrix", standalone_mode=False)
+    except typer.Abort:  # an interrupt before the work
+        return interrupted("no file was written.")
     except typer.TyperException as error:
         text = error.format_message().rstrip(". ")
         complain(f'{text}{"" if text.endswith("?") else "."} Try "separatrix --help".')

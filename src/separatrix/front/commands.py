@@ -89,36 +89,41 @@ def threads(jobs: int | None) -> int:
 
 def folder(out: str | None) -> Path | None:
     """Return the folder of an option; an empty name, as from an unset variable, is refused."""
-    if out is not None and not out.strip():
-        raise InputError("--out", "needs the name of a folder", got='""', cure="The current one is .")
-    return None if out is None else Path(out)
+    return named(out, "--out", "a folder", cure="The current one is .")
 
 
-def named(text: str | None, option: str, what: str) -> Path | None:
+def named(text: str | None, option: str, what: str, cure: str = "") -> Path | None:
     """Return the path or address that an option gives; an empty one is refused."""
     if text is not None and (not text.strip() or "\0" in text):
-        raise InputError(option, f"needs the name of {what}", got='""')
+        raise InputError(option, f"needs the name of {what}", got='""', cure=cure)
     return None if text is None else Path(text)
 
 
 # Options of a verb as those of its command.
 
 
-def signature(
-    options: Mapping[str, tuple[Any, Option, Any]],
+def command(
+    run: Callable[[Any, Mapping[str, Any]], int],
+    asked: Verb | Tool,
     *beside: str,
     more: Mapping[str, tuple[Any, Any]] | None = None,
-) -> inspect.Signature:
-    """Return the signature of a command: the options of a verb, those `beside` them, and `more`."""
-    kinds = {name: _typed(name, *one) for name, one in options.items()}
+) -> Callable[..., int]:
+    """Return the function that runs a verb or tool with its options, those `beside` them, and `more`."""
+
+    def found(**given: Any) -> int:
+        return run(asked, given)
+
+    own = {name: _typed(name, *one) for name, one in asked.shown_options().items()}
     before = {"study": BESIDE["study"]} if "study" in beside else {}
     after = dict(more or {}) | {name: BESIDE[name] for name in beside if name != "study"}
-    return inspect.Signature(
+    kinds = (before | own | after).items()
+    found.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default)
-            for name, (kind, default) in (before | kinds | after).items()
+            for name, (kind, default) in kinds
         ]
     )
+    return found
 
 
 def _typed(name: str, kind: Any, note: Option, default: Any) -> tuple[Any, Any]:
@@ -168,53 +173,41 @@ def options_of(asked: Verb | Tool, given: Mapping[str, Any]) -> Any:
 # The command of a verb.
 
 
-def command_of(verb: Verb) -> Callable[..., int]:
+def verb_command(verb: Verb) -> Callable[..., int]:
     """Return the function behind the command of a verb."""
-
-    def command(**given: Any) -> int:
-        return run(verb, given)
-
     beside = ["study", *("model", "motion", "ball") * verb.moves_a_cage, *("full",) * verb.has_full]
-    beside += ["json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs]
-    command.__signature__ = signature(verb.shown_options(), *beside)  # type: ignore[attr-defined]
-    return command
+    return command(run, verb, *beside, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs)
 
 
 def run(verb: Verb, given: Mapping[str, Any]) -> int:
     """Answer one question and return the exit status."""
-    json, quiet, cluster = given["json"], given["quiet"], given.get("cluster")
+    json, cluster = given["json"], given.get("cluster")
     named(cluster, "--cluster", "a scheduler, or local:N")
-    place, count = folder(given["out"]), threads(given["jobs"])
+    place, jobs = folder(given["out"]), threads(given["jobs"])
     models = {name: given[name] for name in ("model", "motion", "ball") if given.get(name) is not None}
     is_kept = verb.keeps_runs and not (json and place is None)
-
     if given.get("animate") is not None and json and place is None:
         raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
-
-    @interruptible("runs that were finished are kept." if is_kept else "no file was written.")
-    def work() -> int:
+    ended = "runs that were finished are kept." if is_kept else "no file was written."
+    with interruptible(ended), contextlib.ExitStack() as stack:
         options = options_of(verb, given)
-        with contextlib.ExitStack() as stack:
-            asked = asked_study(verb, given["study"], models)
-            to = Path(asked.name) if place is None and verb.writes_data and not json else place
-            if to is not None:
-                stack.enter_context(writable_folder(to))
-            found = computed_with_progress(
-                verb, asked, options, quiet=quiet, jobs=count, folder=to, cluster=cluster
-            )
-            _deliver(verb, found, to, json=json, quiet=quiet, full=given.get("full", False))
-        if found.is_complete:
-            return ANSWERED
-        more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
-        return interrupted(f"the answer has what was finished, and is marked complete: false.{more}")
-
-    return work()
+        study = asked_study(verb, given["study"], models)
+        to = Path(study.name) if place is None and verb.writes_data and not json else place
+        if to is not None:
+            stack.enter_context(writable_folder(to))
+        how = {"quiet": given["quiet"], "jobs": jobs, "folder": to, "cluster": cluster}
+        found = computed_with_progress(verb, study, options, **how)
+        _deliver(found, verb, to, given)
+    if found.is_complete:
+        return ANSWERED
+    more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
+    return interrupted(f"the answer has what was finished, and is marked complete: false.{more}")
 
 
 def computed_with_progress(
     verb: Verb,
     study: Study,
-    options: Any,
+    options: Any = None,
     *,
     quiet: bool,
     jobs: int,
@@ -222,9 +215,9 @@ def computed_with_progress(
     cluster: str | None = None,
 ) -> Computed:
     """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
+    how: dict[str, Any] = {"jobs": jobs, "folder": folder, "cluster": cluster}
     with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
-        how = partial(computed, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
-        found = breakable(partial(how, verb, study, options))
+        found = breakable(partial(computed, verb, study, options, progress=progress, **how))
     if found.runs_taken and not quiet:
         from separatrix.verdict.ledger import NAME
 
@@ -233,31 +226,34 @@ def computed_with_progress(
     return found
 
 
-def _deliver(
-    verb: Verb, found: Computed, folder: Path | None, *, json: bool, quiet: bool, full: bool
-) -> None:
+def _deliver(found: Computed, verb: Verb, folder: Path | None, given: Mapping[str, Any]) -> None:
     """Print the answer, then write the files, which take as long again, and print where they are."""
     from separatrix.verbs.answer_files import document, page_of_document, save_answer
 
-    made = document(verb, found)
-    if json:
-        answer_json(made)
-    else:
-        print_page(page_of_document(verb, made), full=full, quiet=quiet)
-    if folder is None:
-        return
-    with progress_bar("files", quiet=quiet) as progress:
-        save_answer(folder, verb, made, options=found.options, progress=progress)
-    if not json and not quiet:
-        answer(f"\nText, figures and data are in {folder}/\n")
+    made, quiet = document(verb, found), given["quiet"]
+    deliver(made, partial(page_of_document, verb, made), given)
+    if folder is not None:
+        with progress_bar("files", quiet=quiet) as progress:
+            save_answer(folder, verb, made, options=found.options, progress=progress)
+        tell_place("Text, figures and data", folder, given)
 
 
-def print_page(page: Page, *, full: bool = False, quiet: bool = False) -> None:
-    """Print a page; `quiet` without its notes."""
+def deliver(made: Document, page: Callable[[], Page], given: Mapping[str, Any]) -> None:
+    """Print a document, or its page; with `--quiet` without its notes."""
     from separatrix.present.blocks import Level
     from separatrix.present.text import text
 
-    answer(text(page.without_notes() if quiet else page, Level.FULL if full else Level.BRIEF))
+    if given["json"]:
+        answer_json(made)
+        return
+    shown = page().without_notes() if given.get("quiet") else page()
+    answer(text(shown, Level.FULL if given.get("full") else Level.BRIEF))
+
+
+def tell_place(what: str, folder: Path, given: Mapping[str, Any]) -> None:
+    """Print where files are."""
+    if not given["json"] and not given["quiet"]:
+        answer(f"\n{what} are in {folder}/\n")
 
 
 # The command of a tool.
@@ -265,24 +261,36 @@ def print_page(page: Page, *, full: bool = False, quiet: bool = False) -> None:
 
 def tool_command(tool: Tool) -> Callable[..., int]:
     """Return the function behind the command of a tool that prints its page and writes no file."""
-
-    def command(**given: Any) -> int:
-        return run_tool(tool, given)
-
     beside = [*("full",) * tool.has_full, "json", *("quiet", "jobs") * tool.takes_time]
-    command.__signature__ = signature(tool.shown_options(), *beside)  # type: ignore[attr-defined]
-    return command
+    return command(run_tool, tool, *beside)
 
 
-def run_tool(tool: Tool, given: Mapping[str, Any]) -> int:
-    """Answer a tool's question and return the exit status."""
+def run_tool(
+    tool: Tool,
+    given: Mapping[str, Any],
+    *,
+    ended: str = "no answer was given.",
+    compute: Callable[[], Document] | None = None,
+    folder: Path | None = None,
+    what: str = "",
+    pictures_only: bool = False,
+) -> int:
+    """Answer a tool's question and return the exit status.
 
-    @interruptible("no answer was given.")
-    def work() -> int:
-        deliver_tool(tool, compute_tool(tool, given), given)
-        return ANSWERED
+    Into a folder go the document and its page as text, HTML and workbook with pictures, or those alone.
+    """
+    from separatrix.ground.document import part_of
+    from separatrix.verbs.answer_files import save_page
 
-    return work()
+    with interruptible(ended), contextlib.nullcontext() if folder is None else writable_folder(folder):
+        found = (compute or partial(compute_tool, tool, given))()
+        page = tool.page(part_of(found))
+        if folder is not None:
+            save_page(folder, tool.name, page, None if pictures_only else found)
+        deliver(found, lambda: page, given)
+        if folder is not None:
+            tell_place(what, folder, given)
+    return ANSWERED
 
 
 def compute_tool(tool: Tool, given: Mapping[str, Any]) -> Document:
@@ -293,21 +301,3 @@ def compute_tool(tool: Tool, given: Mapping[str, Any]) -> Document:
     count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:
         return breakable(partial(tool.compute, options, count, progress))
-
-
-def deliver_tool(tool: Tool, found: Document, given: Mapping[str, Any]) -> None:
-    """Print the document of a tool, or its page."""
-    from separatrix.ground.document import part_of
-
-    if given["json"]:
-        answer_json(found)
-    else:
-        print_page(tool.page(part_of(found)), full=given.get("full", False))
-
-
-def save_tool(folder: Path, tool: Tool, found: Document, *, pictures_only: bool = False) -> None:
-    """Write the document of a tool, its page as text, HTML and workbook, and its pictures; all or none."""
-    from separatrix.ground.document import part_of
-    from separatrix.verbs.answer_files import save_page
-
-    save_page(folder, tool.name, tool.page(part_of(found)), None if pictures_only else found)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import contextvars
 import ctypes
-import functools
 import math
 import os
 import signal
@@ -15,7 +14,9 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from types import FrameType
-from typing import TYPE_CHECKING, ParamSpec, TextIO, TypeVar
+from typing import TYPE_CHECKING, TextIO, TypeVar
+
+import typer
 
 from separatrix.front import INTERRUPTED
 from separatrix.ground.errors import InputError, harmless, json_text, one_line
@@ -23,7 +24,6 @@ from separatrix.ground.errors import InputError, harmless, json_text, one_line
 if TYPE_CHECKING:
     from separatrix.ground.units import Second
 
-Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
 
 LINE_EVERY: Second = 20.0
@@ -64,7 +64,9 @@ class LeftBehind(KeyboardInterrupt):
     """An interrupt that the work did not follow in time: its thread still runs."""
 
 
-def breakable(work: Callable[[], Answer]) -> Answer:
+def breakable(
+    work: Callable[[], Answer], wait: Callable[[Future[Answer]], object] = lambda found: found.result()
+) -> Answer:
     """Result of work in another thread, so that an interrupt ends it inside a kernel or the compiler, too.
 
     Ctrl-C or SIGTERM ends a long job at its next look, and raises KeyboardInterrupt in other work; a module
@@ -90,7 +92,7 @@ def breakable(work: Callable[[], Answer]) -> Answer:
     try:
         thread.start()
         try:
-            return found.result()
+            wait(found)
         except KeyboardInterrupt:
             if thread.is_alive():
                 _end(thread)
@@ -130,20 +132,13 @@ def is_importing(frame: FrameType | None) -> bool:
     return False
 
 
-def interruptible(ended: str) -> Callable[[Callable[Given, int]], Callable[Given, int]]:
+@contextlib.contextmanager
+def interruptible(ended: str) -> Iterator[None]:
     """Let an interrupt end a command with one line, `ended`: typer would swallow the interrupt."""
-
-    def decorate(command: Callable[Given, int]) -> Callable[Given, int]:
-        @functools.wraps(command)
-        def decorated(*args: Given.args, **options: Given.kwargs) -> int:
-            try:
-                return command(*args, **options)
-            except KeyboardInterrupt:
-                return interrupted(ended)
-
-        return decorated
-
-    return decorate
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise typer.Exit(interrupted(ended)) from None
 
 
 def write(stream: TextIO | None, text: str) -> None:
@@ -195,12 +190,13 @@ class Pace:
 
 
 class Life(Pace):
-    """How far a verb is, in words. Its title is verb and study."""
+    """How far a verb is, in words. Its title is verb and study; `shows` is called when it is further."""
 
     def __init__(self, title: str, *, quiet: bool = False) -> None:
         super().__init__()
         self.title, self.started = title, time.monotonic()
         self.told = self.compiled = quiet  # which prints nothing, as `--quiet` requires
+        self.shows: Callable[[], object] = lambda: None
 
     def __call__(self, done: float, total: float) -> None:
         """Take in how far the work is; its first part tells what all of it takes."""
@@ -209,6 +205,7 @@ class Life(Pace):
         if not self.told and self.left is not None and passed > WORTH_PRINTING and self.share < 1.0:
             self.told = True
             complain(f"{self.title} takes about {in_words(passed + self.left)}.")
+        self.shows()
 
     def compiling(self) -> None:
         """Say once that kernels are compiled, which the next command finds done."""
@@ -216,13 +213,18 @@ class Life(Pace):
             self.compiled = True
             complain(f"{self.title}: compiling once on this machine, {COMPILATION} in all.")
 
+    @property
+    def rest(self) -> str:
+        """Time that is left, in words; empty if it is not known."""
+        return "" if self.left is None else f"about {in_words(self.left)} left"
+
     def line(self) -> str:
         """Return how far the work is after which time."""
         passed = in_words(time.monotonic() - self.started)
         if not self.share:
             return f"{self.title}: at work for {passed}"
-        left = "" if self.left is None else f", about {in_words(self.left)} left"
-        return f"{self.title}: {math.floor(100.0 * self.share)} % after {passed}{left}"
+        parts = f"{self.title}: {math.floor(100.0 * self.share)} % after {passed}", self.rest
+        return ", ".join(filter(None, parts))
 
 
 @contextlib.contextmanager
@@ -231,43 +233,35 @@ def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
     if quiet or sys.stderr is None:
         yield Life(title, quiet=True)
         return
-    if not sys.stderr.isatty():
-        with _lines(title) as life, _telling_of_compilation(life):
-            yield life
-        return
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
-
-    class Drawn(Life):
-        def __call__(self, done: float, total: float) -> None:
-            super().__call__(done, total)
-            left = "" if self.left is None else f"about {in_words(self.left)} left"
-            bar.update(task, completed=self.share, total=1.0, left=left)
-
-    left = TextColumn("{task.fields[left]}")
-    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), left
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(escape(harmless(title)), total=None, left="")
-        with _telling_of_compilation(drawn := Drawn(title)):
-            yield drawn
-
-
-@contextlib.contextmanager
-def _telling_of_compilation(life: Life) -> Iterator[None]:
     from separatrix.ground.compiling import COMPILING
 
+    life = Life(title)
     COMPILING.heard.append(life.compiling)
     try:
-        yield
+        with _bar(life) if sys.stderr.isatty() else _lines(life):
+            yield life
     finally:
         COMPILING.heard.remove(life.compiling)
 
 
 @contextlib.contextmanager
-def _lines(title: str) -> Iterator[Life]:
+def _bar(life: Life) -> Iterator[None]:
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
+
+    left = TextColumn("{task.fields[left]}")
+    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), left
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(escape(harmless(life.title)), total=None, left="")
+        life.shows = lambda: bar.update(task, completed=life.share, total=1.0, left=life.rest)
+        yield
+
+
+@contextlib.contextmanager
+def _lines(life: Life) -> Iterator[None]:
     """Print a line now and then, from a separate thread: the work may report nothing for long."""
-    life, over = Life(title), threading.Event()
+    over = threading.Event()
 
     def speak() -> None:
         while not over.wait(LINE_EVERY):
@@ -276,7 +270,7 @@ def _lines(title: str) -> Iterator[Life]:
     speaker = threading.Thread(target=speak, daemon=True)
     speaker.start()
     try:
-        yield life
+        yield
     finally:
         over.set()
         speaker.join()

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from separatrix.present.blocks import Page, Picture
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
-    from separatrix.verbs.verb import Verb
+    from separatrix.verbs.verb import Tool, Verb
     from separatrix.verdict.long_jobs import Progress
 
 
@@ -62,7 +62,7 @@ def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
     return tuple(grouped([*asked.notes, *own]))
 
 
-def page_of_document(verb: Verb, found: Document, where: str = "The answer") -> Page:
+def page_of_document(verb: Verb | Tool, found: Document, where: str = "The answer") -> Page:
     """Return the page of a document; one that is not what its page takes is refused under `where`."""
     from separatrix.verbs.saved_answers import refusing_damage
 

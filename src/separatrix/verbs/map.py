@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from separatrix.ground.document import Part
+from separatrix.ground.document import Document, Part
+from separatrix.ground.units import UNITS, format_number
 from separatrix.present.blocks import Column, Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
@@ -128,6 +130,32 @@ def _with_units(answer: Part, point: Part) -> Part:
     rest = {key: value for key, value in point.values.items() if key not in ("x", "y", *place)}
     units = dict(zip(place, (x, y), strict=True)) | dict.fromkeys(("y_low", "y_high", "margin"), y)
     return Part(place | rest, {**point.units, **units})
+
+
+def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str, dict[str, object]]:
+    """Return the point of a map next to a place: in words, as a study that extends `base`, as options.
+
+    Restitution factor and disturbance are not keys of a study: they are options of `simulate`, as the models
+    of the cage are.
+    """
+    axes = ((answer["x"], x), (answer["y"], y))
+    point = {axis["parameter"]: _nearest(axis["values"], at) for axis, at in axes}
+    units = {axis["parameter"]: axis["unit"] for axis, _ in axes}
+    plain = {name: name.rpartition(".")[2].replace("_", " ") for name in point}
+    words = ", ".join(f"{plain[name]} {format_number(value)}" for name, value in point.items())
+    options: dict[str, object] = {one: answer["study"]["cage"][one]["value"] for one in ("motion", "ball")}
+    options[KICK] = f"{point.pop(KICK, answer['kick']):.9g} m/s"
+    if RESTITUTION in point:
+        options[RESTITUTION] = f"{point.pop(RESTITUTION):.9g}"
+    keys = {"extends": json.dumps(base), "title": json.dumps(f"{answer['title']}: {words}")}
+    for name, value in point.items():
+        key = f"cage.{name}" if name == FRICTION else name
+        keys[key] = f'"{value:.9g} {units[name]}"' if units[name] in UNITS else f"{value:.9g}"
+    return words, "".join(f"{key} = {value}\n" for key, value in keys.items()), options
+
+
+def _nearest(values: Sequence[float], at: float) -> float:
+    return min(values, key=lambda one: abs(one - at))
 
 
 def counted(answer: Part) -> str:

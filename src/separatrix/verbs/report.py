@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError
@@ -16,6 +16,8 @@ from separatrix.verbs.parts.bearing_drawing import bearing_picture
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
+    from separatrix.verbs import Computed
+    from separatrix.verbs.verb import Verb
 
 ORDER = (
     *("rank", "stability", "bearing", "traction", "restitution", "mobility", "map", "sweep"),
@@ -119,23 +121,30 @@ def _title(verb: str) -> str:
 
 def _differing(found: Mapping[str, Document]) -> Iterator[str]:
     """Yield how answers of a folder differ in their inputs from the main one, a sentence for each."""
+    main = next(iter(found))
+    for verb, one in found.items():
+        if names := differing(found[main], one):
+            yield f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
+
+
+def differing(one: Document, other: Document) -> str:
+    """Return the inputs in which two answers differ, the first four by name; empty if there are none."""
+    ours, theirs = _inputs(one), _inputs(other)
+    names = [key for key in {**ours, **theirs} if ours.get(key) != theirs.get(key)]
+    return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if names[4:] else "")
+
+
+def _inputs(found: Document) -> dict[str, object]:
+    """Return what an answer was computed from, without the lines of files where it stands."""
     from separatrix.study.sources import inputs_of
 
-    main = next(iter(found))
-
-    def known(document: Document) -> dict[str, Any]:
-        every = inputs_of(document["study"])
-        inputs = {f"{part}.{key}": one.get("value", one.get("name")) for part, key, one in every}
-        return inputs | {"seed": document["seed"], "version of separatrix": document["separatrix_version"]}
-
-    ours = known(found[main])
-    for verb, one in found.items():
-        theirs = known(one)
-        names = [key for key in {**ours, **theirs} if ours.get(key) != theirs.get(key)]
-        if names:
-            more = f" and {len(names) - 4} more" if len(names) > 4 else ""
-            listed = ", ".join(names[:4])
-            yield f"`{verb}` was computed from other inputs than `{main}`: {listed}{more} differ."
+    known: dict[str, object] = {
+        f"{section}.{key}": {part: one for part, one in entry.items() if part != "origin"}
+        for section, key, entry in inputs_of(found["study"])
+    }
+    ranking = found["study"]["ranking"] or {"candidates": ()}
+    known |= {f"candidate {one['name']}": one for one in ranking["candidates"]}
+    return known | {"version of separatrix": found["separatrix_version"]}
 
 
 def wanted(study: Study) -> Iterator[str]:
@@ -146,15 +155,50 @@ def wanted(study: Study) -> Iterator[str]:
         yield "stability" if study.ranking is None else "rank"
 
 
-def is_answer_to(found: Document, study: Study) -> bool:
-    """Whether an answer is complete, from this version, and to this study."""
+def asked_by(study: Study) -> Document:
+    """Return what each answer to a study has of the study, with this version."""
     from separatrix import __version__
     from separatrix.ground.plain_data import plain
     from separatrix.study.sources import resolved
 
-    asked = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
-    asked["separatrix_version"] = __version__
-    return all(found[key] == value for key, value in asked.items()) and found.get("complete", True) is True
+    known = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
+    return known | {"separatrix_version": __version__}
+
+
+def report_of_study(
+    study: Study,
+    folder: Path | None,
+    compute: Callable[[Verb], Computed],
+    *,
+    pictures: bool = False,
+) -> Report | None:
+    """Return the report of a study; None if an answer that it needs was interrupted.
+
+    Complete answers of `folder` to this study, from this version, are taken; those that lack are computed
+    and written there, their `pictures` if that is asked for.
+    """
+    from separatrix.study.reading import require
+    from separatrix.verbs.answer_files import document, save_answer
+    from separatrix.verbs.saved_answers import read_answer
+
+    asked, found = asked_by(study), dict[str, Document]()
+    for path in [folder / f"{verb}.json" for verb in ORDER] if folder is not None else []:
+        one = read_answer(path) if path.exists() else {}
+        if one.get("complete", True) is True and asked.items() <= one.items():
+            found[path.stem] = one
+
+    def computed(name: str) -> Document:
+        verb = verb_named(name)
+        require(study, name, *verb.needs)
+        made = document(verb, compute(verb))
+        if folder is not None:
+            save_answer(folder, verb, made, pictures=pictures)
+        return made
+
+    missing = add_missing(found, wanted(study), computed)
+    if any(one.get("complete") is False for one in found.values()):
+        return None
+    return report_of(found, missing, str(folder or study.name))
 
 
 def add_missing(

@@ -3,46 +3,37 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 import threading
 import zipfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import quote
 
-import tomlkit
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from markupsafe import escape
 
-from separatrix import __version__
-from separatrix.front.page.folder import ANSWER_SUFFIXES, OF_LOG, Form, Page
-from separatrix.front.page.worker import LOG
+from separatrix.front.page.folder import LOG, Form, Page
 from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
-from separatrix.ground.files import is_inside, reading_only_in
-from separatrix.ground.plain_data import plain
-from separatrix.ground.units import UNITS, format_number, shown
+from separatrix.ground.files import reading_only_in
+from separatrix.ground.units import shown
 from separatrix.present import blocks, draw, html
 from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
-from separatrix.study.sources import inputs_of, resolved
 from separatrix.verbs import tool_named, verb_named
+from separatrix.verbs.map import at_point
+from separatrix.verbs.report import asked_by, differing
 from separatrix.verbs.saved_answers import AGAIN, refusing_damage
+from separatrix.verbs.verb import Tool, Verb
+from separatrix.verdict.ledger import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
-
-SHOWN_INLINE = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".txt": "text/plain"}
-"""Files that the browser shows; all others it keeps."""
 
 FRESH = {"cache-control": "no-cache"}
 ONE_AT_A_TIME = threading.Lock()
 """Drawings: matplotlib's style is one for all threads."""
-
-MOST_NAMED = 4
-"""Inputs that a sentence names."""
 
 _SCRIPT = re.compile(r'<script( type="module")?>(.*?)</script>', re.DOTALL)
 _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy".*?>', re.DOTALL)
@@ -52,35 +43,22 @@ def routes(page: Page) -> APIRouter:
     """Return the routes of the answers."""
     router = APIRouter()
 
-    def place_of(verb: str, name: str) -> Path:
-        if verb == LOG:
-            log = page.folder.log(name)
-            return log.with_name(log.name + OF_LOG)
-        return page.folder.answers(name)
-
-    def file_of(verb: str, name: str) -> Path:
-        path = place_of(verb, name) / f"{verb if verb == LOG else verb_named(verb).name}.json"
-        if not page.folder.has(path):
-            raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
-        return path
-
     def block(verb: str, name: str, of: str, kind: type[Named]) -> Named:
-        for one in page_of(page, file_of(verb, name), verb).blocks:
+        for one in page_of(page, verb, name).blocks:
             if isinstance(one, kind) and one.name == of:
                 return one
         raise InputError(f"{name}: {verb}", f"has no {shown(of)}")
 
     @router.get("/answer/{verb}/{name:path}", response_class=HTMLResponse)
     def answer(verb: str, name: str) -> Response:
-        file = file_of(verb, name)
         return page.html(
             "answer.html",
             name=name,
             verb=verb,
             point=verb == "map",
-            changed=changed(page, name, page.loaded(file)),
+            changed=changed(page, name, page.loaded(file_of(page, verb, name))),
             answers=page.answered(name),
-            **body_of(page, file, verb, name),
+            **body_of(page, verb, name),
         )
 
     @router.get("/figure/{verb}/{of}.{kind}/{name:path}")
@@ -92,69 +70,83 @@ def routes(page: Page) -> APIRouter:
             return JSONResponse(plotly(spec), headers=FRESH)
 
     @router.get("/view/{verb}/{of}/{name:path}", response_class=HTMLResponse)
-    def view(verb: str, of: str, name: str, script: int | None = None) -> Response:
+    def view(verb: str, of: str, name: str, script: str = "") -> Response:
         with refusing_damage(name):
             text = block(verb, name, of, blocks.View).html()
-        if script is not None:  # a script in the page itself would not run
-            found = _SCRIPT.findall(text)[script : script + 1]
-            return Response(found[0][1] if found else "", media_type="text/javascript")
-        numbers = iter(range(text.count("<script")))
+        scripts = {str(one.start()): one for one in _SCRIPT.finditer(text)}
+        if script in scripts:  # in the page itself it would not run
+            return Response(scripts[script][2], media_type="text/javascript")
         text = _SCRIPT.sub(
-            lambda one: f'<script{one[1] or ""} src="?script={next(numbers)}" defer></script>', text
+            lambda one: f'<script{one[1] or ""} src="?script={one.start()}" defer></script>', text
         )
         head = '<head>\n<link rel="icon" href="/static/icon.svg">'
         return HTMLResponse(_POLICY.sub("", text).replace("<head>", head, 1))
 
+    def files_of(name: str) -> list[Path]:
+        found = sorted(page.folder.answers(name).glob("[!.]*"))
+        return [path for path in found if page.folder.has(path) and path.name != LEDGER]
+
     @router.get("/files/{name:path}", response_class=HTMLResponse)
     def files(name: str) -> Response:
-        found = [(path.name, page.folder.name(path)) for path in _files(page, name)]
+        found = [(path.name, page.folder.name(path)) for path in files_of(name)]
         return page.html("files.html", name=name, files=found, answers=page.answered(name))
 
     @router.get("/zip/{name:path}")
     def everything(name: str) -> Response:
         content = io.BytesIO()
         with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as into:
-            for path in (page.folder.study(name), *_files(page, name)):
+            for path in (page.folder.study(name), *files_of(name)):
                 into.write(path, page.folder.name(path))
-        sent = f"attachment; filename*=UTF-8''{quote(Path(name).stem)}.zip"
-        return Response(
-            content.getvalue(), media_type="application/zip", headers={"content-disposition": sent}
-        )
+        sent = {"content-disposition": f"attachment; filename*=UTF-8''{quote(Path(name).stem)}.zip"}
+        return Response(content.getvalue(), media_type="application/zip", headers=sent)
 
     @router.get("/file/{name:path}")
     def file(name: str) -> Response:
         path = page.folder.inside(name)
-        if not path.is_file() or path.suffix not in ANSWER_SUFFIXES:
-            raise InputError(shown(name), "is not a file of an answer")
-        kind = SHOWN_INLINE.get(path.suffix)
-        return FileResponse(path, media_type=kind, filename=None if kind else path.name)
+        return FileResponse(path, filename=path.name)
 
     @router.post("/point/{name:path}", response_class=HTMLResponse)
     def point(name: str, sent: Form) -> Response:
-        variant, question = at_point(page, name, page.loaded(file_of("map", name)), sent)
-        place = page.folder.answers(variant)
-        page.jobs.ask("simulate", page.folder.study(variant), place, name=variant, question=question)
+        study, found = page.folder.study(name), page.loaded(file_of(page, "map", name))
+        try:
+            x, y = (float(sent.get(way, "")) for way in "xy")
+        except ValueError:
+            raise InputError("The point", "must have two numbers", got=shown(sent)) from None
+        with refusing_damage(name):
+            words, text, question = at_point(found, study.name, x, y)
+        path = study.with_name(f"{study.stem[:40]} {words.replace(',', '')}.toml"[:100])
+        if not (page.folder.has(path) and path.read_text(encoding="utf-8") == text):
+            path = page.folder.new(path.name, page.folder.name(path.parent))
+            path.write_text(text, encoding="utf-8", newline="\n")
+        page.jobs.ask("simulate", page.folder.name(path), question)
         return page.running()
 
     return router
 
 
-def _files(page: Page, name: str) -> list[Path]:
-    place = page.folder.answers(name)
-    found = sorted(place.iterdir()) if place.is_dir() and is_inside(place, page.folder.root) else ()
-    return [path for path in found if path.suffix in ANSWER_SUFFIXES and page.folder.has(path)]
+def _asked(verb: str) -> Tool | Verb:
+    return tool_named(verb) if verb == LOG else verb_named(verb)
 
 
-def page_of(page: Page, file: Path, verb: str) -> blocks.Page:
-    """Return the page of a saved answer, interrupted or not."""
-    name, found = page.folder.name(file), page.loaded(file)
+def file_of(page: Page, verb: str, name: str) -> Path:
+    """Return the file of a saved answer; one that is not there is refused."""
+    path = page.folder.answers(name, verb) / f"{_asked(verb).name}.json"
+    if not page.folder.has(path):
+        raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
+    return path
+
+
+def page_of(page: Page, verb: str, name: str) -> blocks.Page:
+    """Return the page of a saved answer, interrupted or not; a damaged one is refused with its file."""
+    file = file_of(page, verb, name)
+    where, found = page.folder.name(file), page.loaded(file)
     if not found:
-        raise InputError(name, "is not a document of an answer", cure=AGAIN)
-    with refusing_damage(name):
-        return (tool_named(verb) if verb == LOG else verb_named(verb)).page(part_of(found, name))
+        raise InputError(where, "is not a document of an answer", cure=AGAIN)
+    with refusing_damage(where):
+        return _asked(verb).page(part_of(found, where))
 
 
-def body_of(page: Page, file: Path, verb: str, name: str) -> dict[str, Any]:
+def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:
     """Return title and body of an answer's page; of one that cannot be shown a line that names its file."""
 
     def picture(one: blocks.Picture) -> str:
@@ -170,91 +162,21 @@ def body_of(page: Page, file: Path, verb: str, name: str) -> dict[str, Any]:
         return f'<p><a class="button" href="{place}">{html.inline(one.caption)}</a></p>'
 
     try:
-        with ONE_AT_A_TIME:
-            found = page_of(page, file, verb)
-            with refusing_damage(page.folder.name(file)):
-                body = html.body(found, blocks.Level.REPORT, picture, view)
+        found = page_of(page, verb, name)
+        with ONE_AT_A_TIME, refusing_damage(page.folder.name(file_of(page, verb, name))):
+            body = html.body(found, blocks.Level.REPORT, picture, view)
     except InputError as error:
         return {"title": "", "subtitle": "", "body": "", "refused": str(error)}
     return {"title": found.title, "subtitle": found.subtitle, "body": body, "refused": ""}
 
 
-def changed(page: Page, name: str, document: Mapping[str, Any]) -> str:
+def changed(page: Page, name: str, found: dict[str, Any]) -> str:
     """Return in a sentence how the study differs from that of an answer; empty if it does not."""
-    models = ((document.get("provenance") or {}).get("command") or {}).get("models") or {}
     try:
-        with reading_only_in(page.folder.root):
-            study = plain(resolved(read_study(page.folder.study(name), models)), "study")
-        with refusing_damage(name):
-            then, now = (inputs(one) for one in (document["study"], json.loads(json.dumps(study))))
+        with reading_only_in(page.folder.root), refusing_damage(name):
+            cage = {key: one for key, one in (found["study"]["cage"] or {}).items() if isinstance(one, dict)}
+            models = {key: one["value"] for key, one in cage.items() if one["origin"][:2] == "--"}
+            names = differing(found, asked_by(read_study(page.folder.study(name), models)))
     except InputError as error:
         return f"The study or this answer cannot be read: {(error.problems or (error,))[0]}"
-    names = [key for key in {**then, **now} if then.get(key) != now.get(key)]
-    if names:
-        more = f" and {len(names) - MOST_NAMED} more" if names[MOST_NAMED:] else ""
-        return (
-            f"The study has changed after this answer: {', '.join(names[:MOST_NAMED])}{more}. Run it again."
-        )
-    version = document.get("separatrix_version")
-    return "" if version == __version__ else f"This answer is of separatrix {version}, not {__version__}."
-
-
-def inputs(study: Any) -> dict[str, object]:
-    """Return what a resolved study states, by section and key, without the lines where it stands."""
-    known: dict[str, object] = {
-        f"[{section}] {key}": {part: one for part, one in entry.items() if part != "origin"}
-        for section, key, entry in inputs_of(study)
-    }
-    ranking = study["ranking"] or {"candidates": ()}
-    return known | {f"[ranking] {one['name']}": one for one in ranking["candidates"]}
-
-
-def at_point(
-    page: Page, name: str, found: Mapping[str, Any], sent: Mapping[str, str]
-) -> tuple[str, dict[str, object]]:
-    """Return the variant of a study at the point of its map that was clicked, and what is asked of it.
-
-    The variant is a study of its own that extends the first; restitution factor and disturbance are options.
-    """
-    from separatrix.verdict.map_records import KICK, LONG, RESTITUTION
-
-    axes = {
-        found[way]["parameter"]: (_nearest(found[way]["values"], sent.get(way, "")), found[way]["unit"])
-        for way in "xy"
-    }
-    cage = found["study"]["cage"]
-    question: dict[str, object] = {one: str(cage[one]["value"]) for one in ("motion", "ball") if one in cage}
-    words = [
-        f"{key.rpartition('.')[2].replace('_', ' ')} {format_number(value, 4)}"
-        for key, (value, _) in axes.items()
-    ]
-    question["kick"] = f"{axes.pop(KICK, (found['kick'], ''))[0]:.7g} m/s"
-    if RESTITUTION in axes:
-        question["restitution_factor"] = f"{axes.pop(RESTITUTION)[0]:.7g}"
-    text = tomlkit.document()
-    text["extends"], text["title"] = Path(name).name, f"{found['title']}: {', '.join(words)}"
-    for key, (value, unit) in axes.items():
-        *sections, last = LONG.get(key, key).split(".")
-        table: Any = text
-        for section in sections:
-            table = table.setdefault(section, tomlkit.table())
-        is_whole = value == round(value) and unit not in UNITS
-        table[last] = (
-            f"{value:.9g} {unit}" if unit in UNITS and unit != "-" else int(value) if is_whole else value
-        )
-    study = page.folder.study(name)
-    file = f"{study.stem[:40]} {' '.join(words)}.toml"[:100]
-    path = study.with_name(file)
-    if not (page.folder.has(path) and path.read_text(encoding="utf-8") == tomlkit.dumps(text)):
-        path = page.folder.new(
-            file, page.folder.name(study.parent) if study.parent != page.folder.root else ""
-        )
-        path.write_text(tomlkit.dumps(text), encoding="utf-8", newline="\n")
-    return page.folder.name(path), question
-
-
-def _nearest(values: list[float], text: str) -> float:
-    try:
-        return min(values, key=lambda one: abs(one - float(text)))
-    except ValueError:
-        raise InputError("The point", "must have two numbers", got=shown(text)) from None
+    return f"Changed after this answer: {names}. Run it again." if names else ""

@@ -1,19 +1,19 @@
-"""A study while it is edited: its text, one key changed in it, and what is wrong with it, key by key."""
+"""A study while it is edited: its text, its form, what is wrong with it, and one key changed in it."""
 
 from __future__ import annotations
 
 import hashlib
 import re
 import tomllib
-from collections.abc import Mapping, MutableMapping
-from dataclasses import dataclass, field
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, MutableMapping
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import tomlkit
-from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import Array, InlineTable, Item, Table
+from tomlkit.items import Array, Table
 
 from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
@@ -21,21 +21,16 @@ from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
 from separatrix.study.reading import read_study
-from separatrix.study.study import Study
-from separatrix.study.template import study_keys
-
-DRAFT = ".{}.draft"
-"""Name of the draft of a study, beside it: a server that is killed loses no edit."""
+from separatrix.study.study import ORDER, Study
+from separatrix.study.template import StudyKey, remark_of, study_keys
 
 MEND = "Mend it in the text first."
 
 _KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
 _LINE = re.compile(r"line (\d+)")
-_NUMBER = re.compile(rf"\s*{NUMBER}\s*")
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(NamedTuple):
     """One thing that is wrong: its line (0 if unknown), its key (empty texts for the file as a whole), words.
 
     `short` leaves out where it is.
@@ -48,35 +43,23 @@ class Fault:
     short: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Checked:
+class Checked(NamedTuple):
     """A text, the study that it makes (None if it is refused), its faults, and the notes of a sound one."""
 
     text: str
-    study: Study | None
-    faults: tuple[Fault, ...]
+    study: Study | None = None
+    faults: tuple[Fault, ...] = ()
     notes: tuple[str, ...] = ()
-    inherited: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
-    """Values by section and key, those of the file that it extends among them."""
-
-    @property
-    def version(self) -> str:
-        """Which text it is: a tab that has another one edits an older state."""
-        return version_of(self.text)
-
-    def faults_of(self, section: str, key: str) -> tuple[str, ...]:
-        """Return the messages about one key."""
-        return tuple(one.message for one in self.faults if (one.section, one.key) == (section, key))
+    inherited: Mapping[str, Any] = {}
+    """Its content over that of the file that it extends."""
 
 
-def version_of(text: str) -> str:
-    """Return a checksum of a text."""
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+# ---- the draft, beside the study: a server that is killed loses no edit
 
 
 def draft_path(study: Path) -> Path:
     """Return where the draft of a study is kept."""
-    return study.with_name(DRAFT.format(study.name))
+    return study.with_name(f".{study.name}.draft")
 
 
 def has_draft(study: Path) -> bool:
@@ -85,27 +68,34 @@ def has_draft(study: Path) -> bool:
     return draft.is_file() and is_inside(draft, study.parent)
 
 
-def current_text(study: Path) -> str:
+def current(study: Path) -> Path:
     """Return the draft of a study, or the study if it has none."""
-    return read_text(draft_path(study) if has_draft(study) else study)
+    return draft_path(study) if has_draft(study) else study
+
+
+def current_text(study: Path) -> str:
+    """Return the text that is edited."""
+    return read_text(current(study))
+
+
+def version_of(text: str) -> str:
+    """Return a checksum of a text: a tab that has another one edits an older state."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def keep(study: Path, text: str) -> None:
     """Keep a text as the draft of a study; one like the study itself is none."""
     if len(text.encode()) > MOST_BYTES:
         raise InputError(study.name, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
-    if not has_draft(study):
-        draft_path(study).unlink(missing_ok=True)  # a link in its place
-    if study.is_file() and text == read_text(study):
-        draft_path(study).unlink(missing_ok=True)
-    else:
+    is_new = text != read_text(study)
+    draft_path(study).unlink(missing_ok=True)  # also a link in its place
+    if is_new:
         draft_path(study).write_text(text, encoding="utf-8", newline="\n")
 
 
 def save(study: Path) -> None:
     """Put the draft in the place of the study."""
-    if has_draft(study):
-        draft_path(study).replace(study)
+    current(study).replace(study)
 
 
 def save_to_run(study: Path, root: Path) -> None:
@@ -115,31 +105,22 @@ def save_to_run(study: Path, root: Path) -> None:
     save(study)
 
 
+# ---- what is wrong
+
+
 def check(study: Path, root: Path) -> Checked:
     """Read the draft of a study as every verb would, without files outside `root`."""
-    path = draft_path(study) if has_draft(study) else study
-    text, inherited = "", dict[str, dict[str, object]]()
+    path = current(study)
+    text, inherited = "", dict[str, Any]()
     try:
         text = read_text(path)
-        inherited = _inherited(path, root)
         with reading_only_in(root):
+            with suppress(InputError):  # which the reading below meets, too
+                inherited |= document_of(Study, path).data
             found = read_study(path)
     except InputError as error:
-        faults = faults_in(error, study.name, path.name)
-        return Checked(text=text, study=None, faults=faults, inherited=inherited)
-    return Checked(text=text, study=found, faults=(), notes=tuple(grouped(found.notes)), inherited=inherited)
-
-
-def _inherited(path: Path, root: Path) -> dict[str, dict[str, object]]:
-    """Return what a study that extends another has, by section and key; nothing of another study."""
-    try:
-        with reading_only_in(root):
-            data = document_of(Study, path).data
-    except InputError:  # shown among the faults
-        return {}
-    top = {key: value for key, value in data.items() if not isinstance(value, dict)}
-    sections = {key: value for key, value in data.items() if isinstance(value, dict)}
-    return {"": top} | sections if "extends" in data else {}
+        return Checked(text=text, faults=faults_in(error, study.name, path.name), inherited=inherited)
+    return Checked(text=text, study=found, notes=tuple(grouped(found.notes)), inherited=inherited)
 
 
 def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
@@ -154,6 +135,53 @@ def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
     return tuple(faults)
 
 
+# ---- the form
+
+
+class FormSection(NamedTuple):
+    """A section of the form: values by key, those of the file that it extends, and messages by key."""
+
+    name: str
+    remark: str
+    keys: tuple[StudyKey, ...]
+    given: Mapping[str, Any]
+    inherited: Mapping[str, Any]
+    faults: Mapping[str, list[str]]
+
+
+def form(checked: Checked) -> Iterator[FormSection]:
+    """Yield the sections of the form of a text; without valid TOML its fields are empty."""
+    data: dict[str, Any] = {}
+    with suppress(ValueError, RecursionError):
+        data = tomllib.loads(checked.text)
+    for name in ("", *ORDER):
+        faults = defaultdict[str, list[str]](list)
+        for one in checked.faults:
+            if one.section == name:
+                faults[one.key].append(one.message)
+        given, inherited = (_values(one, name) for one in (data, checked.inherited))
+        yield FormSection(name, remark_of(name), study_keys(name), given, inherited, faults)
+
+
+def _values(data: Mapping[str, Any], section: str) -> Mapping[str, Any]:
+    found = data.get(section) if section else data
+    return found if isinstance(found, Mapping) else {}
+
+
+def as_typed(value: object) -> str:
+    """Return a value as it is typed into a field: text as it is, lists and tables as TOML has them."""
+    if value is None or isinstance(value, str):
+        return value or ""
+    table = tomlkit.inline_table()
+    if isinstance(value, dict):
+        table.update(value)
+        return table.as_string()
+    return str(tomlkit.item(value).as_string())
+
+
+# ---- one key changed
+
+
 def edited(text: str, section: str, key: str, value: str) -> str:
     """Return the text with one key set as a form gives it, comments kept; an empty value removes the key.
 
@@ -165,69 +193,50 @@ def edited(text: str, section: str, key: str, value: str) -> str:
         Of the study; an empty section is above the first one.
     value : str
         As typed: a number, a quantity, a word, or a list or table as TOML writes it.
+
+    Raises
+    ------
+    InputError
+        The text is not TOML, or the change would lose comments in a list.
     """
-    document = parsed(text)
-    if section and section not in document:
-        document.add(section, tomlkit.table())
-    table = document[section] if section else document
-    if not isinstance(table, MutableMapping):
-        raise InputError(f"[{section}]", "is not a section", cure=MEND)
-    if not value.strip():
-        if key in table:
-            del table[key]
-    else:
-        is_name = any(one.is_name for one in study_keys(section) if one.name == key)
-        _put(table, key, _typed(value, is_name=is_name))
-    return tomlkit.dumps(document)
-
-
-def parsed(text: str) -> TOMLDocument:
-    """Return the document of a text, with its comments; what is not TOML is refused."""
     try:
-        return tomlkit.parse(text)
-    except (TOMLKitError, RecursionError) as error:
-        raise InputError("The text", f"is not valid TOML: {error}", cure=MEND) from None
+        document = tomlkit.parse(text)
+        table = document.setdefault(section, tomlkit.table()) if section else document
+        if not isinstance(table, MutableMapping):
+            raise InputError(f"[{section}]", "is not a section", cure=MEND)
+        _put(table, key, _typed(value.strip(), is_name=_is_name(section, key)))
+        return tomlkit.dumps(document)
+    except (TOMLKitError, RecursionError) as error:  # not TOML, or in an order that tomlkit does not take
+        raise InputError("The form", f"cannot change this text: {error}", cure=MEND) from None
 
 
 def _put(table: MutableMapping[str, Any], key: str, value: object) -> None:
-    """Set a key; comments behind its old value and in its old list stay."""
-    old = table.get(key)
-    if isinstance(old, Array) and isinstance(value, list) and _same_list(old, value):
+    """Set a key, or remove it; a new one stands above comments at the end, which are about what follows."""
+    old, behind = table.get(key), []
+    if value is None:
+        table.pop(key, None)
+    if value in (None, old):
         return
-    new = tomlkit.item(value)
-    if isinstance(value, dict) and not isinstance(old, Table):
-        new = tomlkit.inline_table()
-        new.update(value)
-    if isinstance(old, Item) and old.trivia.comment and not isinstance(new, Table):
-        new.trivia.comment_ws, new.trivia.comment = old.trivia.comment_ws, old.trivia.comment
-    if key in table or not isinstance(table, Table | InlineTable):
-        table[key] = new
-        return
-    body, behind = table.value.body, []
-    while body and body[-1][0] is None:  # comments at the end are about what follows
+    if isinstance(old, Array) and "#" in old.as_string():
+        raise InputError(key, "has comments in its list", cure="Change it in the text.")
+    body = table.value.body if isinstance(table, Table) and key not in table else []
+    while body and body[-1][0] is None:
         behind.append(body.pop())
-    table.append(key, new)
+    table[key] = value
     body.extend(reversed(behind))
 
 
-def _same_list(old: Array, value: list[object]) -> bool:
-    """Make a list another one by removing and adding items; return whether that was enough."""
-    for item in [item for item in old.unwrap() if item not in value]:
-        old.remove(item)
-    for item in value[len(old) :]:
-        old.append(item)
-    return bool(old.unwrap() == value)
+def _is_name(section: str, key: str) -> bool:
+    return any(one.is_name for one in study_keys(section) if one.name == key)
 
 
-def _typed(value: str, *, is_name: bool = False) -> object:
+def _typed(value: str, *, is_name: bool) -> object:
     """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
-    value = value.strip()
-    if not is_name and _NUMBER.fullmatch(value):
+    if not is_name and re.fullmatch(NUMBER, value):
         return float(value) if re.search(r"[.eE]", value) else int(value)
-    if value[0] in "[{":
-        try:
-            found: object = tomllib.loads(f"value = {value}")["value"]
-            return found
-        except (ValueError, RecursionError):
-            raise InputError(shown(value), "is not a list or table of TOML") from None
-    return value
+    if value[:1] not in ("[", "{"):
+        return value or None
+    try:
+        return tomlkit.value(value)
+    except (TOMLKitError, RecursionError):
+        raise InputError(shown(value), "is not a list or table of TOML") from None

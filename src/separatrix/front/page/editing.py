@@ -9,15 +9,12 @@ from typing import Any, get_args, get_origin
 
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
-from tomlkit.exceptions import TOMLKitError
 
 from separatrix.front.page import drafts as draft
-from separatrix.front.page.folder import Form, Page
-from separatrix.front.page.form import as_typed, form
-from separatrix.front.page.worker import REPORT
+from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import printable
-from separatrix.study.study import BallModel, MotionModel, Study, shipped_studies
+from separatrix.ground.units import shown
+from separatrix.study.study import BallModel, MotionModel, shipped_studies
 from separatrix.study.template import template
 from separatrix.verbs import VERBS, verb_named
 
@@ -31,18 +28,26 @@ def routes(page: Page) -> APIRouter:
     """Return the routes of the studies."""
     router = APIRouter(default_response_class=HTMLResponse)
 
-    def edit_again(name: str, path: Path, problem: str = "") -> Response:
-        return page.html("editor.html", **_editor(page, name, path, problem))
+    def editor(name: str, problem: str = "", template: str = "editor.html", **more: object) -> Response:
+        """Return the text and the form beside it; nothing of a workbook, which is not `checked`."""
+        path = page.folder.study(name)
+        checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
+        return page.html(
+            template,
+            name=name,
+            checked=checked,
+            version=draft.version_of(checked.text) if checked else "",
+            sections=[*draft.form(checked)] if checked else (),
+            as_typed=draft.as_typed,
+            problem=problem,
+            has_draft=draft.has_draft(path),
+            **more,
+        )
 
     @router.get("/")
     def studies() -> Response:
         rows = [
-            {
-                "name": name,
-                "title": page.title(name),
-                "answers": page.answered(name),
-                "has_draft": draft.has_draft(page.folder.study(name)),
-            }
+            (name, page.title(name), page.answered(name), draft.has_draft(page.folder.study(name)))
             for name in page.folder.studies()
         ]
         return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
@@ -58,111 +63,73 @@ def routes(page: Page) -> APIRouter:
 
     @router.get("/study/{name:path}")
     def study(name: str) -> Response:
-        shown = _editor(page, name, page.folder.study(name))
-        found = shown["checked"].study if shown["checked"] else None
-        return page.html(
-            "study.html",
+        return editor(
+            name,
+            template="study.html",
             title=page.title(name),
-            cards=_cards(found),
+            verbs=[verb_named(verb) for verb in VERBS],
+            kind_of=kind_of,
+            models=MODELS,
             tables=page.folder.tables(name),
             answers=page.answered(name),
-            **shown,
         )
 
     @router.post("/edit/{name:path}")
     def edit(name: str, sent: Form) -> Response:
         path = page.folder.study(name)
-        text, problem = draft.current_text(path), ""
+        text = draft.current_text(path)
         if sent.get("version") != draft.version_of(text):
-            problem = CHANGED
-        elif "text" in sent:
-            draft.keep(path, sent["text"].replace("\r\n", "\n"))
-        else:
-            section, _, key = sent.get("field", "").partition(".")
-            try:
-                draft.keep(path, draft.edited(text, section, key, sent.get("value", "")))
-            except InputError as error:
-                problem = str(error)
-            except TOMLKitError as error:  # TOML in an order that tomlkit does not take
-                problem = f"The form cannot change this text: {error} {draft.MEND}"
-        return edit_again(name, path, problem)
+            return editor(name, CHANGED)
+        try:
+            if "text" in sent:
+                text = sent["text"].replace("\r\n", "\n")
+            else:
+                section, _, key = sent.get("field", "").partition(".")
+                text = draft.edited(text, section, key, sent.get("value", ""))
+            draft.keep(path, text)
+        except InputError as error:
+            return editor(name, str(error))
+        return editor(name)
 
     @router.post("/save/{name:path}")
     def save(name: str) -> Response:
-        path = page.folder.study(name)
-        draft.save(path)
-        return edit_again(name, path)
+        draft.save(page.folder.study(name))
+        return editor(name)
 
     @router.post("/discard/{name:path}")
     def discard(name: str) -> Response:
-        path = page.folder.study(name)
-        draft.draft_path(path).unlink(missing_ok=True)
-        return edit_again(name, path)
+        draft.draft_path(page.folder.study(name)).unlink(missing_ok=True)
+        return editor(name)
 
     @router.post("/run/{name:path}")
     def run(name: str, sent: Form) -> Response:
-        path = page.folder.study(name)
         verb = sent.get("verb", "")
         question = {} if verb == REPORT else asked(page, name, verb, sent)
-        draft.save_to_run(path, page.folder.root)
-        page.jobs.ask(verb, path, page.folder.answers(name), name=name, question=question)
+        draft.save_to_run(page.folder.study(name), page.folder.root)
+        page.jobs.ask(verb, name, question)
         return page.running()
 
     router.get("/jobs")(page.running)
-
-    @router.post("/jobs/{number}/cancel")
-    def cancel(number: int) -> Response:
-        page.jobs.cancel(number)
-        return page.running()
 
     @router.post("/jobs/forget")
     def forget() -> Response:
         page.jobs.forget_ended()
         return page.running()
 
-    @router.post("/jobs/{number}/resume")
+    @router.post("/jobs/{number:int}/cancel")
+    def cancel(number: int) -> Response:
+        page.jobs.cancel(number)
+        return page.running()
+
+    @router.post("/jobs/{number:int}/resume")
     def resume(number: int) -> Response:
-        job = page.jobs.job(number)
-        if job is None:
-            raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
-        task = job.task
-        page.jobs.ask(task.verb, task.study, task.folder, name=job.study, question=task.question)
+        page.jobs.resume(number)
         return page.running()
 
     return router
 
 
-def _editor(page: Page, name: str, path: Path, problem: str = "") -> dict[str, Any]:
-    """Return what the text and the form beside it show; nothing of a workbook, which is not `checked`."""
-    checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
-    return {
-        "name": name,
-        "checked": checked,
-        "sections": form(checked) if checked else (),
-        "as_typed": as_typed,
-        "problem": problem if checked else "",
-        "has_draft": checked is not None and draft.has_draft(path),
-    }
-
-
-def _cards(study: Study | None) -> list[dict[str, Any]]:
-    """Return each verb with its options, and the sections that it needs and the study lacks."""
-    return [
-        {
-            "verb": verb,
-            "help": VERBS[verb.name],
-            "lacks": [one for one in verb.needs if study and getattr(study, one) is None],
-            "options": {
-                name: (_kind(hint), about, default)
-                for name, (hint, about, default) in verb.shown_options().items()
-            },
-            "models": MODELS if verb.moves_a_cage else {},
-        }
-        for verb in map(verb_named, VERBS)
-    ]
-
-
-def _kind(hint: Any) -> str:
+def kind_of(hint: Any) -> str:
     """Return the kind of field for a type: flag, lines, file, number or text."""
     kinds = {get_origin(hint) or hint, *get_args(hint)}
     known = {bool: "flag", tuple: "lines", Path: "file", int: "number"}
@@ -172,25 +139,22 @@ def _kind(hint: Any) -> str:
 def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[str, object]:
     """Return the options of a verb, and models, as a form gives them; empty ones have their defaults."""
     known = verb_named(verb)
-    kinds = {name: _kind(hint) for name, (hint, *_) in known.shown_options().items()}
+    kinds = {name: kind_of(hint) for name, (hint, *_) in known.shown_options().items()}
     kinds |= dict.fromkeys(MODELS, "text") if known.moves_a_cage else {}
     question: dict[str, object] = {}
-    for name, kind in kinds.items():
-        text = sent.get(name, "").strip()
-        if not text:
-            continue
-        if kind == "number" and not re.fullmatch("-?[0-9]{1,9}", text):
-            flag = f"--{name.replace('_', '-')}"
-            raise InputError(flag, "must be a whole number", got=f'"{printable(text)}"')
-        match kind:
+    for name, text in ((name, sent.get(name, "").strip()) for name in kinds):
+        match text and kinds[name]:
             case "flag":
                 question[name] = True
             case "lines":
                 question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
             case "file":
                 question[name] = page.folder.table(study, text)
-            case "number":
+            case "number" if re.fullmatch("-?[0-9]{1,9}", text):
                 question[name] = int(text)
-            case _:
+            case "number":
+                flag = f"--{name.replace('_', '-')}"
+                raise InputError(flag, "must be a whole number", got=shown(text))
+            case "text":
                 question[name] = text
     return question

@@ -7,11 +7,11 @@ import re
 import tomllib
 import zipfile
 import zlib
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from os.path import exists
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import parse_qs, quote
 
 from fastapi import Depends, Request
@@ -19,25 +19,25 @@ from fastapi.responses import HTMLResponse
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from separatrix import __version__
-from separatrix.front.page.jobs import Job, Jobs
-from separatrix.front.page.worker import LOG, REPORT
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import is_inside
 from separatrix.ground.toml import read_text
 from separatrix.ground.units import printable, shown
 from separatrix.verbs import VERBS
 
+if TYPE_CHECKING:
+    from separatrix.front.page.worker import Job, Jobs
+
+REPORT, LOG = "report", "tribometer"
+"""In the place of a verb: the report of a study, and the tool whose question is to a log."""
+
 STUDY_SUFFIXES = (".toml", ".xlsx", ".xlsm", ".ods")
-ANSWER_SUFFIXES = (
-    *(".json", ".txt", ".nc", ".png", ".svg", ".pdf", ".html", ".csv", ".xlsx", ".gif"),
-    ".toml",
-)
-TABLE_SUFFIX = ".csv"
 LOGS, MAP, OF_LOG = "logs", ".map.toml", ".answer"
 """Folder of the logs of tribometers; endings of a column map and of the folder of an answer, beside a log."""
 
 MOST_STUDIES, DEEPEST = 500, 3
 _NAME = re.compile(r"[^\W_][\w .,()+-]{0,99}")
+_PART = r"[^./\0\\:][^/\0\\:]*"
 _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
 _SHEET = re.compile(rb'name="bearing"', re.IGNORECASE)
 _BEGINNING = 64 * 1024
@@ -59,19 +59,23 @@ class Folder:
     root: Path
 
     def inside(self, name: str) -> Path:
-        """Return the path of a file or folder; refused if missing, hidden, or outside, be it by a link."""
-        parts = name.split("/")
-        is_plain = bool(name) and not any(c in name for c in "\0\\:") and "" not in parts
-        if is_plain and not any(part.startswith(".") for part in parts):
-            path = self.root.joinpath(*parts)
-            if not (is_inside(path, self.root) and is_inside(path.parent, self.root) and _exists(path)):
-                raise InputError(shown(name), "does not exist in this folder")
-            return path
-        raise InputError(shown(name), "is not the name of a file in this folder")
+        """Return the path of a file; refused if missing, hidden, or outside, be it by a link."""
+        if not re.fullmatch(rf"{_PART}(?:/{_PART})*", name):
+            raise InputError(shown(name), "is not the name of a file in this folder")
+        path = self.root / name
+        if not (exists(path) and self.has(path) and is_inside(path.parent, self.root)):
+            raise InputError(shown(name), "does not exist in this folder")
+        return path
 
     def has(self, path: Path) -> bool:
         """Whether a path is a file of the folder; one that a link leads out to is not."""
         return path.is_file() and is_inside(path, self.root)
+
+    def refuse_link_out(self, path: Path) -> None:
+        """Refuse a file or folder to write to where a link leads out of the folder."""
+        if not is_inside(path, self.root):
+            rule = "leads out of the folder of the studies"
+            raise InputError(shown(path.name), rule, cure="Remove this link.")
 
     def new(self, name: str, place: str = "") -> Path:
         """Return the path of a file to make beside the studies or in a folder there, or refuse its name."""
@@ -81,8 +85,7 @@ class Folder:
             cure = "Use letters, digits, spaces, dots and dashes."
             raise InputError(shown(name), "is not a name for a file", cure=cure)
         path = self.root / place / name
-        if not is_inside(path.parent, self.root):
-            raise InputError(shown(place), "leads out of the folder of the studies", cure="Remove this link.")
+        self.refuse_link_out(path.parent)
         if path.exists() or path.is_symlink():
             raise InputError(shown(name), "exists already", cure="Choose another name.")
         return path
@@ -90,22 +93,23 @@ class Folder:
     def study(self, name: str) -> Path:
         """Return the path of a study."""
         path = self.inside(name)
-        if path.suffix not in STUDY_SUFFIXES or not path.is_file():
+        if path.suffix not in STUDY_SUFFIXES:
             raise InputError(shown(name), "is not a study")
         return path
 
-    def answers(self, name: str) -> Path:
-        """Return the folder of the answers to a study, that of the command line; it need not exist."""
-        path = self.study(name)
-        return path.parent / printable(path.stem, 100)
+    def asked(self, name: str, verb: str = "") -> Path:
+        """Return the path of the study, or the log, that a verb is asked of."""
+        return self.log(name) if verb == LOG else self.study(name)
+
+    def answers(self, name: str, verb: str = "") -> Path:
+        """Return the folder of the answers to a study, that of the command line, or to a log."""
+        path = self.asked(name, verb)
+        return path.with_name(name + OF_LOG if verb == LOG else printable(path.stem, 100))
 
     def logs(self) -> list[str]:
         """Return the names of the logs of tribometers."""
-        place = self.root / LOGS
-        found = place.iterdir() if place.is_dir() and is_inside(place, self.root) else ()
-        return sorted(
-            one.name for one in found if self.has(one) and one.name[0] != "." and one.suffix != ".toml"
-        )
+        found = [path for path in self.root.glob(f"{LOGS}/[!.]*") if path.suffix != ".toml"]
+        return sorted(path.name for path in found if self.has(path) and is_inside(path.parent, self.root))
 
     def log(self, name: str) -> Path:
         """Return the path of a log."""
@@ -115,20 +119,14 @@ class Folder:
 
     def tables(self, name: str) -> list[str]:
         """Return the names of the CSV files beside a study: what `sweep` may take its cases from."""
-        return [
-            path.name
-            for path in sorted(self.study(name).parent.iterdir())
-            if path.suffix.lower() == TABLE_SUFFIX
-            and not path.name.startswith(".")
-            and not path.is_symlink()
-            and path.is_file()
-        ][:MOST_STUDIES]
+        found = sorted(self.study(name).parent.iterdir())
+        return [path.name for path in found if path.suffix.lower() == ".csv" and self._is_own(path)]
 
     def table(self, name: str, table: str) -> Path:
         """Return the path of a CSV file beside a study; refused if it is not one of `tables`."""
         if table not in self.tables(name):
             raise InputError("--cases", "must be a CSV file beside the study", got=shown(table))
-        return self.study(name).parent / table
+        return self.study(name).with_name(table)
 
     def name(self, path: Path) -> str:
         """Return the name of a file in the folder."""
@@ -136,24 +134,15 @@ class Folder:
 
     def studies(self) -> list[str]:
         """Return the names of the studies, those on top first."""
-        names = (self.name(path) for path in self._studies(self.root, 1))
+        found = (path for depth in range(DEEPEST) for path in self.root.glob("*/" * depth + "*"))
+        kinds = (path for path in found if path.suffix in STUDY_SUFFIXES)
+        names = (self.name(path) for path in kinds if self._is_own(path) and _is_study(path))
         return sorted(names, key=lambda name: (name.count("/"), name.casefold()))[:MOST_STUDIES]
 
-    def _studies(self, folder: Path, depth: int) -> Iterator[Path]:
-        for path in sorted(folder.iterdir()):
-            if path.name.startswith(".") or path.is_symlink():
-                continue
-            if path.is_dir() and depth < DEEPEST:
-                yield from self._studies(path, depth + 1)
-            elif path.suffix in STUDY_SUFFIXES and path.is_file() and _is_study(path):
-                yield path
-
-
-def _exists(path: Path) -> bool:
-    try:
-        return path.exists()
-    except OSError:  # a name that the system cannot have
-        return False
+    def _is_own(self, path: Path) -> bool:
+        """Whether a path is a file that is not hidden, and to which no link leads."""
+        name = self.name(path)
+        return path.is_file() and "/." not in f"/{name}" and path.resolve() == self.root.resolve() / name
 
 
 def _is_study(path: Path) -> bool:
@@ -170,12 +159,11 @@ def _is_study(path: Path) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _loaded(state: tuple[Path, int]) -> Any:
-    """Return the content of a file of JSON or TOML, read once for each state of it; None if it is damaged."""
-    path, _ = state
+def _loaded(path: Path, state: int) -> Any:  # noqa: ARG001 - each state is read once
+    """Return the content of a file of JSON or TOML; None if it is damaged."""
     try:
         return tomllib.loads(read_text(path)) if path.suffix == ".toml" else json.loads(path.read_bytes())
-    except (ValueError, InputError, OSError, RecursionError):
+    except (ValueError, OSError, RecursionError):
         return None
 
 
@@ -188,7 +176,7 @@ class Page:
 
     def html(self, template: str, **values: object) -> HTMLResponse:
         """Return a page or a part of one; a list of jobs leads to their answers."""
-        return HTMLResponse(TEMPLATES.get_template(template).render(address=self.address, **values))
+        return HTMLResponse(TEMPLATES.get_template(template).render(address=address, **values))
 
     def running(self) -> HTMLResponse:
         """Return the list of jobs."""
@@ -196,7 +184,7 @@ class Page:
 
     def loaded(self, path: Path) -> dict[str, Any]:
         """Return the content of a file of JSON or TOML; an empty one if it is damaged or missing."""
-        found = _loaded((path, path.stat().st_mtime_ns)) if self.folder.has(path) else None
+        found = _loaded(path, path.stat().st_mtime_ns) if self.folder.has(path) else None
         return found if isinstance(found, dict) else {}
 
     def title(self, study: str) -> str:
@@ -210,15 +198,11 @@ class Page:
         place = self.folder.answers(study)
         return [verb for verb in VERBS if self.folder.has(place / f"{verb}.json")]
 
-    def address(self, job: Job) -> str:
-        """Return where the answer of a job is shown."""
-        if job.task.verb == REPORT:
-            return f"/files/{quote(job.study)}"
-        return (
-            f"/log/{quote(job.study)}"
-            if job.task.verb == LOG
-            else f"/answer/{job.task.verb}/{quote(job.study)}"
-        )
+
+def address(job: Job) -> str:
+    """Return where the answer of a job is shown."""
+    place = {REPORT: "files", LOG: "log"}.get(job.verb, f"answer/{job.verb}")
+    return f"/{place}/{quote(job.name)}"
 
 
 async def _form_of(request: Request) -> dict[str, str]:

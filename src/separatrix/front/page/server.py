@@ -8,35 +8,35 @@ import secrets
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable, MutableMapping
 from http import HTTPStatus
-from importlib.util import find_spec
+from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs
 
 import uvicorn
 from fastapi import FastAPI, Request
-from fastapi.exceptions import RequestValidationError
-from fastapi.responses import FileResponse, Response
+from fastapi.responses import Response
 from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException
 
 from separatrix import present
 from separatrix.front.page import answers, editing, logs
 from separatrix.front.page.folder import Folder, Page
-from separatrix.front.page.jobs import Jobs
+from separatrix.front.page.worker import Jobs
 from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.units import printable, shown
+from separatrix.ground.units import printable
 
 HOST = "127.0.0.1"
 MOST_CONNECTIONS = 200
 IDLE = 10
 """Time after which an idle connection is closed [s]."""
 
-STATIC = Path(__file__).with_name("static")
-BLOCKS = Path(present.__file__).with_name("static") / "page.css"
-"""How a page of blocks looks, in a report as here."""
-
-A_DAY = {"cache-control": "max-age=86400"}
+STATIC = {
+    "static": Path(__file__).with_name("static"),
+    "blocks": Path(present.__file__).with_name("static"),  # how a page of blocks looks, in a report as here
+    "plotly": Path(str(distribution("plotly").locate_file("plotly"))) / "package_data",
+}
+"""Folders of style and script, by their addresses."""
 
 Message = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[Message]]
@@ -66,18 +66,9 @@ HEADERS = {
 """On every response."""
 
 
-def plotly_file() -> Path:
-    """Return the file of JavaScript in the Python package of Plotly, without importing the package."""
-    found = find_spec("plotly")
-    if found is None or found.origin is None:
-        cure = 'Install it: pip install "separatrix[app]".'
-        raise InputError("separatrix app", "needs its extra", cure=cure)
-    return Path(found.origin).parent / "package_data" / "plotly.min.js"
-
-
 def application(root: Path) -> FastAPI:
     """Return the page of a folder, unguarded."""
-    page, drawing = Page(folder=Folder(root=root), jobs=Jobs(root)), plotly_file()
+    page = Page(folder=Folder(root=root), jobs=Jobs(root))
 
     @contextlib.asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
@@ -88,37 +79,24 @@ def application(root: Path) -> FastAPI:
     app.state.root, app.state.page = root, page
     for rooms in (editing, answers, logs):
         app.include_router(rooms.routes(page))
+    for place, folder in STATIC.items():
+        app.mount(f"/{place}", StaticFiles(directory=folder))
 
-    def words(request: Request, faults: list[str], status: HTTPStatus) -> Response:
+    def words(request: Request, text: str, status: int) -> Response:
         template = "refusal.html" if "hx-request" in request.headers else "refused.html"
-        found = page.html(template, faults=faults)
-        found.status_code = int(status)
+        found = page.html(template, faults=text.split("\n"))
+        found.status_code = status
         return found
 
     @app.exception_handler(SeparatrixError)
     def refused(request: Request, error: SeparatrixError) -> Response:
-        problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
-        return words(request, [str(one) for one in problems], HTTPStatus.UNPROCESSABLE_ENTITY)
+        return words(request, str(error), HTTPStatus.UNPROCESSABLE_ENTITY)
 
     @app.exception_handler(HTTPException)
     def unknown(request: Request, error: HTTPException) -> Response:
         place = f"{request.method} {printable(request.url.path, 100)}"
-        return words(request, [f"{place} is not an address of this page."], HTTPStatus(error.status_code))
+        return words(request, f"{place} is not an address of this page.", error.status_code)
 
-    @app.exception_handler(RequestValidationError)
-    def invalid(request: Request, error: RequestValidationError) -> Response:
-        faults = [f"{one['loc'][-1]}: {one['msg']}; got {shown(one['input'])}." for one in error.errors()]
-        return words(request, faults, HTTPStatus.UNPROCESSABLE_ENTITY)
-
-    @app.get("/static/plotly.min.js")
-    def plotly() -> FileResponse:
-        return FileResponse(drawing, media_type="text/javascript", headers=A_DAY)
-
-    @app.get("/static/blocks.css")
-    def style() -> FileResponse:
-        return FileResponse(BLOCKS, media_type="text/css")
-
-    app.mount("/static", StaticFiles(directory=STATIC))
     return app
 
 

@@ -1,235 +1,305 @@
-"""The process that computes for the page: one question after another, so that its kernels stay loaded."""
+"""The jobs of the page: one queue for all its tabs, and the process that computes them one after another."""
 
 from __future__ import annotations
 
-import _thread
+import contextlib
+import multiprocessing
 import os
 import signal
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib.util import find_spec
+from itertools import count
 from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from separatrix.front.console import LeftBehind, Pace, breakable
-from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.units import shown
+from separatrix.front.console import LOOK, LeftBehind, Pace, breakable
+from separatrix.front.page.folder import LOG, REPORT, Folder
+from separatrix.ground.errors import InputError, SeparatrixError, json_text
+from separatrix.ground.files import reading_only_in, staged
 
 if TYPE_CHECKING:
-    from separatrix.study.study import Study
+    from separatrix.verdict.long_jobs import Progress
 
-REPORT = "report"
-"""In the place of a verb: the report of a study."""
-
-LOG = "tribometer"
-"""The verb whose question is to a log, not to a study."""
-
-END = "end"
-"""What the page sends when it is closed."""
-
+WAITING, RUNNING = "waiting", "running"
 INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
 
-EVERY = 0.2
-"""Least time between two reports of progress [s]."""
+MOST_WAITING, MOST_KEPT = 20, 50
+_AT_THE_END = 10.0
+"""Time that the process has to write what it finished when the page is closed [s]."""
 
+KEPT = "Finished runs are kept: resume to go on."
+LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {KEPT}"
 
 Send = Callable[..., None]
-"""Sends the page what has changed of a job, by the names of `separatrix.front.page.jobs.Job`."""
+"""Sends the page what has changed of a job, by the names of its fields."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
-    """A question: verb, study or log, folder of the answer, options of the verb with the models of motion."""
+class Job:
+    """A question to a study or log of this name, and how far it is; times are those of `time.monotonic`."""
 
     number: int
     verb: str
-    study: Path
-    folder: Path
-    root: Path
+    name: str
     question: Mapping[str, object] = field(default_factory=dict)
+    """Options of the verb, with the models of motion."""
+
+    state: str = WAITING
+    share: float | None = None  # of the work that is done; None before that is known
+    left: float | None = None  # time that the rest takes [s]; None before a tenth is done
+    is_cancelling: bool = False
+    message: str = ""
+    started: float | None = None
+    ended: float | None = None
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it waits or runs."""
+        return self.state in (WAITING, RUNNING)
+
+    @property
+    def seconds(self) -> float:
+        """Time since it was started; until its end if it has ended."""
+        return 0.0 if self.started is None else (self.ended or time.monotonic()) - self.started
 
 
-@dataclass(frozen=True, slots=True)
-class Cancel:
-    """A cancel of one job, which has begun or not, and of no other."""
+class Jobs:
+    """The queue and its process, which is started with the first job and again if it was killed."""
 
-    number: int
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self._lock, self._jobs, self._numbers = threading.Lock(), dict[int, Job](), count(1)
+        self._waiting = SimpleQueue[int | None]()
+        self._process: BaseProcess | None = None
+        self._pipe: Connection | None = None
+        self._thread = threading.Thread(target=self._hand_over, daemon=True)
+        self._thread.start()
+
+    def ask(self, verb: str, name: str, question: Mapping[str, object] | None = None) -> Job:
+        """Put a question into the queue unless the same one is active already; refused if too many wait."""
+        with self._lock:
+            job = Job(number=next(self._numbers), verb=verb, name=name, question=dict(question or {}))
+            active = [one for one in self._jobs.values() if one.is_active]
+            for one in active:
+                if (one.verb, one.name, one.question) == (verb, name, job.question):
+                    return one
+            if len(active) >= MOST_WAITING:
+                raise InputError("The queue", f"has {MOST_WAITING} jobs", cure="Wait, or cancel some.")
+            for number in [number for number, one in self._jobs.items() if not one.is_active][:-MOST_KEPT]:
+                del self._jobs[number]
+            self._jobs[job.number] = job
+            self._waiting.put(job.number)
+            return job
+
+    def all(self) -> list[Job]:
+        """Return the jobs, the newest first."""
+        with self._lock:
+            return [*reversed(self._jobs.values())]
+
+    def job(self, number: int) -> Job | None:
+        """Return a job by its number; None if there is none."""
+        with self._lock:
+            return self._jobs.get(number)
+
+    def cancel(self, number: int) -> None:
+        """End a job: one that runs keeps what it finished."""
+        with self._lock:
+            job = self._jobs.get(number)
+            if job is not None and job.state == WAITING:
+                self._change(number, state="cancelled", message="Cancelled before it began.")
+            elif job is not None and job.state == RUNNING and self._pipe is not None:
+                self._change(number, message="Cancelling.", is_cancelling=True)
+                with contextlib.suppress(OSError):  # its process has just ended
+                    self._pipe.send(number)
+
+    def resume(self, number: int) -> None:
+        """Ask a question again: it goes on with the runs that are kept."""
+        job = self.job(number)
+        if job is None:
+            raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
+        self.ask(job.verb, job.name, job.question)
+
+    def forget_ended(self) -> None:
+        """Drop the jobs that have ended from the list; their answers stay."""
+        with self._lock:
+            self._jobs = {number: job for number, job in self._jobs.items() if job.is_active}
+
+    def close(self) -> None:
+        """End the process; the job in hand writes what it finished."""
+        for job in self.all():
+            self.cancel(job.number)
+        self._waiting.put(None)
+        self._thread.join(_AT_THE_END)
+        if self._process is not None:
+            self._process.terminate()
+
+    def _hand_over(self) -> None:
+        """Hand one job after another to the process, and follow it to its end."""
+        while (number := self._waiting.get()) is not None:
+            try:
+                with self._lock:
+                    job = self._jobs.get(number)
+                    if job is None or job.state != WAITING:  # cancelled
+                        continue
+                    job = self._change(number, state=RUNNING, started=time.monotonic())
+                    pipe = self._pipe_of_process()
+                    pipe.send(job)
+                while job.is_active:
+                    changes = pipe.recv()
+                    with self._lock:
+                        job = self._change(number, **changes)
+            except (EOFError, OSError):
+                with self._lock:
+                    is_left = self._jobs[number].is_cancelling  # it ended with work that was left behind
+                    state, message = ("cancelled", KEPT) if is_left else ("failed", LOST)
+                    self._change(number, state=state, message=message)
+                    self._process = None
+
+    def _pipe_of_process(self) -> Connection:
+        """Return the pipe to the process, which is started if there is none."""
+        if self._pipe is None or self._process is None or not self._process.is_alive():
+            context = multiprocessing.get_context("spawn")
+            self._pipe, theirs = context.Pipe()
+            arguments = theirs, self.root
+            self._process = context.Process(
+                target=work, args=arguments, name="separatrix worker", daemon=True
+            )
+            self._process.start()
+            theirs.close()
+        return self._pipe
+
+    def _change(self, number: int, **new: Any) -> Job:
+        job = replace(self._jobs[number], **new)
+        self._jobs[number] = job = job if job.is_active else replace(job, ended=time.monotonic())
+        return job
 
 
-class Reporter(Pace):
-    """Reports how far a long job is."""
-
-    def __init__(self, send: Send) -> None:
-        super().__init__()
-        self.send, self._last = send, 0.0
-
-    def __call__(self, done: float, total: float) -> None:
-        """Report the share that is done and the time left, now and then and at the end."""
-        super().__call__(done, total)
-        now = time.monotonic()
-        if done == total or now - self._last > EVERY:
-            self._last = now
-            self.send(share=self.share or None, left=self.left)
+# ---- the process, whose kernels stay loaded
 
 
-def work(pipe: Connection) -> None:
-    """Compute tasks from a pipe until it ends; the body of the process.
+def reporting(send: Send) -> Progress:
+    """Return what reports how far a long job is: the share that is done, and the time left."""
+    pace = Pace()
 
-    A cancel interrupts its own task as Ctrl-C would, also before it began: what was finished is kept and
+    def progress(done: float, total: float) -> None:
+        pace(done, total)
+        send(share=pace.share or None, left=pace.left)
+
+    return progress
+
+
+def work(pipe: Connection, root: Path) -> None:
+    """Compute jobs from a pipe until it ends; the body of the process.
+
+    The number of a job cancels it as Ctrl-C would, also before it began: what was finished is kept and
     answered. Work that it leaves behind ends with the process. A fault of ours ends the process with its
     place in the terminal. The page begins another one.
     """
-    waiting: SimpleQueue[Task | None] = SimpleQueue()
-    in_hand: list[int] = []
-    cancelled: set[int] = set()
-    is_ended, main = threading.Event(), threading.get_ident()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal: the page hears it, and ends the pipe
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            job = pipe.recv()
+            if isinstance(job, Job):  # not a cancel of one that has ended
+                state, message = _ended(job, Folder(root=root), pipe)
+                pipe.send({"state": state, "message": message})
 
-    def break_in(number: int) -> None:
-        if number in in_hand:  # a true signal, where there is one: it ends a wait, too
-            getattr(signal, "pthread_kill", lambda *_: _thread.interrupt_main())(main, signal.SIGINT)
 
-    def refuse_cancelled(*_: object) -> None:
-        for number in in_hand:
-            if is_ended.is_set() or number in cancelled:
-                cancelled.discard(number)
+def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
+    """Compute a job, and return how it ended, and a message."""
+
+    def wait(found: Future[Any]) -> None:
+        while not found.done():
+            try:
+                is_cancelled = pipe.poll(LOOK) and pipe.recv() == job.number
+            except (EOFError, OSError):  # the page is gone
+                is_cancelled = True
+            if is_cancelled:
                 raise KeyboardInterrupt
 
-    signal.signal(signal.SIGINT, refuse_cancelled)
+    def send(**changes: object) -> None:
+        with contextlib.suppress(OSError):
+            pipe.send(changes)
 
-    def listen() -> None:
-        while True:
-            try:
-                message = pipe.recv()
-            except (EOFError, OSError):  # the page is gone
-                message = END
-            if isinstance(message, Task):
-                waiting.put(message)
-                continue
-            if isinstance(message, Cancel):
-                cancelled.add(message.number)
-                break_in(message.number)
-                continue
-            is_ended.set()
-            for number in in_hand:
-                break_in(number)
-            waiting.put(None)
-            return
-
-    threading.Thread(target=listen, daemon=True).start()
-
-    def send(number: int, **changes: object) -> None:
-        try:
-            pipe.send((number, changes))
-        except OSError:  # the page is gone; the task ends by itself
-            in_hand.clear()
-
-    while True:
-        task = waiting.get()
-        if task is None:
-            return
-        _compute(task, in_hand, refuse_cancelled, partial(send, task.number))
-
-
-def _compute(task: Task, in_hand: list[int], refuse_cancelled: Callable[[], None], send: Send) -> None:
     try:
-        in_hand.append(task.number)
-        refuse_cancelled()  # one that was cancelled before it began
-        send(state="running")
-        state, message = breakable(partial(_answered, task, send))
+        ended: tuple[str, str] = breakable(partial(answered, job, folder, send), wait)
+        return ended
     except LeftBehind:
         os._exit(0)
     except KeyboardInterrupt:
-        state, message = "cancelled", "Cancelled before anything was finished."
+        return "cancelled", "Cancelled before anything was finished."
     except SeparatrixError as error:
-        problems = error.problems if isinstance(error, InputError) and error.problems else (error,)
-        state, message = "refused", "\n".join(str(one) for one in problems)
-    finally:
-        in_hand.clear()  # nothing interrupts the end
-    send(state=state, message=message)
+        return "refused", str(error)
 
 
-def _answered(task: Task, send: Send) -> tuple[str, str]:
+def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
-    from separatrix.ground.files import reading_only_in
-    from separatrix.study.reading import read_study
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
 
-    question = dict(task.question)
+    source, place = folder.asked(job.name, job.verb), folder.answers(job.name, job.verb)
+    question = dict(job.question)
     models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
-    with reading_only_in(task.root):
-        _refuse_links_out(task)
-        task.folder.mkdir(parents=True, exist_ok=True)
-        if task.verb == LOG:
-            return _reduced(task, send)
-        if task.verb == REPORT:
-            return _reported(task, read_study(task.study), send)
-        verb = verb_named(task.verb)
-        study, options = asked_study(verb, task.study, models), verb.options(**question)
-        found = computed(verb, study, options, folder=task.folder, progress=Reporter(send))
+    with reading_only_in(folder.root):
+        for path in (place, *(place.iterdir() if place.is_dir() else ())):
+            folder.refuse_link_out(path)
+        place.mkdir(parents=True, exist_ok=True)
+        if job.verb == LOG:
+            return _reduced(source, place, question, send)
+        if job.verb == REPORT:
+            return _reported(source, place, send)
+        verb = verb_named(job.verb)
+        study, options = asked_study(verb, source, models), verb.options(**question)
+        found = computed(verb, study, options, folder=place, progress=reporting(send))
         send(message="Drawing the figures and writing the files.")
-        save_answer(task.folder, verb, document(verb, found), options=options)
+        save_answer(place, verb, document(verb, found), options=options)
         if not found.is_complete:
             return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
         return "finished", taken
 
 
-def _refuse_links_out(task: Task) -> None:
-    """Refuse to write where a link leads out of the folder of the page."""
-    from separatrix.ground.files import is_inside
-
-    for path in (task.folder, *(task.folder.iterdir() if task.folder.is_dir() else ())):
-        if not is_inside(path, task.root):
-            rule = "leads out of the folder of the studies"
-            raise InputError(shown(path.name), rule, cure="Remove this link.")
-
-
-def _reported(task: Task, study: Study, send: Send) -> tuple[str, str]:
+def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.verbs import computed, verb_named
-    from separatrix.verbs.answer_files import document, save_answer
-    from separatrix.verbs.report import add_missing, is_answer_to, report_of, wanted
-    from separatrix.verbs.saved_answers import read_answer
+    from separatrix.study.reading import read_study
+    from separatrix.verbs import Computed, computed
+    from separatrix.verbs.report import report_of_study
+    from separatrix.verbs.verb import Verb
 
-    def compute(name: str) -> dict[str, Any]:
-        send(message=f"Computing {name} for the report.")
-        verb = verb_named(name)
-        made = document(verb, computed(verb, study, folder=task.folder, progress=Reporter(send)))
-        save_answer(task.folder, verb, made)
-        return made
+    study = read_study(source)
 
-    kept = {one: task.folder / f"{one}.json" for one in wanted(study)}
-    known = {one: read_answer(path) for one, path in kept.items() if path.exists()}
-    found = {one: answer for one, answer in known.items() if is_answer_to(answer, study)}
-    missing = add_missing(found, list(kept), compute)
-    if any(answer.get("complete") is False for answer in found.values()):
+    def compute(verb: Verb) -> Computed:
+        send(message=f"Computing {verb.name} for the report.")
+        return computed(verb, study, folder=place, progress=reporting(send))
+
+    report = report_of_study(study, place, compute, pictures=True)
+    if report is None:
         return INTERRUPTED
     send(message="Writing the report.")
-    report_of(found, missing).write(task.folder, with_pdf=find_spec("typst") is not None)
+    report.write(place, with_pdf=find_spec("typst") is not None)
     return "finished", ""
 
 
-def _reduced(task: Task, send: Send) -> tuple[str, str]:
+def _reduced(log: Path, place: Path, question: Mapping[str, object], send: Send) -> tuple[str, str]:
     """Reduce a log and write its answer; one that leaves questions open gets a draft of its column map."""
     from separatrix.friction.logs import UnmappedError
-    from separatrix.ground.errors import json_text
-    from separatrix.ground.files import staged
     from separatrix.verbs import processors, tool_named
 
     tool = tool_named(LOG)
     try:
-        found = tool.compute(tool.options(files=(task.study,), **task.question), processors(), Reporter(send))
+        found = tool.compute(tool.options(files=(log,), **question), processors(), reporting(send))
     except UnmappedError as error:
         if not error.place.exists():
             error.place.write_text(error.draft, encoding="utf-8", newline="\n")
         cure = "Answer the questions in the draft of the column map, on the page of this log."
         raise error.at(error.path, cure=cure) from None
-    with staged(task.folder) as stage:
+    with staged(place) as stage:
         (stage / f"{LOG}.json").write_text(json_text(found) + "\n", encoding="utf-8")
     return "finished", ""
