@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from commands import refusal_line, written
+from commands import refusal_line, rows_of, written
 
 from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.reading import read_study
@@ -36,11 +36,8 @@ def design(**changes):
 
 WRONG = r"""
 pocket_clearance = "1e-12 m" :: pocket_clearance must be >= 1 nm; got
-pocket_axial_clearance = "0.4 mm" :: pocket_axial_clearance has a meaning only for an elongated pocket
-SLOT :: pocket_axial_clearance is missing: an elongated pocket
 SLOT\npocket_axial_clearance = "0.7 mm"
     :: at most pocket_clearance, 600 um: the slot lies along the circumference; got "0.7 mm". A slot along
-pocket_axial_offset = "0.1 mm" :: pocket_axial_offset changes nothing in a square pocket; got "0.1 mm"
 BORE\npocket_axial_offset = "0.3 mm"
     :: pocket_axial_offset must be smaller than half the clearance along the axis, 300 um; got "0.3 mm"
 SLOT\npocket_axial_clearance = "0.4 mm"\npocket_axial_offset = "-0.25 mm"
@@ -68,13 +65,11 @@ LAND\nland_out_of_round = "0.1 mm"
     :: the square of land_lobes, 100 um: beyond it a lobe touches
 LAND\nland_out_of_round = "50 um"\nland_lobes = 3
     :: half the land's clearance over the square of land_lobes, 44.44 um: beyond it
-LAND\nland_count = 3 :: land_count must be a whole number from 1 to 2; got 3
 pocket_spacing_scatter = 0.5 :: pocket_spacing_scatter must be >= 0 and < 0.5
 land_lobes = 3 :: [cage] land_lobes needs land_out_of_round: without it the land is round
 unbalance = "813 g mm" :: [cage] unbalance must be smaller than mass times pitch radius, 812.5 g mm
 guidance = "outer"\nland_clearance = "11.2 mm"
     :: [cage] land_clearance must be smaller than a ball, 11.11 mm; got
-RAMP = 0.0 :: [operation] ramp_start must be > 0 and <= 1; got 0.0. It is the share
 """
 """Keys of the cage and words of their refusal."""
 SHORT = {
@@ -84,20 +79,16 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize("line", WRONG.strip().replace("\n    ::", " ::").splitlines())
-def test_a_cage_that_cannot_be_is_refused_in_one_line(line, read):
+@pytest.mark.parametrize(("keys", "words"), rows_of(WRONG))
+def test_a_cage_that_cannot_be_is_refused_in_one_line(keys, words, read):
     """Place in the file, field, rule, value; what to do where it is not plain."""
-    keys, _, words = line.partition(" :: ")
     for name, text in SHORT.items():
         keys = keys.replace(name, text)
-    keys, is_uneven, angles = keys.replace(r"\n", "\n").partition("ANGLES ")
+    keys, is_uneven, angles = keys.partition("ANGLES ")
     if is_uneven:
         keys += f"pocket_angles = [{EVEN.replace(*angles.split(), 1)}]"
-    given = (
-        {"operation": f'ramp_time = "1 s"\nramp_start{keys[4:]}'} if keys[:4] == "RAMP" else {"cage": keys}
-    )
-    message = read(**given, read=refusal_line)
-    assert words in message
+    message = read(keys, read=refusal_line)
+    assert words[0] in message
     assert message.startswith("case.toml")
 
 

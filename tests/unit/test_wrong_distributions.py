@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from commands import refusal_line, written
+from commands import refusal_line, refused, rows_of, written
 
 HEAD = 'title = "Wrong"\nextends = "cryogenic-turbopump"\n'
 MANY = "\n".join(
@@ -38,7 +38,7 @@ film "(0.5 +- 20 %) um" :: after +- ; "20 % um"
 film "0.5 um +- 20 % +- 3 %" :: one value, +- and one expanded uncertainty
 film "0.5 um +-" :: one value, +- and one ; like "0.5 um +- 20 %"
 film "0,5 um +- 20 %" :: decimal point, not a comma
-film "0.5 um +- LONG%" :: one value, +- and one
+film "0.5 um +- 0.1 N" :: after +-, needs a unit of length
 film { between = ["1 um", "0.2 um"] } :: between must rise; got "1 um" and "0.2 um" ; lower one first
 film { between = ["1 um"] } :: a list of two bounds; got a list of 1
 film { between = [0.2, 1] } :: between, item 1, needs a unit of length
@@ -64,6 +64,7 @@ film { mean = "1 um", standard_deviation = "40 um" }
 [operation]\nradial_load = "0 N +- 10 %" :: is a share of 0
 [operation]\nradial_load = "0 N +- 10 N" :: at the lower end, -25 N ; radial_load must be >= 0
 [operation]\ntemperature = "-196 degC +- 2 %" :: whose zero is arbitrary ; in kelvin
+[operation]\naxial_load = "300 daN +- many" :: [operation] axial_load, after +-, must be one number
 [operation]\nfluid = { between = ["a", "b"] } :: fluid
 [film]\nrace_friction = "0.1 mm +- 10 %" :: must be a plain number
 [bearing]\ninner_conformity = "0.505 +- 0.01" :: at the lower end, 0.48 ; must be > 0.5 and <= 0.6
@@ -88,23 +89,16 @@ MANY :: has more than 50 uncertain numbers; got 51
 """A distribution, and words of its refusal."""
 
 
-def cases():
-    """Text of a wrong study, and words of its refusal."""
-    for line in WRONG.strip().replace("\n    ::", " ::").splitlines():
-        text, _, words = line.partition(" :: ")
-        kind, _, value = text.replace("LONG", "1" * 200).partition(" ")
-        known = {"film": film, "friction": friction, "MANY": lambda _: MANY}
-        known["SECOND"] = lambda _: friction("0.1") + SECOND
-        whole = known[kind](value) if kind in known else text.replace(r"\n", "\n") + "\n"
-        yield pytest.param(whole, words.split(" ; "), id=text[:50])
-
-
-@pytest.mark.parametrize(("text", "words"), list(cases()))
+@pytest.mark.parametrize(("text", "words"), rows_of(WRONG))
 def test_a_wrong_distribution_is_refused_in_one_line(text, words, tmp_path):
     """Where it stands, what must hold and what was given, and nothing but `InputError`."""
-    message = refusal_line(written(tmp_path, HEAD + text, "wrong.toml"))
+    kind, _, value = text.partition(" ")
+    known = {"film": film, "friction": friction, "MANY": lambda _: MANY}
+    known["SECOND"] = lambda _: friction("0.1") + SECOND
+    whole = known[kind](value) if kind in known else text + "\n"
+    message = refusal_line(written(tmp_path, HEAD + whole, "wrong.toml"))
     assert message.startswith("wrong.toml")
-    assert [word for word in words if word not in message] == [], message
+    assert [word for word in words[0].split(" ; ") if word not in message] == [], message
 
 
 TOO_FAR = {
@@ -123,3 +117,28 @@ def test_numbers_that_overflow_are_refused_in_one_line(kind, tmp_path):
     """Where the mean, the deviation or the quantiles would leave what a computer can hold."""
     line = refusal_line(written(tmp_path, HEAD + TOO_FAR[kind]))
     assert re.match(r"study.toml, line \d+: .* must be", line)
+
+
+@pytest.mark.parametrize(
+    ("samples", "words"),
+    [
+        *((text, "must be a power of two from 64") for text in ("0", "-64", "32")),
+        *(("1000", "Try 1024."), ("131072", "to 65536"), ("9" * 30, "to 65536")),
+    ],
+)
+def test_a_wrong_number_of_bearings_is_refused(samples, words, capsys):
+    """Of the verb that draws them."""
+    assert words in refused(capsys, "sensitivity", "cryogenic-turbopump", "--samples", samples)
+
+
+@pytest.mark.parametrize("section", ["cage", "ranking"])
+def test_sensitivity_needs_a_cage_and_candidates(section, tmp_path, monkeypatch, capsys):
+    """They are what the question is about."""
+    monkeypatch.chdir(tmp_path)
+    sections = {
+        "cage": '[cage]\nmass = "9 g"\nball_cage_stiffness = "3e6 N/m"\npocket_clearance = "0.2 mm"\n',
+        "ranking": '[ranking]\nfriction = "pin-on-disk-77K"\n',
+    }
+    del sections[section]
+    written(tmp_path, 'extends = "le7"\n' + "".join(sections.values()))
+    assert f"[{section}] is missing" in refused(capsys, "sensitivity", "study.toml")
