@@ -3,10 +3,10 @@
 import json
 import math
 import re
-import tempfile
 from pathlib import Path
 
 import pytest
+from commands import written
 from scipy.stats import lognorm
 
 import separatrix
@@ -25,29 +25,20 @@ HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
 @pytest.fixture
 def study_of(tmp_path):
     """Study of a text that stands over the shipped one."""
-
-    def read(text):
-        path = tmp_path / "case.toml"
-        path.write_text(HEAD + text, encoding="utf-8")
-        return read_study(path)
-
-    return read
+    return lambda text: read_study(written(tmp_path, HEAD + text, "case.toml"))
 
 
 FORMS = {
     '"0.5 um +- 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +- 0.1 um"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"(0.5 +- 0.1) um"': Normal(mean=5e-7, standard_deviation=5e-8),
-    '"0.5 um +- 2e1 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5um+-100nm"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um ± 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +/- 20%"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +- 80 %"': LogNormal(mean=5e-7, standard_deviation=2e-7),
     '{ between = ["0.2 um", "1 um"] }': Uniform(low=2e-7, high=1e-6),
     '{ between = ["0.2 um", "1 um"], log = true }': LogUniform(low=2e-7, high=1e-6),
-    '{ between = ["0.2 um", "1 um"], log = false }': Uniform(low=2e-7, high=1e-6),
     '{ mean = "0.5 um", standard_deviation = "50 nm" }': Normal(mean=5e-7, standard_deviation=5e-8),
-    '{ mean = "0.5 um", standard_deviation = "10 %" }': Normal(mean=5e-7, standard_deviation=5e-8),
     '["0.2 um", "0.4 um", "0.6 um"]': Samples(values=(2e-7, 4e-7, 6e-7)),
     '{ samples = ["0.6 um", "0.2 um", "0.4 um"] }': Samples(values=(2e-7, 4e-7, 6e-7)),
 }
@@ -69,20 +60,15 @@ def test_every_form_is_read(text, study_of):
     assert study.film.thickness == found.mean
 
 
-def test_the_page_on_uncertain_inputs_is_right():
+def test_the_page_on_uncertain_inputs_is_right(study_of):
     """The study on the page is read, and so is every form of its table."""
     page = (Path(__file__).parents[2] / "docs" / "reference" / "distributions.md").read_text(encoding="utf-8")
     page = page.partition("## How to write them")[2].partition("\n## ")[0]
-    block = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "page.toml"
-        path.write_text(HEAD + block.group(1), encoding="utf-8")
-        assert len(read_study(path).distributions) == 6
-        forms = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
-        assert len(forms) == 7
-        for form in forms:
-            path.write_text(HEAD + f"[film]\nthickness = {form}\n", encoding="utf-8")
-            assert "film.thickness" in read_study(path).distributions, form
+    assert len(study_of(page.partition("```toml\n")[2].partition("```")[0]).distributions) == 6
+    forms = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
+    assert len(forms) == 7
+    for form in forms:
+        assert "film.thickness" in study_of(f"[film]\nthickness = {form}\n").distributions, form
 
 
 def test_a_width_in_another_unit_or_of_a_temperature_is_a_difference(study_of):
@@ -132,19 +118,13 @@ material = { elastic_modulus = "5 GPa +- 30 %", poisson_ratio = [0.3, 0.4] }
     assert measured(friction["water"]).error == pytest.approx(0.009)
 
 
-def test_a_film_given_in_place_or_as_a_material_has_one_name(study_of):
-    """The film's modulus is film.elastic_modulus, however it is written."""
-    plain = study_of('[film]\nelastic_modulus = "2 GPa +- 20 %"\npoisson_ratio = 0.4\n')
-    nested = study_of('[film]\nmaterial = { elastic_modulus = "2 GPa +- 20 %", poisson_ratio = 0.4 }\n')
-    assert list(plain.distributions) == list(nested.distributions) == ["film.elastic_modulus"]
-
-
 def test_an_uncertain_clearance_moves_the_angle(study_of):
     """The study holds an angle; its clearance is the uncertain number."""
     base = read_study("cryogenic-turbopump")
     clearance = base.bearing.free_clearance
     text = f'[bearing]\nradial_clearance = "{clearance * 1e6:.6f} um +- 5 %"\n'
     study = study_of(text)
+    assert "radial_clearance" in resolved(study)["bearing"]["contact_angle"]["origin"]
     assert study.bearing.free_angle == pytest.approx(base.bearing.free_angle, rel=1e-6)
     wider = with_values(study, {"bearing.radial_clearance": 1.05 * clearance})
     assert math.cos(base.bearing.free_angle) - math.cos(wider.bearing.free_angle) == pytest.approx(
@@ -176,9 +156,8 @@ def test_values_are_set_together_and_become_certain(study_of):
 def test_a_variant_replaces_an_uncertain_number(study_of, tmp_path):
     """With `extends` the file above wins, certain or not."""
     study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
-    path = tmp_path / "variant.toml"
-    path.write_text('title = "V"\nextends = "case.toml"\n[film]\nthickness = "0.4 um"\n', encoding="utf-8")
-    assert read_study(path).distributions == {}
+    text = 'title = "V"\nextends = "case.toml"\n[film]\nthickness = "0.4 um"\n'
+    assert read_study(written(tmp_path, text, "variant.toml")).distributions == {}
 
 
 def test_a_map_over_an_uncertain_number_makes_it_certain(study_of):
@@ -206,17 +185,11 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
     json.dumps(parts["uncertain_inputs"], allow_nan=False)
 
 
-def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
-    """`check` lists the distributions; the others say that they take the means."""
+def test_check_lists_the_distributions(study_of):
+    """In words; that the others take the means is of the contract of pages."""
     study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
     shown = separatrix.check(study).summary()
     assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
-
-    told = separatrix.bearing(study).summary()
-    assert "An uncertain input is at its mean: film.thickness." in told
-    certain = read_study("cryogenic-turbopump")
-    told = separatrix.bearing(certain).summary()
-    assert "uncertain" not in told
 
 
 @pytest.mark.parametrize("text", ['"0.5 +- 180 %"', "{ mean = 0.5, standard_deviation = 0.45 }"])

@@ -72,7 +72,6 @@ LAUGHS = (
     '<!ENTITY c "&b;&b;&b;&b;&b;&b;&b;&b;&b;&b;">]><sst>&c;</sst>'
 )
 SHEET_1 = "xl/worksheets/sheet1.xml"
-MACRO_TYPES = '<Types><Override ContentType="application/vnd.ms-excel.sheet.macroEnabled.main+xml"/></Types>'
 
 STUDIES = [
     ("list without unit", study("stability", 2, "kicks", "0.1"), 'cell B2: [stability] kicks[1] needs a unit of speed; got 0.1. Write "0.1 m/s".'),
