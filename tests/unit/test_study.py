@@ -4,7 +4,6 @@ import json
 import math
 import pickle
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,7 +17,6 @@ from separatrix.study.sources import resolved
 from separatrix.study.study import (
     ORDER,
     BallBearing,
-    CageDesign,
     Candidate,
     Film,
     Friction,
@@ -94,17 +92,6 @@ def test_a_wrong_record_is_refused_when_it_is_built(record, changes, words):
     assert words in refusal(GOOD.get(record, {}) | changes, lambda fields: record(**fields))
 
 
-def test_a_number_may_be_text_with_its_unit():
-    """Every record takes text where a field has a unit; what it holds is in SI."""
-    cage = CageDesign(mass="25 g", pocket_clearance="0.6 mm", pocket_angles=("0 deg", "180 deg"))
-    assert (cage.mass, cage.pocket_clearance) == (0.025, 0.0006)
-    assert cage.pocket_angles == (0.0, math.pi)
-    assert replace(cage, pocket_clearance="0.2 mm").pocket_clearance == 2e-4
-    assert Operation(inner_speed="30000 rpm", axial_load="3 daN").axial_load == 30.0
-    assert StabilitySettings(kicks=("10 cm/s", 0.5)).kicks == (0.1, 0.5)
-    assert replace(STEEL, elastic_modulus="200 GPa").elastic_modulus == 2e11
-
-
 def test_balls_fit_up_to_touching():
     """Balls of neighbouring places touch when D = d_m sin(pi/Z)."""
     touching = 0.06 * math.sin(math.pi / 12)
@@ -159,13 +146,6 @@ def test_a_file_comes_before_a_shipped_study_of_its_name_and_a_folder_does_not(t
     assert (read_study("le7").name, read_study("ball-218").title) == ("le7", "A valid study")
     others = {"cryogenic-turbopump", "lox-turbopump", "lox-turbopump-radial", "momentum-wheel"}
     assert set(shipped_studies()) == {"ball-218", "le7", *others}
-
-
-def test_the_template_is_a_valid_study(read):
-    """What `separatrix new` writes can be ranked as it stands."""
-    filled = read(template())
-    assert filled.cage is not None
-    assert len(filled.ranking.candidates) == 7
 
 
 IN_SPACE = (

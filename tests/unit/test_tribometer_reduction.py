@@ -257,13 +257,6 @@ def test_what_repeats_with_the_turn_is_no_stick_slip_above_half_the_logging_rate
     assert reduce_log(one).stick_slip_amplitude < 0.1 * 0.12  # multiples above the 12th are left
 
 
-def test_a_test_too_short_for_its_correlation_is_told():
-    """A correlation over a third of the test: the interval is not to be trusted, and that is said."""
-    words = ("Friction is correlated over", "The steady part", "Running-in does not end", "Friction drifts")
-    tests = [reduce_log(log(replace(QUIET, correlation=0.3), seed=seed)) for seed in range(5)]
-    assert sum(any(flag.startswith(words) for flag in test.flags) for test in tests) >= 4
-
-
 def test_a_long_correlation_is_told_by_the_weight_of_all_spectra():
     """Half the weight on long correlations is not more likely than not; a little more is."""
     mean = steady.steady_mean(_noise(64))

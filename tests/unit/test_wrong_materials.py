@@ -109,8 +109,6 @@ def test_one_name_in_two_libraries_is_refused(tmp_path):
 
 
 CALLS = {
-    "no verb": ([], "Missing command"),
-    "an unknown verb": (["lst"], "No such command 'lst'"),
     "an unknown kind": (["list", "--kind", "flim"], "Did you mean film?"),
     "a library that is missing": (
         ["list", "--library", "no.toml"],
