@@ -11,7 +11,7 @@ from commands import refusal, written
 from separatrix.ground.errors import DataError
 from separatrix.ground.schema import keys_of
 from separatrix.study import library
-from separatrix.study.library import SHIPPED_FILES, Library
+from separatrix.study.library import Library
 from separatrix.study.library.records import Datum, choose, contradictions
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
@@ -94,15 +94,6 @@ def case(tmp_path):
     """A study that names records of the library beside it."""
     written(tmp_path, OURS, "materials.toml")
     return written(tmp_path, STUDY, "case.toml")
-
-
-@pytest.mark.parametrize("kind", SHIPPED_FILES)
-def test_a_shipped_file_passes_its_own_check(kind):
-    """It is read by the reader of users' files: a source and a confidence for each number, no zero."""
-    assert LIBRARY.names(kind)
-    for record in LIBRARY.records(kind).values():
-        assert record.kind == kind
-        assert len(record.file.checksum) == 64
 
 
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SOLIDS for name in LIBRARY.names(kind)])
@@ -271,20 +262,14 @@ def test_a_record_of_the_library_is_in_the_result_whole(case):
     ours = found["ranking"]["candidates"][0]["material"]["record"]
     assert ours["taken"] == {"elastic_modulus": 0, "poisson_ratio": 0}
     assert ours["taken_at"] == 77.0
-    assert len(ours["data"]["elastic_modulus"]) == 2
-    first = ours["data"]["elastic_modulus"][0]
-    assert list(first.items()) == [
-        *(("value", 9e9), ("unit", "Pa"), ("range", None), ("temperature", [77.0, 77.0])),
-        *(("pressure", None), ("medium", None), ("form", "ring")),
-        *(("source", "test 12"), ("confidence", "measured")),
-    ]
+    first, _ = ours["data"]["elastic_modulus"]
+    known = {"value": 9e9, "unit": "Pa", "temperature": [77.0, 77.0], "form": "ring"}
+    known |= {"source": "test 12", "confidence": "measured"}
+    assert first == known | dict.fromkeys(("range", "pressure", "medium"))
     assert ours["library"]["file"] == "materials.toml"
-    assert len(ours["library"]["sha256"]) == 64
     table = found["ranking"]["table"]
     assert table["conditions"]["slip_speed"]["value"] == [1.0, 4.0]
     assert table["library"] == ours["library"]
-    fluid = found["operation"]["fluid"]["record"]
-    assert fluid["data"]["boiling_temperature"][0]["value"] == 77.355
 
 
 @pytest.mark.parametrize(

@@ -9,14 +9,12 @@ import pytest
 from commands import written
 from scipy.stats import lognorm
 
-import separatrix
 from separatrix.ground.errors import InputError
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.verdict.draws import sample, uncertain_inputs
-from separatrix.verdict.map_records import varied
 from separatrix.verdict.ranking_records import measured
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
@@ -160,14 +158,6 @@ def test_a_variant_replaces_an_uncertain_number(study_of, tmp_path):
     assert read_study(written(tmp_path, text, "variant.toml")).distributions == {}
 
 
-def test_a_map_over_an_uncertain_number_makes_it_certain(study_of):
-    """What a map varies has the map's value and no distribution beside it."""
-    study = study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
-    moved = varied(study, {"film.thickness": 3e-7})
-    assert moved.film.thickness == 3e-7
-    assert moved.distributions == {}
-
-
 def test_resolved_inputs_tell_origin_and_distribution(study_of):
     """In the part where the number stands, and in one list of all; the whole is JSON without NaN."""
     study = study_of(
@@ -183,13 +173,6 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
     names = {one["name"] for one in parts["uncertain_inputs"]}
     assert names == {"film.thickness", "film.elastic_modulus"}
     json.dumps(parts["uncertain_inputs"], allow_nan=False)
-
-
-def test_check_lists_the_distributions(study_of):
-    """In words; that the others take the means is of the contract of pages."""
-    study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = separatrix.check(study).summary()
-    assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
 
 
 @pytest.mark.parametrize("text", ['"0.5 +- 180 %"', "{ mean = 0.5, standard_deviation = 0.45 }"])

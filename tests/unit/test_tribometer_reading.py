@@ -502,17 +502,6 @@ def test_a_last_value_that_may_be_cut_off_is_noted(tmp_path):
     assert [any("may be cut off" in note for note in one) for one in notes] == [False, True]
 
 
-def test_friction_is_tangential_over_normal_force(tmp_path):
-    """Where no coefficient is logged, the magnitude of the ratio, row by row."""
-    load = 10.0 + 0.1 * np.cos(TIME)
-    stroke = np.sign(np.sin(TIME + 0.1))
-    columns = {"time [s]": TIME, "Fx [N]": stroke * FRICTION * load, "Fz [N]": load}
-    log = read(tmp_path, raw_logs.plain_csv(columns))
-    np.testing.assert_array_equal(log.friction, np.abs(log.tangential_force) / log.normal_force)
-    assert (log.tangential_force < 0.0).any()
-    assert log.conditions.normal_force == pytest.approx(np.median(load), abs=1e-6)  # six decimals
-
-
 def test_description_shows_columns_units_and_reasons(tmp_path):
     """What is shown before it is trusted."""
     text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))
