@@ -88,49 +88,37 @@ FAULTS = [[float(i), 0.1, Fault("#REF!"), None, Fault("#N/A")] for i in range(5)
 OVERFLOW = [[float(i), "OVL" if i == 2 else 0.1] for i in range(5)]
 BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
 MARKS = (None, "x", " NaN ", "#DIV/0!", Formula('IF(A1,"",1)', ""), Shown(None, 2))
+GAP = {"missing": ["OVL"]}
+UNITS = [["Time", "COF"], ["made", "now"], ["s", "-"], *OVERFLOW]
+SAVED = [["Zeit", "Reibzahl"], ["s", "-"], *OVERFLOW[:2], [2.0], *OVERFLOW[3:], ["end of test"]]
 READ = {
-    **{f"a missing value, {mark}": (changed(5, 1, mark), {}) for mark in MARKS},
-    "faults where nothing is read": (
-        {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *FAULTS]},
-        {},
-    ),
-    "a percentage holds a fraction": (five(Shown(0.1, 2)), {}),
-    "a percentage below a name in percent": (five(Shown(0.1, 2), "Time [s]", "COF [%]"), {}),
+    **{f"a missing value, {mark}": changed(5, 1, mark) for mark in MARKS},
+    "faults where nothing is read": {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *FAULTS]},
+    "a percentage holds a fraction": five(Shown(0.1, 2)),
+    "a percentage below a name in percent": five(Shown(0.1, 2), "Time [s]", "COF [%]"),
     **{
-        f"a sign of percent that is only text, {code}": (
-            saved(five(10.0, "Time [s]", "COF [%]")["a"], code),
-            {},
-        )
+        f"a sign of percent that is only text, {code}": saved(five(10.0, "Time [s]", "COF [%]")["a"], code)
         for code in ('0.0"%"', "0\\%")
     },
-    "the saved value of a formula": (five(Formula("D1/10", 0.1)), {}),
-    "what openpyxl writes": (
-        saved([["Zeit", "Reibzahl"], ["s", "-"], *OVERFLOW[:2], [2.0], *OVERFLOW[3:], ["end of test"]]),
-        {},
-    ),
+    "the saved value of a formula": five(Formula("D1/10", 0.1)),
+    "what openpyxl writes": saved(SAVED),
     "a row of names by the map": (
         {"a": [["Time [s]", "COF"], ["seen by", "A. N."], *OVERFLOW]},
-        {"format": {"header_line": 1, "missing": ["OVL"]}},
+        {"format": {"header_line": 1} | GAP},
     ),
-    "a row of units by the map": (
-        {"a": [["Time", "COF"], ["made", "now"], ["s", "-"], *OVERFLOW]},
-        {"format": {"header_line": 1, "units_line": 3, "missing": ["OVL"]}},
-    ),
+    "a row of units by the map": ({"a": UNITS}, {"format": {"header_line": 1, "units_line": 3} | GAP}),
     "a sheet by the map": (
         {"a": [["Time [s]", "COF"], *OVERFLOW], "b": [[1.0, 2.0]] * 3},
-        {"format": {"tables": ["a"], "missing": ["OVL"]}},
+        {"format": {"tables": ["a"]} | GAP},
     ),
-    "columns by number": (
-        {"a": OVERFLOW},
-        {"format": {"separator": ";", "missing": ["OVL"]}} | BY_NUMBER,
-    ),
+    "columns by number": ({"a": OVERFLOW}, {"format": {"separator": ";"} | GAP} | BY_NUMBER),
 }
 
 
 @pytest.mark.parametrize("what", READ)
 def test_a_workbook_is_read_as_it_is_meant(tmp_path, what):
     """Friction 0.1 at five times, or at four with the one left out counted, whatever the cells hold."""
-    (found,) = logs(tmp_path, *READ[what])
+    (found,) = logs(tmp_path, *(READ[what] if isinstance(READ[what], tuple) else (READ[what],)))
     if what.startswith("a missing"):
         left = [row for i, row in enumerate(NUMBERS) if i != 5]
         assert (found.time.tolist(), found.friction.tolist()) == tuple(
