@@ -249,34 +249,24 @@ def test_a_wrong_friction_file_is_refused_a_line_a_mistake(tmp_path, change, lin
         assert [line[: len(one)] for line, one in zip(found, lines, strict=True)] == lines
 
 
+OF_THE_FILE = 'friction = "friction.toml"\n'
 WRONG_STUDIES = {
-    "no such file": ('friction = "other.toml"', ("[ranking] friction names no file", "other.toml")),
-    "a folder": ('friction = "folder.toml"', ("names no file beside the study",)),
-    "no such table": (
-        'friction = "pin-on-disk-77"',
-        ("[ranking] friction is not a friction table", "separatrix tribometer"),
-    ),
-    "a material it lacks": (
-        'friction = "friction.toml"\nmaterials = ["Armalom"]',
-        ("materials names a material that friction.toml lacks", "Did you mean Armalon?"),
-    ),
-    "scatter in percent": (
-        'friction = "friction.toml"\nfriction_scatter = 9',
-        ("friction_scatter must lie between 0.001 and 1", "got 9", "0.09 is 9 %"),
-    ),
-}  # fmt: skip
+    'friction = "other.toml"': ("[ranking] friction names no file", "other.toml"),
+    'friction = "folder.toml"': ("names no file beside the study",),
+    'friction = "pin-on-disk-77"': ("[ranking] friction is not a friction table", "separatrix tribometer"),
+    OF_THE_FILE + 'materials = ["Armalom"]': ("that friction.toml lacks", "Did you mean Armalon?"),
+    OF_THE_FILE + "friction_scatter = 9": ("must lie between 0.001 and 1", "got 9", "0.09 is 9 %"),
+}
 
 
-@pytest.mark.parametrize("name", WRONG_STUDIES)
-def test_a_study_that_asks_wrongly_for_friction_is_refused_in_one_line(tmp_path, name):
+@pytest.mark.parametrize("ranking", WRONG_STUDIES)
+def test_a_study_that_asks_wrongly_for_friction_is_refused_in_one_line(tmp_path, ranking):
     """The line names the study and its key."""
-    ranking, words = WRONG_STUDIES[name]
-    (tmp_path / "friction.toml").write_text(GOOD)
     (tmp_path / "folder.toml").mkdir()
-    (tmp_path / "study.toml").write_text(f'extends = "cryogenic-turbopump"\n[ranking]\n{ranking}\n')
-    line = refusal_line(tmp_path / "study.toml")
+    written(tmp_path, GOOD, "friction.toml")
+    line = refusal_line(written(tmp_path, f'extends = "cryogenic-turbopump"\n[ranking]\n{ranking}\n'))
     assert line.startswith("study.toml")
-    assert [word for word in words if word not in line] == [], line
+    assert [word for word in WRONG_STUDIES[ranking] if word not in line] == [], line
 
 
 @pytest.mark.parametrize(
