@@ -165,19 +165,15 @@ def datum(value, temperature):
     return Datum(value=value, source="test", confidence="guess", temperature=temperature)
 
 
-@pytest.mark.parametrize(
-    ("temperature", "value", "words"),
-    [
-        (None, 3.0, None),
-        (77.0, 2.0, None),
-        (86.9, 2.0, None),
-        (295.0, 1.0, None),
-        (320.0, 3.0, None),
-        (150.0, 2.0, "not stated at 150 K, the value at 77 K is used"),
-        (405.0, 3.0, "not stated at 405 K, the value at 280 K to 400 K is used"),
-        (500.0, 3.0, "not stated at 500 K, the value at 280 K to 400 K is used"),
-    ],
-)
+WARMEST = "the value at 280 K to 400 K is used"
+CHOSEN = [
+    *((None, 3.0, None), (77.0, 2.0, None), (86.9, 2.0, None), (295.0, 1.0, None), (320.0, 3.0, None)),
+    (150.0, 2.0, "not stated at 150 K, the value at 77 K is used"),
+    *((at, 3.0, f"not stated at {at:g} K, {WARMEST}") for at in (405.0, 500.0)),
+]
+
+
+@pytest.mark.parametrize(("temperature", "value", "words"), CHOSEN)
 def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_in_silence(
     temperature, value, words
 ):

@@ -63,10 +63,6 @@ REFUSED = {  # others: test_study_cage
 }
 
 SETTINGS = {
-    "kick lost in rounding": (
-        'kicks = ["1e-300 m/s"]',
-        '> 1e-09 m/s and < 10000 m/s; got "1e-300 m/s". A disturbance',
-    ),
     "run of a week": ('duration = "168 h"', "duration must be <= 10000 s; got"),
     "run of an hour": ('duration = "1 h"', "for this cage; got 3600 s. Shorten the run"),
     "run of no time": ('duration = "1e-12 s"', "duration must be >= 0.001 us; got"),
