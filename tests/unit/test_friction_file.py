@@ -67,7 +67,7 @@ def read_back(folder, tests):
 
 def test_a_flag_is_one_line_of_at_most_500(tmp_path):
     """The reduction's own are tested to be shorter, where they are made."""
-    tests = (whole(flags=("a" * 500,), source="a.csv, step 1"), whole(source="a.csv, step 2"))
+    tests = (whole(flags=("a" * 500,), source="a.csv, step 1"), whole(source="a.csv, step 2", sample=None))
     assert read_back(tmp_path, tests) == tests  # two steps of one log
     with pytest.raises(InputError, match=r"flags\[1\] must be one line of 1 to 500"):
         whole(flags=("a" * 501,))

@@ -210,7 +210,8 @@ def test_a_right_file_has_the_source_of_every_value_and_notes():
 
 def test_a_record_built_in_python_checks_itself():
     """By the rules of the file, under its own name; a text becomes the number in SI."""
-    assert Part(size="5 mm", clearance=0.0).size == 0.005
+    part = Part(size="5 mm", clearance=0.0, across=("1 mm", 0.5), heights=("1 mm", 2.0))
+    assert (part.size, part.across) == (0.005, (0.001, 0.5))
     with pytest.raises(InputError) as refused:
         Part(size="5 N", angle=2.0, names=("a name",), count=True, shape="round")
     assert sorted(one.path for one in refused.value.problems) == [

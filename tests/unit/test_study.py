@@ -83,6 +83,7 @@ WRONG_RECORDS = [
     (StabilitySettings, {"restitution_factors": (0.5, 1.0)}, "restitution_factors[2] must be > 0 and < 1"),
     (Candidate, {"friction": {"air": None}}, 'Candidate.friction of "A" has no measured value'),
     (RankingQuestion, {"candidates": (OILY,)}, "RankingQuestion.candidates"),
+    (RankingQuestion, {"environments": ()}, "must not be empty"),
 ]
 
 

@@ -142,6 +142,7 @@ def test_a_wrong_file_is_refused_with_place_rule_and_cure(edit, words, tmp_path)
 
 BYTES = {
     "UTF-16": ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
+    "an open string": (b'title = """Cage\n', "not valid TOML"),
     "only a title": (b'title = "Cage"\n', "lacks: [operation], [bearing], [film]"),
 }
 
