@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 import sqlite3
 import sys
 from multiprocessing.connection import Connection
@@ -85,6 +86,25 @@ def refusal_line(path: str | Path, read=read_study) -> str:
     message = refusal(path, read)
     assert "\n" not in message
     return message
+
+
+def rows_of(table: str) -> list[tuple[str, list[str]]]:
+    r"""Return of each ``change :: words :: words`` of a table the change and the words of its refusal.
+
+    A row goes on behind an indent; ``\n`` in a change is a new line.
+    """
+    rows = [line.split(" :: ") for line in re.sub(r"\n +", " ", table.strip()).splitlines()]
+    return [(change.replace(r"\n", "\n"), words) for change, *words in rows]
+
+
+def changed(base: str, change: str) -> str:
+    """Return a text with one change: ``old => new``, ``+ added behind``, ``^ added before``."""
+    if change[0] in "+^":
+        more = change[1:].removeprefix(" ") + "\n"
+        return base + more if change[0] == "+" else more + base
+    old, _, new = change.partition(" =>")
+    assert old in base
+    return base.replace(old, new.removeprefix(" "), 1)
 
 
 def pieces(folder: Path) -> int:

@@ -1,21 +1,16 @@
-"""Friction files written and read back, and studies that rank by them."""
+"""Friction files written, read back and refused, and studies that rank by them."""
 
-import ast
-import inspect
 import json
 import sys
-import tomllib
-from dataclasses import replace
-from importlib import import_module
 from subprocess import run
 
 import pytest
-from commands import document, written
+from commands import changed, document, refusal, refusal_line, rows_of, written
 
 from separatrix.chain.pocket_friction import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
 from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
-from separatrix.friction.friction_fit import TestedFriction
+from separatrix.friction.friction_fit import TestedFriction, fit_friction
 from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
@@ -70,60 +65,12 @@ def read_back(folder, tests):
     return read_friction(written(folder, friction_text(tests), "friction.toml"))
 
 
-def sentences():
-    """Every flag, in the longest form of its source: 30 characters a number, the longer of two words."""
-    for name in ("reduction", "cycles"):
-        module = import_module(f"separatrix.friction.{name}")
-        for function in ast.walk(ast.parse(inspect.getsource(module))):
-            if not isinstance(function, ast.FunctionDef):
-                continue
-            nodes = list(ast.walk(function))
-            words = {}
-            for node in nodes:
-                if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-                    words.setdefault(node.targets[0].id, []).append(node.value)
-            for node in nodes:
-                if isinstance(node, (ast.JoinedStr, ast.Constant)):
-                    yield _longest(node, words)
-
-
-def _longest(node, words):
-    """Text of a node with every name in it replaced by its longest value."""
-    match node:
-        case ast.Constant(value=str(text)):
-            return text
-        case ast.JoinedStr(values=parts):
-            return "".join(_longest(part, words) for part in parts)
-        case ast.FormattedValue(value=inner):
-            return _longest(inner, words)
-        case ast.IfExp(body=one, orelse=other):
-            return max(_longest(one, words), _longest(other, words), key=len)
-        case ast.Name(id=name) if name in words:
-            others = {key: values for key, values in words.items() if key != name}
-            return max((_longest(value, others) for value in words[name]), key=len)
-    return "9" * 30
-
-
-def test_the_longest_flag_is_written_and_read_back(tmp_path):
-    """No sentence of the reduction is too long for its own file, whatever its numbers."""
-    found = [text for text in sentences() if text.rstrip().endswith(".") and "\n" not in text]
-    assert sum(text.startswith(("Friction", "The ", "Running-in")) for text in found) >= 16
-    tests = (whole(flags=(max(found, key=len),)),)
-    assert read_back(tmp_path, tests) == tests
+def test_a_flag_is_one_line_of_at_most_500(tmp_path):
+    """The reduction's own are tested to be shorter, where they are made."""
+    tests = (whole(flags=("a" * 500,), source="a.csv, step 1"), whole(source="a.csv, step 2", sample=None))
+    assert read_back(tmp_path, tests) == tests  # two steps of one log
     with pytest.raises(InputError, match=r"flags\[1\] must be one line of 1 to 500"):
         whole(flags=("a" * 501,))
-
-
-def test_a_written_test_is_read_back_to_the_last_bit(tmp_path):
-    """Every field, with numbers that no short decimal holds, quotes and backslashes; steps of one log."""
-    for axis in ("time", "distance", "cycles"):
-        tests = (whole(run_in_end=Place(axis, 12.3)), whole(checksum="cd" * 32, flags=(), sample=None))
-        assert read_back(tmp_path, tests) == tests
-    tests = (whole(source="a.csv, step 1"), whole(source="a.csv, step 2"))
-    assert read_back(tmp_path, tests) == tests
-    text = friction_text([whole()])
-    assert text.startswith("# Friction of cage materials")
-    assert tomllib.loads(text)["test"][0]["run_in_end"] == "12.3 cycles"
 
 
 def test_only_four_keys_are_needed(tmp_path):
@@ -188,22 +135,10 @@ def test_tests_in_the_fluid_of_the_study_by_another_name_are_no_extrapolation(tm
     assert "tested in GN2, not in liquid nitrogen" in said["GN2, 440C"]
 
 
-def test_a_verb_without_candidates_takes_the_friction_of_the_first_as_its_pocket_sees_it(tmp_path):
-    """Tests at 1 and 5 m/s: that at 5, not their mean, and what was not tested is said."""
-    second = SMALL.split("[[test]]")[1].replace("0.08", '0.12\nslip_speed = "5 m/s"')
-    text = SMALL.replace("0.08", '0.08\nslip_speed = "1 m/s"') + 2 * f"[[test]]{second}"
-    asked = read_study(study(tmp_path, text))
-    stated = asked.ranking.candidates[0].friction["liquid nitrogen, 440C"].mean
-    assert stated == pytest.approx((0.08 * 0.12**2) ** (1 / 3), rel=1e-12)  # rounding
-    assert solve(asked).friction.mean == pytest.approx(0.12, rel=1e-6)  # the two at 5 m/s weigh alike
-    given = replace(asked, cage=replace(asked.cage, ball_cage_friction=0.1))
-    assert solve(given).friction.mean == 0.1
-
-
 # Not tested as the pocket rubs.
 @pytest.mark.parametrize("verb", [["stability"], ["simulate"], ["rank"], ["sensitivity", "--samples", "64"]])
 def test_every_verb_has_the_same_friction_of_the_first_candidate(tmp_path, capsys, monkeypatch, verb):
-    """That at 5 m/s, as above, in the cage that stands in its answer."""
+    """Tests at 1 and 5 m/s: that at 5, not their mean, in the cage that stands in its answer."""
     monkeypatch.chdir(tmp_path)
     first, second = (f'0.08\nslip_speed = "{v} m/s"' for v in (1, 5))
     one = SMALL.split("[[test]]")[1]
@@ -275,3 +210,76 @@ def test_check_names_tests_that_sensitivity_refuses(tmp_path, capsys):
         line = capsys.readouterr().err.removeprefix("separatrix: ").rstrip()
         assert line.startswith("Friction from tests of Armalon in liquid nitrogen, 440C must not scatter")
         assert {"verb": "sensitivity", "sentence": line} in refused
+
+
+GOOD = """\
+[[test]]
+material = "Armalon"
+counterface = "440C"
+medium = "liquid nitrogen"
+friction = 0.08
+"""
+
+WRONG_FILES = r"""
+^test = [] :: line 1: test must have 1 to 10000 items; got 0 of them
+"Armalon" => "Armalon " :: line 2: [[test]] material must not begin or end with a space
++slip_speed = ["5 m/s", "1 m/s"] :: line 6: [[test]] slip_speed must have the lowest value first
+^title = "mine" :: friction.toml lacks: test. Write [[test]]
+nitrogen => nitrogen, wet :: line 4: [[test]] medium must not hold a comma; got "liquid nitrogen, wet"
+0.08 => "8 %" :: line 5: [[test]] friction must be a plain number, without a unit; got "8 %". Write 0.08
++checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "a.csv"
+    :: line 13: [[test]] checksum is that of test 1 once more. Each log counts once; remove one
++checksum = "a"\nsource = "a.csv"\nGOODchecksum = "a"\nsource = "b.csv"
+    :: line 13: [[test]] checksum is that of test 1 once more
++\n[[test]]\nmaterial = "armalon"\ncounterface = "440C"\nmedium = "liquid  nitrogen"\nfriction = 1
+    :: line 8: [[test]] material differs from that of test 1 only in capitals or spaces; got "armalon"
+    :: line 10: [[test]] medium differs from that of test 1 only in capitals or spaces
+"""
+"""A change of a good file, one added (+) or the file itself (^); place and rule of each mistake."""
+
+
+@pytest.mark.parametrize(("change", "lines"), rows_of(WRONG_FILES))
+def test_a_wrong_friction_file_is_refused_a_line_a_mistake(tmp_path, change, lines):
+    """The line names the file, the rule and the value; a study that names the file passes it on."""
+    named = written(tmp_path, 'extends = "cryogenic-turbopump"\n[ranking]\nfriction = "friction.toml"\n')
+    text = changed("" if change[0] == "^" else GOOD, change.replace("GOOD", GOOD))
+    wrong = written(tmp_path, text, "friction.toml")
+    for found in (refusal(wrong, read_friction), refusal(named)):
+        found = [line.replace("friction.toml, ", "", 1) for line in found.splitlines()]
+        assert [line[: len(one)] for line, one in zip(found, lines, strict=True)] == lines
+
+
+OF_THE_FILE = 'friction = "friction.toml"\n'
+WRONG_STUDIES = {
+    'friction = "other.toml"': ("[ranking] friction names no file", "other.toml"),
+    'friction = "folder.toml"': ("names no file beside the study",),
+    'friction = "pin-on-disk-77"': ("[ranking] friction is not a friction table", "separatrix tribometer"),
+    OF_THE_FILE + 'materials = ["Armalom"]': ("that friction.toml lacks", "Did you mean Armalon?"),
+    OF_THE_FILE + "friction_scatter = 9": ("must lie between 0.001 and 1", "got 9", "0.09 is 9 %"),
+}
+
+
+@pytest.mark.parametrize("ranking", WRONG_STUDIES)
+def test_a_study_that_asks_wrongly_for_friction_is_refused_in_one_line(tmp_path, ranking):
+    """The line names the study and its key."""
+    (tmp_path / "folder.toml").mkdir()
+    written(tmp_path, GOOD, "friction.toml")
+    line = refusal_line(written(tmp_path, f'extends = "cryogenic-turbopump"\n[ranking]\n{ranking}\n'))
+    assert line.startswith("study.toml")
+    assert [word for word in WRONG_STUDIES[ranking] if word not in line] == [], line
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda _: fit_friction([]), "holds no test"),
+        (lambda t: fit_friction([t], 0.0), "friction_scatter must lie between"),
+        (lambda t: fit_friction([t], 9.0), "got 9"),
+        (lambda t: fit_friction([t]).of("B", "air, 440C"), 'holds no test of "B" in "air, 440C"'),
+    ],
+)
+def test_a_fit_that_cannot_be_is_refused(ask, words):
+    """No test, no such scatter, no such material."""
+    test = FrictionTest(material="A", counterface="440C", medium="air", friction=0.1)
+    with pytest.raises(InputError, match=words):
+        ask(test)

@@ -1,4 +1,4 @@
-"""What no source file of the package may hold, and what every public function must."""
+"""What no source file of the package may hold, beyond what the linter refuses."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def imported(tree: ast.AST) -> set[str]:
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
 def test_a_module_keeps_the_rules(path):
-    """No assert, print, eval, pickle or network; no fast-math; no broad except; not too long."""
+    """No assert, print, eval, pickle or network; no fast-math; not too long."""
     text = path.read_text(encoding="utf-8")
     tree = ast.parse(text)
     assert not [n.lineno for n in ast.walk(tree) if isinstance(n, ast.Assert)]
@@ -52,25 +52,7 @@ def test_a_module_keeps_the_rules(path):
     allowed = NETWORK.get(str(path.relative_to(SOURCE)), set())
     assert not imported(tree) & FORBIDDEN_MODULES - allowed
     assert not re.search(r"fastmath\s*=\s*True|parallel\s*=\s*True|np\.random\.seed|\bTODO\b|\bFIXME\b", text)
-    broad = [n for n in ast.walk(tree) if isinstance(n, ast.ExceptHandler) and _is_broad(n.type)]
-    assert not broad
     assert len(text.splitlines()) < LIMIT
-
-
-def _is_broad(kind: ast.expr | None) -> bool:
-    return kind is None or (isinstance(kind, ast.Name) and kind.id in {"Exception", "BaseException"})
-
-
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(SOURCE)))
-def test_what_is_public_is_explained(path):
-    """Every module, public class and public function has a docstring."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    kinds = (ast.FunctionDef, ast.ClassDef)
-    outer = [n for n in tree.body if isinstance(n, kinds)]
-    methods = [n for c in outer if isinstance(c, ast.ClassDef) for n in c.body if isinstance(n, kinds)]
-    public = [n for n in (*outer, *methods) if not n.name.startswith("_")]
-    for node in (tree, *public):
-        assert ast.get_docstring(node), getattr(node, "name", path.name)
 
 
 def test_nothing_names_a_machine_or_an_index():

@@ -11,7 +11,7 @@ from commands import refusal, written
 from separatrix.ground.errors import DataError
 from separatrix.ground.schema import keys_of
 from separatrix.study import library
-from separatrix.study.library import SHIPPED_FILES, Library
+from separatrix.study.library import Library
 from separatrix.study.library.records import Datum, choose, contradictions
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
@@ -96,15 +96,6 @@ def case(tmp_path):
     return written(tmp_path, STUDY, "case.toml")
 
 
-@pytest.mark.parametrize("kind", SHIPPED_FILES)
-def test_a_shipped_file_passes_its_own_check(kind):
-    """It is read by the reader of users' files: a source and a confidence for each number, no zero."""
-    assert LIBRARY.names(kind)
-    for record in LIBRARY.records(kind).values():
-        assert record.kind == kind
-        assert len(record.file.checksum) == 64
-
-
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SOLIDS for name in LIBRARY.names(kind)])
 def test_every_solid_can_be_built(kind, name):
     """Values in SI, source and confidence as text, a temperature for every number."""
@@ -174,19 +165,15 @@ def datum(value, temperature):
     return Datum(value=value, source="test", confidence="guess", temperature=temperature)
 
 
-@pytest.mark.parametrize(
-    ("temperature", "value", "words"),
-    [
-        (None, 3.0, None),
-        (77.0, 2.0, None),
-        (86.9, 2.0, None),
-        (295.0, 1.0, None),
-        (320.0, 3.0, None),
-        (150.0, 2.0, "not stated at 150 K, the value at 77 K is used"),
-        (405.0, 3.0, "not stated at 405 K, the value at 280 K to 400 K is used"),
-        (500.0, 3.0, "not stated at 500 K, the value at 280 K to 400 K is used"),
-    ],
-)
+WARMEST = "the value at 280 K to 400 K is used"
+CHOSEN = [
+    *((None, 3.0, None), (77.0, 2.0, None), (86.9, 2.0, None), (295.0, 1.0, None), (320.0, 3.0, None)),
+    (150.0, 2.0, "not stated at 150 K, the value at 77 K is used"),
+    *((at, 3.0, f"not stated at {at:g} K, {WARMEST}") for at in (405.0, 500.0)),
+]
+
+
+@pytest.mark.parametrize(("temperature", "value", "words"), CHOSEN)
 def test_the_datum_stated_for_a_temperature_is_chosen_and_none_is_extrapolated_in_silence(
     temperature, value, words
 ):
@@ -271,20 +258,14 @@ def test_a_record_of_the_library_is_in_the_result_whole(case):
     ours = found["ranking"]["candidates"][0]["material"]["record"]
     assert ours["taken"] == {"elastic_modulus": 0, "poisson_ratio": 0}
     assert ours["taken_at"] == 77.0
-    assert len(ours["data"]["elastic_modulus"]) == 2
-    first = ours["data"]["elastic_modulus"][0]
-    assert list(first.items()) == [
-        *(("value", 9e9), ("unit", "Pa"), ("range", None), ("temperature", [77.0, 77.0])),
-        *(("pressure", None), ("medium", None), ("form", "ring")),
-        *(("source", "test 12"), ("confidence", "measured")),
-    ]
+    first, _ = ours["data"]["elastic_modulus"]
+    known = {"value": 9e9, "unit": "Pa", "temperature": [77.0, 77.0], "form": "ring"}
+    known |= {"source": "test 12", "confidence": "measured"}
+    assert first == known | dict.fromkeys(("range", "pressure", "medium"))
     assert ours["library"]["file"] == "materials.toml"
-    assert len(ours["library"]["sha256"]) == 64
     table = found["ranking"]["table"]
     assert table["conditions"]["slip_speed"]["value"] == [1.0, 4.0]
     assert table["library"] == ours["library"]
-    fluid = found["operation"]["fluid"]["record"]
-    assert fluid["data"]["boiling_temperature"][0]["value"] == 77.355
 
 
 @pytest.mark.parametrize(

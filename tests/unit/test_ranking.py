@@ -222,14 +222,6 @@ def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
     assert any(value is not None for value in (*curve.here.kick_low, *curve.here.kick_high))
 
 
-def test_equal_frictions_tie_with_equal_numbers():
-    """Two materials with the same friction cannot be told apart."""
-    found = rank(quick_study(ranking=asked(("A", Friction(mean=0.12)), ("B", Friction(mean=0.12)))))
-    a, b = found.overall
-    assert (a.rank, b.rank) == (1, 1)
-    assert replace(a, name="B") == b
-
-
 def test_scatter_of_the_friction_widens_the_threshold():
     """A friction known to 0.04 leaves a wider threshold than one taken as exact."""
     exact, scattered = (
@@ -239,12 +231,6 @@ def test_scatter_of_the_friction_widens_the_threshold():
     assert scattered.restitution_threshold == exact.restitution_threshold
     assert scattered.restitution_threshold_low < exact.restitution_threshold_low
     assert scattered.restitution_threshold_high > exact.restitution_threshold_high
-
-
-def test_the_number_of_threads_changes_nothing():
-    """One thread and two give the same record, to the last bit."""
-    study = quick_study(ranking=asked(("A", Friction(mean=0.08)), ("B", Friction(mean=0.2))))
-    assert rank(study, runner=Runner(jobs=1)) == rank(study, runner=Runner(jobs=2))
 
 
 def test_an_interrupt_leaves_a_ranking_that_says_so_and_goes_on(tmp_path):

@@ -5,6 +5,7 @@ from enum import Enum
 from typing import Annotated, ClassVar, Literal
 
 import pytest
+from commands import changed, rows_of
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Origin, read, read_text
@@ -162,23 +163,14 @@ angle = 0.5 => clearance = "994 mm" :: line 2: [part] size must be smaller; got 
 """A change of the file, one added behind or (^) before it, and each line of the refusal, without the file."""
 
 
-def cases():
-    """Text of a wrong file, and the begin of each line of its refusal."""
-    for line in WRONG.replace("\n    ", " ").strip().splitlines():
-        change, *refusal = line.split(" :: ")
-        old, arrow, new = change.replace(r"\n", "\n").partition(" =>")
-        text = BASE.replace(old, new.strip()) if arrow else BASE + change[2:].replace(r"\n", "\n") + "\n"
-        yield pytest.param(change[2:] + "\n" + BASE if change[0] == "^" else text, refusal, id=change.strip())
-
-
-@pytest.mark.parametrize(("text", "refusal"), list(cases()))
-def test_every_mistake_is_a_line_with_place_rule_value_and_cure(text, refusal):
+@pytest.mark.parametrize(("change", "lines"), rows_of(WRONG))
+def test_every_mistake_is_a_line_with_place_rule_value_and_cure(change, lines):
     """No more, no fewer."""
     with pytest.raises(InputError) as refused:
-        read_text(File, text, "parts.toml")
+        read_text(File, changed(BASE, change), "parts.toml")
     found = sorted(line.replace("parts.toml, ", "", 1) for line in str(refused.value).splitlines())
-    assert len(found) == len(refusal), found
-    for line, start in zip(found, sorted(one.strip() for one in refusal), strict=True):
+    assert len(found) == len(lines), found
+    for line, start in zip(found, sorted(lines), strict=True):
         assert line.startswith(start)
 
 
@@ -218,7 +210,8 @@ def test_a_right_file_has_the_source_of_every_value_and_notes():
 
 def test_a_record_built_in_python_checks_itself():
     """By the rules of the file, under its own name; a text becomes the number in SI."""
-    assert Part(size="5 mm", clearance=0.0).size == 0.005
+    part = Part(size="5 mm", clearance=0.0, across=("1 mm", 0.5), heights=("1 mm", 2.0))
+    assert (part.size, part.across) == (0.005, (0.001, 0.5))
     with pytest.raises(InputError) as refused:
         Part(size="5 N", angle=2.0, names=("a name",), count=True, shape="round")
     assert sorted(one.path for one in refused.value.problems) == [

@@ -27,7 +27,6 @@ from separatrix.study.reading import read_study
 from separatrix.study.study import MotionModel, PocketShape
 from separatrix.verdict.ledger import NAME, Ledger, key_of
 from separatrix.verdict.long_jobs import MORE, PART, Interrupted, Load, Runner, Work, joined, scattered
-from separatrix.verdict.stability_curve import stability_curve
 
 WHEEL = read_study("momentum-wheel")
 CAGE = moving_cage(solve(WHEEL), 0.2)
@@ -67,32 +66,6 @@ def test_a_fault_in_the_work_is_not_swallowed():
     """An exception of one item is raised, not turned into a gap."""
     with pytest.raises(ZeroDivisionError):
         Runner(jobs=2).work_out(lambda x: 1 // x, [1, 0], into=dict)
-
-
-def test_a_long_computation_is_stopped_by_an_interrupt():
-    """The thread inside a point looks at the flag and gives up; what was finished before is kept."""
-    inside, stopped = threading.Event(), []
-
-    def compute(place):
-        if place == 0:
-            inside.wait(timeout=5.0)
-            return "done"
-        inside.set()
-        until = time.monotonic() + 5.0
-        while not runner.stop.is_set and time.monotonic() < until:
-            time.sleep(1e-3)
-        stopped.append(runner.stop.is_set)
-        raise Interrupted
-
-    def interrupt(done, total):
-        if done:
-            raise KeyboardInterrupt
-
-    runner = Runner(jobs=2, progress=interrupt)
-    with pytest.raises(Interrupted) as caught:
-        runner.work_out(compute, [0, 1], into=dict)
-    assert caught.value.finished == {0: "done"}
-    assert stopped == [True]
 
 
 def test_places_that_follow_are_computed_once():
@@ -209,17 +182,6 @@ def test_a_second_interrupt_breaks_in():
             Runner().work_out(work, range(50), into=dict)
     finally:
         signal.signal(signal.SIGINT, usual)
-
-
-def test_kept_runs_are_the_same_to_the_last_bit(tmp_path):
-    """Once run and once read; every field, with its kind of number and shape."""
-    ledger = Ledger(tmp_path / NAME)
-    at_once = run_ensemble(CAGE, QUICK)
-    runner = Runner(ledger=ledger)
-    first, second = (runner.whole_ensemble(CAGE, QUICK) for _ in range(2))
-    assert ledger.taken == QUICK.runs * len(QUICK.kicks)
-    same_bits(at_once, first, second)
-    ledger.close()
 
 
 def same_bits(*ensembles):
@@ -366,17 +328,6 @@ def test_a_damaged_piece_is_run_again(tmp_path, damaged):
 def test_a_key_depends_on_the_last_bit():
     """Of a number, and on its kind."""
     assert len({key_of(0.1), key_of(np.nextafter(0.1, 1.0)), key_of("0.1"), key_of(0.1, 0.1)}) == 4
-
-
-def test_more_runs_go_on_from_fewer(tmp_path):
-    """A curve with as many runs again takes those of the first from the ledger."""
-    ledger = Ledger(tmp_path / NAME)
-    settings = replace(QUICK, kicks=(0.5,), runs=8, restitution_factors=(0.5,))
-    stability_curve(CAGE, settings, runner=Runner(ledger=ledger))
-    assert ledger.taken == 0
-    stability_curve(CAGE, replace(settings, restitution_factors=(0.5, 0.6)), runner=Runner(ledger=ledger))
-    assert ledger.taken > 0
-    ledger.close()
 
 
 def test_a_file_that_is_no_ledger_is_refused(tmp_path):

@@ -15,7 +15,6 @@ from separatrix.ground.errors import InputError
 ROWS = 120
 TIME = np.arange(ROWS) * 0.5
 FRICTION = np.round(0.14 + 0.01 * np.sin(TIME), 5)
-PREAMBLE = [f"Kennwert {i};{i * 3}" for i in range(38)] + ["Normalkraft;12,5 N", ""]
 
 
 def table(head, row, *, above=(), comma=False):
@@ -28,14 +27,6 @@ def table(head, row, *, above=(), comma=False):
     return "\n".join([*above, *head, *rows, ""])
 
 
-FIRST = {
-    "a German pin on disk below forty lines": table(
-        ["Zeit [s];Reibwert;Temperatur [°C]"], "{t};{f};23.5", above=PREAMBLE, comma=True
-    ),
-    "columns between blanks": table(["  Time (s)   Friction Coeff   Load (N)"], "  {t}   {f}   12.5"),
-    "stamps of one zone": table(["stamp,mu,note"], "2026-03-01T{h}+01:00,{f},ok"),
-    "forces between bars": table(["Gleitweg [m]|Reibkraft [mN]|Normalkraft [N]"], "{t}|{milli}|12.5"),
-}
 SECOND = {
     "names without units": table(["Time\tCOF\tLoad"], "{t}\t{f}\t12.5"),
     "dates that may be American": table(["Date and Time;COF"], "03/04/2026 {h};{f}"),
@@ -76,13 +67,6 @@ def draft_of(path, given=None, words="open question"):
     draft = path.with_name("map.toml")
     draft.write_text(refusal.value.draft, encoding="utf-8")
     return draft
-
-
-@pytest.mark.parametrize("what", FIRST)
-def test_a_plain_file_with_clear_heads_takes_one_call(tmp_path, what):
-    """Nothing is asked."""
-    (log,) = read_log(written(tmp_path, FIRST[what]))
-    np.testing.assert_allclose(log.friction, FRICTION, rtol=1e-12)  # one or two roundings of the forces
 
 
 @pytest.mark.parametrize("what", SECOND)

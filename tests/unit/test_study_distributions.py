@@ -1,22 +1,20 @@
-"""Uncertain numbers of a study: how a file writes them, what the study holds, what every verb says."""
+"""Uncertain numbers of a study: how a file writes them, what the study holds, what is refused."""
 
 import json
 import math
 import re
-import tempfile
 from pathlib import Path
 
 import pytest
+from commands import refusal_line, refused, rows_of, written
 from scipy.stats import lognorm
 
-import separatrix
 from separatrix.ground.errors import InputError
 from separatrix.study.distribution import LogNormal, LogUniform, Normal, Samples, Uniform
 from separatrix.study.keys import study_numbers, value_of, with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.verdict.draws import sample, uncertain_inputs
-from separatrix.verdict.map_records import varied
 from separatrix.verdict.ranking_records import measured
 
 HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
@@ -25,29 +23,20 @@ HEAD = 'title = "Uncertain"\nextends = "cryogenic-turbopump"\n'
 @pytest.fixture
 def study_of(tmp_path):
     """Study of a text that stands over the shipped one."""
-
-    def read(text):
-        path = tmp_path / "case.toml"
-        path.write_text(HEAD + text, encoding="utf-8")
-        return read_study(path)
-
-    return read
+    return lambda text: read_study(written(tmp_path, HEAD + text, "case.toml"))
 
 
 FORMS = {
     '"0.5 um +- 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +- 0.1 um"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"(0.5 +- 0.1) um"': Normal(mean=5e-7, standard_deviation=5e-8),
-    '"0.5 um +- 2e1 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5um+-100nm"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um ± 20 %"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +/- 20%"': Normal(mean=5e-7, standard_deviation=5e-8),
     '"0.5 um +- 80 %"': LogNormal(mean=5e-7, standard_deviation=2e-7),
     '{ between = ["0.2 um", "1 um"] }': Uniform(low=2e-7, high=1e-6),
     '{ between = ["0.2 um", "1 um"], log = true }': LogUniform(low=2e-7, high=1e-6),
-    '{ between = ["0.2 um", "1 um"], log = false }': Uniform(low=2e-7, high=1e-6),
     '{ mean = "0.5 um", standard_deviation = "50 nm" }': Normal(mean=5e-7, standard_deviation=5e-8),
-    '{ mean = "0.5 um", standard_deviation = "10 %" }': Normal(mean=5e-7, standard_deviation=5e-8),
     '["0.2 um", "0.4 um", "0.6 um"]': Samples(values=(2e-7, 4e-7, 6e-7)),
     '{ samples = ["0.6 um", "0.2 um", "0.4 um"] }': Samples(values=(2e-7, 4e-7, 6e-7)),
 }
@@ -69,20 +58,15 @@ def test_every_form_is_read(text, study_of):
     assert study.film.thickness == found.mean
 
 
-def test_the_page_on_uncertain_inputs_is_right():
+def test_the_page_on_uncertain_inputs_is_right(study_of):
     """The study on the page is read, and so is every form of its table."""
     page = (Path(__file__).parents[2] / "docs" / "reference" / "distributions.md").read_text(encoding="utf-8")
     page = page.partition("## How to write them")[2].partition("\n## ")[0]
-    block = re.search(r"```toml\n(.*?)```", page, re.DOTALL)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "page.toml"
-        path.write_text(HEAD + block.group(1), encoding="utf-8")
-        assert len(read_study(path).distributions) == 6
-        forms = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
-        assert len(forms) == 7
-        for form in forms:
-            path.write_text(HEAD + f"[film]\nthickness = {form}\n", encoding="utf-8")
-            assert "film.thickness" in read_study(path).distributions, form
+    assert len(study_of(page.partition("```toml\n")[2].partition("```")[0]).distributions) == 6
+    forms = re.findall(r"^\| `([^`]+)` \|", page, re.MULTILINE)
+    assert len(forms) == 7
+    for form in forms:
+        assert "film.thickness" in study_of(f"[film]\nthickness = {form}\n").distributions, form
 
 
 def test_a_width_in_another_unit_or_of_a_temperature_is_a_difference(study_of):
@@ -132,19 +116,13 @@ material = { elastic_modulus = "5 GPa +- 30 %", poisson_ratio = [0.3, 0.4] }
     assert measured(friction["water"]).error == pytest.approx(0.009)
 
 
-def test_a_film_given_in_place_or_as_a_material_has_one_name(study_of):
-    """The film's modulus is film.elastic_modulus, however it is written."""
-    plain = study_of('[film]\nelastic_modulus = "2 GPa +- 20 %"\npoisson_ratio = 0.4\n')
-    nested = study_of('[film]\nmaterial = { elastic_modulus = "2 GPa +- 20 %", poisson_ratio = 0.4 }\n')
-    assert list(plain.distributions) == list(nested.distributions) == ["film.elastic_modulus"]
-
-
 def test_an_uncertain_clearance_moves_the_angle(study_of):
     """The study holds an angle; its clearance is the uncertain number."""
     base = read_study("cryogenic-turbopump")
     clearance = base.bearing.free_clearance
     text = f'[bearing]\nradial_clearance = "{clearance * 1e6:.6f} um +- 5 %"\n'
     study = study_of(text)
+    assert "radial_clearance" in resolved(study)["bearing"]["contact_angle"]["origin"]
     assert study.bearing.free_angle == pytest.approx(base.bearing.free_angle, rel=1e-6)
     wider = with_values(study, {"bearing.radial_clearance": 1.05 * clearance})
     assert math.cos(base.bearing.free_angle) - math.cos(wider.bearing.free_angle) == pytest.approx(
@@ -176,17 +154,8 @@ def test_values_are_set_together_and_become_certain(study_of):
 def test_a_variant_replaces_an_uncertain_number(study_of, tmp_path):
     """With `extends` the file above wins, certain or not."""
     study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
-    path = tmp_path / "variant.toml"
-    path.write_text('title = "V"\nextends = "case.toml"\n[film]\nthickness = "0.4 um"\n', encoding="utf-8")
-    assert read_study(path).distributions == {}
-
-
-def test_a_map_over_an_uncertain_number_makes_it_certain(study_of):
-    """What a map varies has the map's value and no distribution beside it."""
-    study = study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
-    moved = varied(study, {"film.thickness": 3e-7})
-    assert moved.film.thickness == 3e-7
-    assert moved.distributions == {}
+    text = 'title = "V"\nextends = "case.toml"\n[film]\nthickness = "0.4 um"\n'
+    assert read_study(written(tmp_path, text, "variant.toml")).distributions == {}
 
 
 def test_resolved_inputs_tell_origin_and_distribution(study_of):
@@ -204,19 +173,6 @@ def test_resolved_inputs_tell_origin_and_distribution(study_of):
     names = {one["name"] for one in parts["uncertain_inputs"]}
     assert names == {"film.thickness", "film.elastic_modulus"}
     json.dumps(parts["uncertain_inputs"], allow_nan=False)
-
-
-def test_check_and_every_other_verb_say_what_is_uncertain(study_of):
-    """`check` lists the distributions; the others say that they take the means."""
-    study = study_of('[film]\nthickness = "0.5 um +- 80 %"\n')
-    shown = separatrix.check(study).summary()
-    assert "film.thickness  log-normal, mean 500 nm, standard deviation 200 nm" in shown
-
-    told = separatrix.bearing(study).summary()
-    assert "An uncertain input is at its mean: film.thickness." in told
-    certain = read_study("cryogenic-turbopump")
-    told = separatrix.bearing(certain).summary()
-    assert "uncertain" not in told
 
 
 @pytest.mark.parametrize("text", ['"0.5 +- 180 %"', "{ mean = 0.5, standard_deviation = 0.45 }"])
@@ -244,3 +200,141 @@ friction = { "C" = "0.1 +- 20 %" }
 name = "A"
 friction = { "B.C" = 0.1 }
 """)
+
+
+MANY = "\n".join(
+    f'[[ranking.candidates]]\nname = "{i}"\nfriction = {{ "air" = "0.1 +- 10 %" }}' for i in range(51)
+)
+
+
+def film(text: str) -> str:
+    """Return a film of this thickness."""
+    return f"[film]\nthickness = {text}\n"
+
+
+def friction(text: str) -> str:
+    """Return a candidate of this friction in air."""
+    return f'[[ranking.candidates]]\nname = "One"\nfriction = {{ "air" = {text} }}\n'
+
+
+SECOND = """\
+[[ranking.candidates]]
+name = "One.air"
+friction = { "lox" = 0.1 }
+material = { elastic_modulus = "5 GPa", poisson_ratio = { between = [0.2, 0.7] } }
+"""
+
+WRONG = r"""
+film "0.5 um +- 0 %" :: line 4: [film] thickness ; width > 0 ; is certain
+film "0.5 um +- -0.1 um" :: a width > 0 ; "-0.1 um" ; no sign
+film "0.5 um +- 20" :: after +-, needs a unit, or % ; "20 %", or the width
+film "0.5 +- 20 %" :: needs a unit before +- too ; "0.5 um +- 20 %"
+film "(0.5 +- 0.1)" :: one number and one unit of length
+film "(0.5 +- 20 %) um" :: after +- ; "20 % um"
+film "0.5 um +- 20 % +- 3 %" :: one value, +- and one expanded uncertainty
+film "0.5 um +-" :: one value, +- and one ; like "0.5 um +- 20 %"
+film "0,5 um +- 20 %" :: decimal point, not a comma
+film "0.5 um +- 0.1 N" :: after +-, needs a unit of length
+film { between = ["1 um", "0.2 um"] } :: between must rise; got "1 um" and "0.2 um" ; lower one first
+film { between = ["1 um"] } :: a list of two bounds; got a list of 1
+film { between = [0.2, 1] } :: between, item 1, needs a unit of length
+film { between = ["0 um", "1 um"] }
+    :: leaves the range that the study takes at the lower end ; [film] thickness must be > 0
+film { between = ["1 um", "1 m"] } :: must be <= 10 mm ; { between = ["1 um", "1 m"] }, whose mean is 500
+film { between = ["0 um", "1 um"], log = true } :: must be > 0 with log = true
+film { between = ["1 um", "2 um"], log = 1 } :: log must be true or false
+film { samples = ["1 um", "2 um"], log = true } :: only with between
+film { mean = "1 um" } :: lacks: standard_deviation
+film { mean = "1 um", standard_deviation = "1 nm", between = ["1 um", "2 um"] }
+    :: must have only one of between
+film {} :: must have between, or mean with standard_deviation, or samples
+film { betwen = ["1 um", "2 um"] } :: betwen is not a key ; Did you mean between?
+film [] :: must have 2 to 10000 samples; got 0
+film ["1 um"] :: must have 2 to 10000 samples ; without brackets
+film ["1 um", "1000 nm"] :: must differ: there is no spread
+film ["1 um", 2] :: item 2, needs a unit of length
+film ["3 um", "-1 um"] :: at the lower end, -1 um
+film [["1 um", "2 um"], "3 um"] :: item 1, needs a unit
+film { mean = "1 um", standard_deviation = "40 um" }
+    :: leaves the range that the study takes ; write { between
+[operation]\nradial_load = "0 N +- 10 %" :: is a share of 0
+[operation]\nradial_load = "0 N +- 10 N" :: at the lower end, -25 N ; radial_load must be >= 0
+[operation]\ntemperature = "-196 degC +- 2 %" :: whose zero is arbitrary ; in kelvin
+[operation]\naxial_load = "300 daN +- many" :: [operation] axial_load, after +-, must be one number
+[operation]\nfluid = { between = ["a", "b"] } :: fluid
+[film]\nrace_friction = "0.1 mm +- 10 %" :: must be a plain number
+[bearing]\ninner_conformity = "0.505 +- 0.01" :: at the lower end, 0.48 ; must be > 0.5 and <= 0.6
+[bearing]\nball_count = { between = [12, 13] } :: a list of whole numbers
+[bearing]\nball_count = "13 +- 1" :: "13 +- 1". Write it like [12, 13].
+[bearing]\nball_count = [12, 12.5] :: item 2, must be a whole number
+[bearing]\nball_count = [13, 30] :: at the upper end, 30 ; must be at most
+[stability]\nkicks = ["1 m/s +- 10 %"] :: kicks[1] takes no distribution
+[stability]\nseed = "1 +- 1" :: seed takes no distribution
+[cage]\npocket_clearance = { between = ["0.1 mm", "6 mm"] }
+    :: at the upper end, 6 mm ; smaller than the gap between balls
+[film]\nmaterial = { elastic_modulus = "2 GPa +- 0 %", poisson_ratio = 0.4 }
+    :: [film] material.elastic_modulus ; a width > 0
+[bearing]\nball_material = { density = "8 g/cm3", elastic_modulus = "2e5 MPa", poisson_ratio = "0.45 +- 0.1" }
+    :: [bearing] ball_material.poisson_ratio leaves ; must be >= 0 and < 0.5
+friction { between = [-0.1, 0.1] } :: line 5: [ranking] candidates[1].friction.air leaves ; -0.1
+SECOND :: line 9: [ranking] candidates[2].material.poisson_ratio leaves ; at the upper end, 0.7
+friction "0 +- 0.1" :: friction.air.mean must be >= 1e-05 where there is a standard deviation [-]; got 0.
+friction ["low", "high"] :: friction.air, item 1, must be a plain number
+MANY :: has more than 50 uncertain numbers; got 51
+"""
+"""A distribution, and words of its refusal."""
+
+
+@pytest.mark.parametrize(("text", "words"), rows_of(WRONG))
+def test_a_wrong_distribution_is_refused_in_one_line(text, words, tmp_path):
+    """Where it stands, what must hold and what was given, and nothing but `InputError`."""
+    kind, _, value = text.partition(" ")
+    known = {"film": film, "friction": friction, "MANY": lambda _: MANY}
+    known["SECOND"] = lambda _: friction("0.1") + SECOND
+    whole = known[kind](value) if kind in known else text + "\n"
+    message = refusal_line(written(tmp_path, HEAD + whole, "wrong.toml"))
+    assert message.startswith("wrong.toml")
+    assert [word for word in words[0].split(" ; ") if word not in message] == [], message
+
+
+TOO_FAR = {
+    "a log-normal width": film('"0.5 um +- 1e160 m"'),
+    "a log-uniform bound": friction("{ between = [1e-160, 1], log = true }"),
+    "samples of a friction": friction("[1e200, 1e-3]"),
+    "samples of a length": film('["1e308 m", "1.1e308 m"]'),
+    "samples of a count": f"[bearing]\nball_count = [12, 1{'0' * 300}]\n",
+    "a uniform bound": film('{ between = ["1 um", "1e299 m"] }'),
+    "a standard deviation": film('{ mean = "1 um", standard_deviation = "1e-200 m" }'),
+}
+
+
+@pytest.mark.parametrize("kind", TOO_FAR)
+def test_numbers_that_overflow_are_refused_in_one_line(kind, tmp_path):
+    """Where the mean, the deviation or the quantiles would leave what a computer can hold."""
+    line = refusal_line(written(tmp_path, HEAD + TOO_FAR[kind]))
+    assert re.match(r"study.toml, line \d+: .* must be", line)
+
+
+@pytest.mark.parametrize(
+    ("samples", "words"),
+    [
+        *((text, "must be a power of two from 64") for text in ("0", "-64", "32")),
+        *(("1000", "Try 1024."), ("131072", "to 65536"), ("9" * 30, "to 65536")),
+    ],
+)
+def test_a_wrong_number_of_bearings_is_refused(samples, words, capsys):
+    """Of the verb that draws them."""
+    assert words in refused(capsys, "sensitivity", "cryogenic-turbopump", "--samples", samples)
+
+
+@pytest.mark.parametrize("section", ["cage", "ranking"])
+def test_sensitivity_needs_a_cage_and_candidates(section, tmp_path, monkeypatch, capsys):
+    """They are what the question is about."""
+    monkeypatch.chdir(tmp_path)
+    sections = {
+        "cage": '[cage]\nmass = "9 g"\nball_cage_stiffness = "3e6 N/m"\npocket_clearance = "0.2 mm"\n',
+        "ranking": '[ranking]\nfriction = "pin-on-disk-77K"\n',
+    }
+    del sections[section]
+    written(tmp_path, 'extends = "le7"\n' + "".join(sections.values()))
+    assert f"[{section}] is missing" in refused(capsys, "sensitivity", "study.toml")

@@ -87,17 +87,3 @@ def test_a_test_that_a_friction_file_cannot_keep_is_refused_by_its_log(tmp_path,
     line = str(caught.value)
     assert line.startswith(f"a.csv: {words}")
     assert "\n" not in line
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"complete": True}, "a2.csv does not state: material, counterface, medium."),
-        ({"run_in": "5 N"}, "run-in must be a time"),
-    ],
-)
-def test_a_wrong_call_is_refused(folder, arguments, words):
-    """As on the command line."""
-    with pytest.raises(InputError) as caught:
-        separatrix.tribometer(folder, **arguments)
-    assert words in str(caught.value)

@@ -88,49 +88,37 @@ FAULTS = [[float(i), 0.1, Fault("#REF!"), None, Fault("#N/A")] for i in range(5)
 OVERFLOW = [[float(i), "OVL" if i == 2 else 0.1] for i in range(5)]
 BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
 MARKS = (None, "x", " NaN ", "#DIV/0!", Formula('IF(A1,"",1)', ""), Shown(None, 2))
+GAP = {"missing": ["OVL"]}
+UNITS = [["Time", "COF"], ["made", "now"], ["s", "-"], *OVERFLOW]
+SAVED = [["Zeit", "Reibzahl"], ["s", "-"], *OVERFLOW[:2], [2.0], *OVERFLOW[3:], ["end of test"]]
 READ = {
-    **{f"a missing value, {mark}": (changed(5, 1, mark), {}) for mark in MARKS},
-    "faults where nothing is read": (
-        {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *FAULTS]},
-        {},
-    ),
-    "a percentage holds a fraction": (five(Shown(0.1, 2)), {}),
-    "a percentage below a name in percent": (five(Shown(0.1, 2), "Time [s]", "COF [%]"), {}),
+    **{f"a missing value, {mark}": changed(5, 1, mark) for mark in MARKS},
+    "faults where nothing is read": {"a": [[None, Fault("#NAME?")], ["Time [s]", "COF", "Remark"], *FAULTS]},
+    "a percentage holds a fraction": five(Shown(0.1, 2)),
+    "a percentage below a name in percent": five(Shown(0.1, 2), "Time [s]", "COF [%]"),
     **{
-        f"a sign of percent that is only text, {code}": (
-            saved(five(10.0, "Time [s]", "COF [%]")["a"], code),
-            {},
-        )
+        f"a sign of percent that is only text, {code}": saved(five(10.0, "Time [s]", "COF [%]")["a"], code)
         for code in ('0.0"%"', "0\\%")
     },
-    "the saved value of a formula": (five(Formula("D1/10", 0.1)), {}),
-    "what openpyxl writes": (
-        saved([["Zeit", "Reibzahl"], ["s", "-"], *OVERFLOW[:2], [2.0], *OVERFLOW[3:], ["end of test"]]),
-        {},
-    ),
+    "the saved value of a formula": five(Formula("D1/10", 0.1)),
+    "what openpyxl writes": saved(SAVED),
     "a row of names by the map": (
         {"a": [["Time [s]", "COF"], ["seen by", "A. N."], *OVERFLOW]},
-        {"format": {"header_line": 1, "missing": ["OVL"]}},
+        {"format": {"header_line": 1} | GAP},
     ),
-    "a row of units by the map": (
-        {"a": [["Time", "COF"], ["made", "now"], ["s", "-"], *OVERFLOW]},
-        {"format": {"header_line": 1, "units_line": 3, "missing": ["OVL"]}},
-    ),
+    "a row of units by the map": ({"a": UNITS}, {"format": {"header_line": 1, "units_line": 3} | GAP}),
     "a sheet by the map": (
         {"a": [["Time [s]", "COF"], *OVERFLOW], "b": [[1.0, 2.0]] * 3},
-        {"format": {"tables": ["a"], "missing": ["OVL"]}},
+        {"format": {"tables": ["a"]} | GAP},
     ),
-    "columns by number": (
-        {"a": OVERFLOW},
-        {"format": {"separator": ";", "missing": ["OVL"]}} | BY_NUMBER,
-    ),
+    "columns by number": ({"a": OVERFLOW}, {"format": {"separator": ";"} | GAP} | BY_NUMBER),
 }
 
 
 @pytest.mark.parametrize("what", READ)
 def test_a_workbook_is_read_as_it_is_meant(tmp_path, what):
     """Friction 0.1 at five times, or at four with the one left out counted, whatever the cells hold."""
-    (found,) = logs(tmp_path, *READ[what])
+    (found,) = logs(tmp_path, *(READ[what] if isinstance(READ[what], tuple) else (READ[what],)))
     if what.startswith("a missing"):
         left = [row for i, row in enumerate(NUMBERS) if i != 5]
         assert (found.time.tolist(), found.friction.tolist()) == tuple(
@@ -146,23 +134,15 @@ def test_a_workbook_is_read_as_it_is_meant(tmp_path, what):
 IN_B7 = 'log.xlsx, sheet a: row 7, column "COF" '
 AT_B7 = IN_B7 + "must be a number; got "
 WRONG = {
-    "text among numbers": (changed(4, 1, "high"), AT_B7 + '"high". If that means a missing value'),
-    "a decimal comma as text": (changed(4, 1, "0,12"), AT_B7 + '"0,12"'),
     "a truth value": (changed(4, 1, True), AT_B7 + '"True"'),
     "a formula never computed": (
-        changed(0, 1, Formula("A5/10")),
-        'row 3, column "COF" holds a formula without a saved',
+        changed(4, 1, Formula("A5/10")),
+        IN_B7 + "holds a formula without a saved value. ",
     ),
-    "one further down": (changed(4, 1, Formula("A5/10")), IN_B7 + "holds a formula without a saved value. "),
     "an error": (changed(4, 1, Fault("#DIV/0!")), IN_B7 + "holds an error; got #DIV/0!. If that means a mis"),
-    "an error of the name of a missing value": (changed(4, 1, Fault("#N/A")), IN_B7 + "holds an error"),
     "a percentage among plain numbers": (
         changed(4, 1, Shown(0.12, 2)),
         'column "COF" is a plain number among percentages; got 0.1. Format all cells of the column alike.',
-    ),
-    "plain numbers below a percentage": (
-        changed(0, 1, Shown(0.12, 2)),
-        'log.xlsx, sheet a: row 4, column "COF" is a plain number among percentages; got 0.101.',
     ),
     "no names": (
         {"a": NUMBERS},

@@ -134,59 +134,45 @@ UNIT_STYLES = {
     "in a row with brackets": ("Time;COF;Fz", ("[s]", "[-]", "[mN]")),
     "in a row with a gap": ("T;COF;Fz", ("sec", "", "mN")),
 }
+COLUMNS = (TIME, FRICTION, FRICTION)
 TWO_MEANINGS = {"T [sec]": TIME, "t [\u00b0C]": 20 + TIME, "Friction [N]": FRICTION, "Load [N]": ONE}
 
-THE_SAME: dict[str, tuple[bytes, dict | None]] = {
-    "Anton Paar text": (raw_logs.anton_paar(FRICTION, TIME), None),
-    "Anton Paar text, nano": (raw_logs.anton_paar(FRICTION, TIME, nano=True), None),
-    "Rtec CSV": (raw_logs.rtec(FRICTION, TIME), None),
-    "Bruker UMT text": (raw_logs.umt(FRICTION, TIME), None),
-    "Phoenix Compend text": (raw_logs.compend(FRICTION, TIME), None),
+COMPEND = raw_logs.compend(FRICTION, TIME, fast_data_every=7)
+MINUS = csv({"time [s]": TIME, "Ff [N]": FRICTION, "Fn [N]": -ONE}).replace(b"-", "\u2212".encode())
+THE_SAME = {  # a log, or a log and its map
+    "Anton Paar text": raw_logs.anton_paar(FRICTION, TIME),
+    "Anton Paar text, nano": raw_logs.anton_paar(FRICTION, TIME, nano=True),
+    "Rtec CSV": raw_logs.rtec(FRICTION, TIME),
+    "Bruker UMT text": raw_logs.umt(FRICTION, TIME),
+    "Phoenix Compend text": raw_logs.compend(FRICTION, TIME),
     **{
-        f"{encoding}, {newline!r}": (
-            raw_logs.anton_paar(FRICTION, TIME, encoding=encoding, newline=newline),
-            None,
-        )
+        f"{encoding}, {newline!r}": raw_logs.anton_paar(FRICTION, TIME, encoding=encoding, newline=newline)
         for encoding in ENCODINGS
         for newline in ("\n", "\r\n", "\r")
     },
+    **{f"separator and decimal {of!r}": csv(MORE, separator=of[:-1], decimal=of[-1]) for of in DIALECTS},
     **{
-        f"separator and decimal {of!r}": (csv(MORE, separator=of[:-1], decimal=of[-1]), None)
-        for of in DIALECTS
-    },
-    **{
-        f"units {style}": (
-            csv(
-                dict(zip(names.split(";"), (TIME, FRICTION, FRICTION), strict=True)),
-                units=units,
-                separator=";",
-            ),
-            None,
-        )
+        f"units {style}": csv(dict(zip(names.split(";"), COLUMNS, strict=True)), units=units, separator=";")
         for style, (names, units) in UNIT_STYLES.items()
     },
-    "units of names with two meanings": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), None),
+    "units of names with two meanings": csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}),
     "a table that is no log, by its first line": (
         csv() + b"\nSummary\nLoad [N],Mean\n5,0.12\n6,0.13\n",
         {"format": {"ends": ["Summary"]}},
     ),
-    "in quotes, as spreadsheets write": (lines('"time [s]";"COF"', '"{T}";"{F}"'), None),
-    "decimal commas in quotes between commas": (lines('"time, s","COF, -",note', '"{T}","{F}","a, b"'), None),
-    "a remark in quotes leaves the commas of numbers": (
-        csv(separator=";", decimal=",", head=['"Probe 3, zweiter Lauf"', 'Ort;"Halle 2, links"']),
-        None,
+    "in quotes, as spreadsheets write": lines('"time [s]";"COF"', '"{T}";"{F}"'),
+    "decimal commas in quotes between commas": lines('"time, s","COF, -",note', '"{T}","{F}","a, b"'),
+    "a remark in quotes leaves the commas of numbers": csv(
+        separator=";", decimal=",", head=['"Probe 3, zweiter Lauf"', 'Ort;"Halle 2, links"']
     ),
-    "a typographic minus": (
-        csv({"time [s]": TIME, "Ff [N]": FRICTION, "Fn [N]": -ONE}).replace(b"-", "\u2212".encode()),
-        None,
-    ),
-    "metadata of as many fields as the table": (csv(separator=";", head=LONG_HEAD), None),
-    "more words than numbers": (lines("sample;phase;time [s];COF;status", "A3;steady;{t};{f};ok"), None),
-    "dates beside the numbers": (lines("date;step;time [s];COF", "2026-02-01 10:00:00;slide;{t};{f}"), None),
-    "German dates beside decimal commas": (lines("Datum;Zeit [s];Reibwert", "01.02.2026;{T};{F}"), None),
-    "closing remarks": (csv(tail=["", "stopped by operator", "Total 12:00"]), None),
-    "empty lines between rows": (csv().replace(b"\n2.0", b"\n\n  \n2.0", 1), None),
-    "lines of fast data between rows": (raw_logs.compend(FRICTION, TIME, fast_data_every=7), None),
+    "a typographic minus": MINUS,
+    "metadata of as many fields as the table": csv(separator=";", head=LONG_HEAD),
+    "more words than numbers": lines("sample;phase;time [s];COF;status", "A3;steady;{t};{f};ok"),
+    "dates beside the numbers": lines("date;step;time [s];COF", "2026-02-01 10:00:00;slide;{t};{f}"),
+    "German dates beside decimal commas": lines("Datum;Zeit [s];Reibwert", "01.02.2026;{T};{F}"),
+    "closing remarks": csv(tail=["", "stopped by operator", "Total 12:00"]),
+    "empty lines between rows": csv().replace(b"\n2.0", b"\n\n  \n2.0", 1),
+    "lines of fast data between rows": COMPEND,
     "numbers above the names, whose line the map states": (
         csv({"X": TIME, "Fx": FRICTION, "Fz": ONE}, separator=";", head=BARE_HEAD),
         {"columns": {"time": {"name": "X", "unit": "s"}} | FORCES, "format": {"header_line": 5}},
@@ -204,29 +190,22 @@ THE_SAME: dict[str, tuple[bytes, dict | None]] = {
         csv({"time [s]": TIME, "COF": 2 * FRICTION, "mu": FRICTION}),
         {"columns": {"friction": "mu"}},
     ),
-    "forces named by words and signs": (
-        csv({"t [s]": TIME, "Reibkraft FR [N]": FRICTION, "Normalkraft FN [N]": ONE}),
-        None,
-    ),
-    "forces named by signs": (csv({"t [s]": TIME, "F_t [N]": FRICTION, "F_n [N]": ONE}), None),
+    "forces named by words": csv({"t [s]": TIME, "Reibkraft FR [N]": FRICTION, "Normalkraft FN [N]": ONE}),
+    "forces named by signs": csv({"t [s]": TIME, "F_t [N]": FRICTION, "F_n [N]": ONE}),
     **{
-        f"friction named {name}": (csv({"Time [sec.]": TIME, name: FRICTION}, separator=";"), None)
+        f"friction named {name}": csv({"Time [sec.]": TIME, name: FRICTION}, separator=";")
         for name in NAMES_OF_FRICTION
     },
     **{
-        f"{mark} before the names, {separator}": (
-            csv({f"{mark}time [s]": TIME, "COF": FRICTION}, separator=separator),
-            None,
+        f"{mark} before the names, {separator}": csv(
+            {f"{mark}time [s]": TIME, "COF": FRICTION}, separator=separator
         )
         for mark in ("# ", "#", "% ")
         for separator in (";", "  ")
     },
     **{
-        f"exponents with {letter}, {row}": (
-            lines("time [s];COF", row).replace(b"e-01", letter.encode() + b"-01"),
-            None,
-        )
-        for letter in "EDd"
+        f"exponents with {letter}, {row}": lines("time [s];COF", row).replace(b"e-01", b"%b-01" % letter)
+        for letter in (b"E", b"D", b"d")
         for row in ("{t};{e}", "{T};{E}")
     },
 }
@@ -247,7 +226,7 @@ LOGGED = {  # columns beside friction and time
 @pytest.mark.parametrize("what", THE_SAME)
 def test_the_friction_written_is_read(tmp_path, what):
     """To the last digit, however it is written, and with whatever beside it, above it and below it."""
-    content, given = THE_SAME[what]
+    content, given = THE_SAME[what] if isinstance(THE_SAME[what], tuple) else (THE_SAME[what], None)
     log = read(tmp_path, content, given and column_map(given))
     np.testing.assert_array_equal(log.friction, as_written(FRICTION))
     np.testing.assert_array_equal(log.time, as_written(TIME))
@@ -271,49 +250,29 @@ PATTERNS = {
     },
 }
 FOLDERS = {"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}}
+ANTON = {"sample": "A1", "slip_speed": 0.1, "normal_force": 5.0, "temperature": 295.15}
+TURNING = {"slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5, "sample": "disk 7", "material": "Armalon"}
+PIN = {"normal_force": "100 N", "pin_diameter": "6 mm"}
+COLD = {"environment": "liquid nitrogen, 440C", "material": "Armalon", "temperature": 77.0}
+UNKNOWN = csv(head=["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"])
 CONDITIONS = {
-    "Anton Paar: radius 15 mm at 10 cm/s and 5 N": (
-        ANTON_PAAR,
-        {},
-        {"sample": "A1", "slip_speed": 0.1, "normal_force": 5.0, "temperature": 295.15}
-        | {"cycle_time": 2 * math.pi * 0.015 / 0.1},
-    ),
+    "Anton Paar: radius 15 mm": (ANTON_PAAR, {}, ANTON | {"cycle_time": 2 * math.pi * 0.015 / 0.1}),
     "millinewtons": (raw_logs.anton_paar(FRICTION, TIME, nano=True), {}, {"normal_force": 5.0}),
     "a stroke's greatest speed is not its sliding speed": (STROKES, {}, {"slip_speed": None}),
     "UMT keys without units": (UMT, {}, {"slip_speed": None}),
-    "Rtec, 120 rpm on a radius of 20 mm": (
-        RTEC,
-        {"test": {"track_radius": "20 mm", "material": "Armalon"}},
-        {"material": "Armalon", "slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5, "sample": "disk 7"},
-    ),
-    "Rtec, two keys over two values": (
-        b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC,
-        {},
-        {"sample": "disk 7"},
-    ),
+    "Rtec": (RTEC, {"test": {"track_radius": "20 mm", "material": "Armalon"}}, TURNING),
+    "Rtec, two keys": (b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC, {}, {"sample": "disk 7"}),
     "Rtec, one key is no table": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
     "Rtec, a bare carriage return": (RTEC.replace(b"e\r\ndisk", b"e\rdisk"), {}, {"sample": "disk 7"}),
     "a speed in rpm": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), {}, {"cycle_time": 1.0}),
     "a comment": (csv(head=["# material: Armalon"]), {}, {"material": "Armalon"}),
     "a measured column with gaps": (GAPS, {}, {"temperature": 293.15}),
     "the map before the metadata": (ANTON_PAAR, {"test": {"normal_force": "6 N"}}, {"normal_force": 6.0}),
-    "pressure of a flat pin": (
-        csv(),
-        {"test": {"normal_force": "100 N", "pin_diameter": "6 mm"}},
-        {"pressure": 100.0 / (9.0 * math.pi) * 1e6},
-    ),
-    "patterns, in the order written: armalon_3_ln2.txt": (
-        csv(),
-        PATTERNS,
-        {"environment": "liquid nitrogen, 440C", "material": "Armalon", "temperature": 77.0},
-    ),
+    "pressure of a flat pin": (csv(), {"test": PIN}, {"pressure": 100.0 / (9.0 * math.pi) * 1e6}),
+    "patterns, in the order written: armalon_3_ln2.txt": (csv(), PATTERNS, COLD),
     "a pattern with the folder: armalon/a.csv": (csv(), FOLDERS, {"material": "Armalon", "sample": "A"}),
     "a pattern with another folder: peek/a.csv": (csv(), FOLDERS, {"material": None, "sample": "A"}),
-    "a load that is known, a diameter that is not": (
-        csv(head=["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"]),
-        {},
-        {"normal_force": 50.0},
-    ),
+    "a load that is known, a diameter that is not": (UNKNOWN, {}, {"normal_force": 50.0}),
 }
 NOTES = {
     "a stroke's": ["slip_speed below [test]"],
@@ -392,69 +351,46 @@ def test_each_step_of_a_file_is_a_log(tmp_path):
 SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
 LOAD = np.where(np.isin(np.arange(ROWS), (3, 4)), -0.5, 10.0)
 FEW = np.arange(ROWS) % 20 == 5
-TEN = {"time [s]": TIME, "Ff [N]": FRICTION * 10.0}
+TEN = {"Ff [N]": FRICTION * 10.0}
 TORQUES = [("Torque [Nm]", {}, 1.0), ("Drehmoment", {"unit": "N mm"}, 1e3), ("Moment", {"unit": "mNm"}, 1e3)]
-MADE = {
-    "forces of Compend": (
-        raw_logs.compend(FRICTION, TIME, coefficient=False),
-        None,
-        as_written(FRICTION * 20.0) / 20.0,
-        "",
-    ),
+TENFOLD = as_written(FRICTION * 10.0) / 10.0
+BY_TEN = {"test": {"normal_force": "10 N"}}
+
+
+def named(name, unit):
+    """Return a map in which a column of this name and unit is a force on a radius."""
+    return {"columns": {"tangential_force": {"name": name} | unit}, "test": {"track_radius": "20 mm"}}
+
+
+MADE = {  # columns beside the time, the friction made of them, begin of a note, map
     **{
         f"a torque that the map names {name}": (
-            {"time [s]": TIME, name: 0.012 * size * ONE, "Fz [N]": 10.0 * ONE},
-            {
-                "columns": {"tangential_force": {"name": name} | unit},
-                "test": {"track_radius": "20 mm"},
-            },
-            0.06 * ONE,
-            "",
+            *({name: 0.012 * size * ONE, "Fz [N]": 10.0 * ONE}, 0.06 * ONE, "", named(name, unit)),
         )
         for name, unit, size in TORQUES
     },
-    "percent": (
-        {"time [s]": TIME, "COF [%]": FRICTION * 100.0},
-        None,
-        as_written(FRICTION * 100.0) / 100.0,
-        "",
-    ),
+    "percent": ({"COF [%]": FRICTION * 100.0}, as_written(FRICTION * 100.0) / 100.0, "", None),
     "a constant load of the map": (
-        TEN,
-        {"test": {"normal_force": "10 N"}},
-        as_written(FRICTION * 10.0) / 10.0,
-        "friction is |tangential force| / 10 N, the constant given",
+        *(TEN, TENFOLD, "friction is |tangential force| / 10 N, the constant given", BY_TEN),
     ),
     "a constant load of the map and a column without load": (
-        TEN | {"Fn [N]": 0.0 * ONE},
-        {"test": {"normal_force": "10 N"}},
-        as_written(FRICTION * 10.0) / 10.0,
-        "the column of normal force has no load in any row and is not used",
+        *(TEN | {"Fn [N]": 0.0 * ONE}, TENFOLD, "the column of normal force has no load in any row", BY_TEN),
     ),
     "compression that counts negative": (
-        TEN | {"Fn [N]": -10.0 * ONE},
-        None,
-        as_written(FRICTION * 10.0) / 10.0,
-        "the normal force is negative in the file: compression counts negative there",
+        *(TEN | {"Fn [N]": -10.0 * ONE}, TENFOLD, "the normal force is negative in the file", None),
     ),
     "rows without compression": (
-        TEN | {"Fn [N]": LOAD},
-        None,
-        as_written(FRICTION * 10.0)[LOAD > 0] / 10.0,
-        "2 rows without compression",
+        *(TEN | {"Fn [N]": LOAD}, TENFOLD[LOAD > 0], "2 rows without compression", None),
     ),
     "strokes there and back": (
-        {"time [s]": TIME, "COF": SIGN * FRICTION},
-        None,
-        as_written(FRICTION),
-        "friction is negative in 30 of 60 rows",
+        *({"COF": SIGN * FRICTION}, as_written(FRICTION), "friction is negative in 30 of 60 rows", None),
     ),
     **{
         f"a code of {code} for a missing value": (
-            {"time [s]": TIME, "COF": np.where(FEW, code, FRICTION)},
-            None,
+            {"COF": np.where(FEW, code, FRICTION)},
             as_written(FRICTION[~FEW]),
             f"friction is above 5 in 3 of 60 rows (up to {abs(code):.4g})",
+            None,
         )
         for code in (-999.0, 99.99, 9.9e37)
     },
@@ -464,9 +400,8 @@ MADE = {
 @pytest.mark.parametrize("what", MADE)
 def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
     """With a note on what was done, and the rows left out counted; a code is not called negative."""
-    columns, given, friction, note = MADE[what]
-    content = columns if isinstance(columns, bytes) else csv(columns)
-    log = read(tmp_path, content, given and column_map(given))
+    columns, friction, note, given = MADE[what]
+    log = read(tmp_path, csv({"time [s]": TIME} | columns), given and column_map(given))
     np.testing.assert_allclose(log.friction, friction, rtol=ULP)
     assert ("divided by the radius of the track" in "\n".join(described(log))) == ("torque" in what)
     assert log.missing == ROWS - len(friction)
@@ -487,6 +422,12 @@ def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units
         np.testing.assert_array_equal(log.time, as_written(TIME))
 
 
+def test_forces_of_compend_make_a_friction(tmp_path):
+    """Row by row, where no coefficient is logged."""
+    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
+    np.testing.assert_allclose(log.friction, as_written(FRICTION * 20.0) / 20.0, rtol=ULP)
+
+
 def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
     """Without a line between, or with one that names the test."""
     one, two = (raw_logs.plain_csv({"time [s]": TIME, "COF": f}) for f in (FRICTION, FRICTION + 0.1))
@@ -500,17 +441,6 @@ def test_a_last_value_that_may_be_cut_off_is_noted(tmp_path):
     """With fewer digits than all others; a whole file has no such note."""
     notes = [read(tmp_path, content).notes for content in (csv(), csv()[:-4])]
     assert [any("may be cut off" in note for note in one) for one in notes] == [False, True]
-
-
-def test_friction_is_tangential_over_normal_force(tmp_path):
-    """Where no coefficient is logged, the magnitude of the ratio, row by row."""
-    load = 10.0 + 0.1 * np.cos(TIME)
-    stroke = np.sign(np.sin(TIME + 0.1))
-    columns = {"time [s]": TIME, "Fx [N]": stroke * FRICTION * load, "Fz [N]": load}
-    log = read(tmp_path, raw_logs.plain_csv(columns))
-    np.testing.assert_array_equal(log.friction, np.abs(log.tangential_force) / log.normal_force)
-    assert (log.tangential_force < 0.0).any()
-    assert log.conditions.normal_force == pytest.approx(np.median(load), abs=1e-6)  # six decimals
 
 
 def test_description_shows_columns_units_and_reasons(tmp_path):

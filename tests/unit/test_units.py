@@ -8,6 +8,7 @@ import pytest
 from separatrix.ground import units
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import UNITS, format_number, format_quantity, parse
+from separatrix.study.study import BallBearing, CageDesign, StabilitySettings
 
 PINT_NAMES = {
     "lbf in": "lbf * inch",
@@ -99,53 +100,33 @@ def test_temperatures_are_absolute():
 WRONG = {
     "bare number": (11.1, "m", 'needs a unit of length; got 11.1. Write "11.1 mm".'),
     "bare number as text": ("11.1", "m", 'needs a unit of length; got "11.1". Write "11.1 mm".'),
-    "integer": (3000, "N", 'Write "3000 N".'),
     "bool": (True, "m", "needs a unit of length; got true."),
-    "nothing": (None, "m", "needs a unit of length"),
-    "list": ([1], "m", "got a list"),
     "empty": ("", "m", "one number and one unit of length"),
     "unit only": ("mm", "m", "one number and one unit of length"),
     "two numbers": ("1 2 mm", "m", "one number and one unit of length"),
-    "two units": ("1 mm 2 um", "m", "needs a unit of length"),
-    "wrong dimension": (
-        "3 N",
-        "m",
-        'needs a unit of length (m, cm, mm, um, ...); got "3 N", which is a force.',
-    ),
-    "moment for force": ("3 N m", "N", "needs a unit of force"),
+    "wrong dimension": ("3 N", "m", 'unit of length (m, cm, mm, um, ...); got "3 N", which is a force.'),
     "rad/s for rpm of frequency": ("3 rad/s", "Hz", "which is a rotational speed"),
     "decimal comma": ("1,5 mm", "m", 'needs a decimal point, not a comma; got "1,5 mm". Write "1.5 mm".'),
-    "thousands": ("1,500.5 mm", "m", "not a comma"),
     "case": ("3 Mpa", "Pa", 'Did you mean "MPa"?'),
-    "unknown": ("3 furlong", "m", "needs a unit of length"),
     "nan": ("nan mm", "m", "finite"),
-    "inf": ("-inf mm", "m", "finite"),
     "infinity": ("Infinity mm", "m", "finite"),
     "expression": ("9**9**9 m", "m", "one number and one unit"),
-    "product": ("2*3 mm", "m", "one number and one unit"),
-    "fraction": ("1/2 mm", "m", "one number and one unit"),
     "underscore": ("1_000 mm", "m", "one number and one unit"),
     "hexadecimal": ("0x10 mm", "m", "needs a unit of length"),
-    "two spaces": ("1  mm", "m", "one number and one unit"),
-    "tab": ("1\tmm", "m", "one number and one unit"),
     "newline": ("1 mm\n", "m", "one number and one unit"),
     "no-break space": ("1\u00a0mm", "m", "one number and one unit"),
     "Arabic digits": ("\u0663 mm", "m", "one number and one unit"),
-    "full-width digits": ("\uff13 mm", "m", "one number and one unit"),
     "minus sign": ("\u22123 mm", "m", "one number and one unit"),
     "overflow": ("1e999 m", "m", "computer can hold"),
     "overflow by the unit": ("1e308 kN", "N", "computer can hold"),
     "underflow": ("1e-999 m", "m", "computer can hold"),
     "long exponent": ("1e9999999999 m", "m", "needs a unit"),
-    "long": ("1" * 60 + " mm", "m", "at most 60 characters"),
     "very long": ("1" * 1_000_000, "m", "at most 60 characters"),
-    "per cent": ("3 %", "m", "one number and one unit"),
     **{
         text: (text, "rad/s", "one number and one unit")  # not groups of three digits
         for text in ("40'00 rpm", "4'0000 rpm", "'400 rpm", "1.5'000 rpm", "40'000'0 rpm")
     },
     "forty or forty thousand": ("40,000 rpm", "rad/s", 'Write "40000 rpm" or "40.000 rpm"'),
-    "plain 1/s": ("250 1/s", "rad/s", "unit of rotational speed"),
     "escape": ("1 m\x1b[31m", "m", "needs a unit of length"),
 }
 
@@ -164,42 +145,25 @@ def test_what_is_not_one_number_and_one_unit_is_refused(text, si, words):
 
 
 def test_the_unit_of_a_field_is_read_from_its_type():
-    """One place says the unit: the annotation."""
-    from separatrix.study.study import BallBearing, CageDesign, StabilitySettings
-
-    assert units.unit_of(BallBearing, "ball_diameter") == "m"
-    assert units.unit_of(BallBearing, "bore") == "m"
-    assert units.unit_of(BallBearing, "ball_count") == ""
-    assert units.unit_of(CageDesign, "land_friction") == "-"
-    assert units.unit_of(StabilitySettings, "kicks") == "m/s"
+    """One place says the unit: the annotation, also of a tuple and of what may be left out."""
+    known = {(BallBearing, "bore"): "m", (BallBearing, "ball_count"): "", (CageDesign, "land_friction"): "-"}
+    known[StabilitySettings, "kicks"] = "m/s"
+    assert {field: units.unit_of(*field) for field in known} == known
 
 
-@pytest.mark.parametrize(
-    ("value", "unit", "text"),
-    [
-        (0.0111125, "m", "11.11 mm"),
-        (1.5, "m", "1.5 m"),
-        (0.0, "m", "0 mm"),
-        (-5.193e-5, "m", "-51.93 um"),
-        (5e-7, "m", "500 nm"),
-        (1570.7963267948966, "rad/s", "15000 rpm"),
-        (0.4363323129985824, "rad", "25 deg"),
-        (3000.0, "N", "3000 N"),
-        (22250.0, "N", "22.25 kN"),
-        (2e11, "Pa", "200 GPa"),
-        (1.5224e9, "Pa", "1.522 GPa"),
-        (0.025, "kg", "25 g"),
-        (3e6, "N/m", "3 MN/m"),
-        (3979.4, "N s/m", "3979 N s/m"),
-        (2.64e-5, "kg m2", "26.4 kg mm2"),
-        (77.0, "K", "77 K"),
-        (0.09, "-", "0.09"),
-        (123456789.0, "-", "1.235e+08"),
-        (1e-9, "-", "1e-09"),
-        (None, "m", "none"),
-    ],
-)
-def test_values_are_shown_in_the_unit_an_engineer_would_choose(value, unit, text):
+SHOWN = """
+0.0111125 m = 11.11 mm; 1.5 m = 1.5 m; 0.0 m = 0 mm; -5.193e-5 m = -51.93 um; 5e-7 m = 500 nm
+1570.7963267948966 rad/s = 15000 rpm; 0.4363323129985824 rad = 25 deg; 3000.0 N = 3000 N; 22250.0 N = 22.25 kN
+2e11 Pa = 200 GPa; 1.5224e9 Pa = 1.522 GPa; 0.025 kg = 25 g; 3e6 N/m = 3 MN/m; 3979.4 N s/m = 3979 N s/m
+2.64e-5 kg m2 = 26.4 kg mm2; 77.0 K = 77 K; 0.09 - = 0.09; 123456789.0 - = 1.235e+08; 1e-9 - = 1e-09
+"""
+
+
+@pytest.mark.parametrize("row", SHOWN.strip().replace("\n", "; ").split("; "))
+def test_values_are_shown_in_the_unit_an_engineer_would_choose(row):
     """Four digits, a handy prefix, no exponent where a plain number is readable, no sign of a zero."""
-    assert format_quantity(value, unit) == text
+    quantity, text = row.split(" = ")
+    value, unit = quantity.split(" ", 1)
+    assert format_quantity(float(value), unit) == text
+    assert format_quantity(None, unit) == "none"
     assert format_number(-0.0) == "0"

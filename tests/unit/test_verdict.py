@@ -48,76 +48,77 @@ TOO_FEW = "Too few runs for a verdict: 3 from each disturbance; set [stability] 
 OFF = "The motion settles, but the cage centre"
 FED = {"whirl_frequency": 1500.0, "pocket_power": 11.0, "land_power": -3.0}
 RUBS = {"rubbing_force": 4.0, "rubbing_speed": 3.0}
+ON_ITS_LAND = "the cage then rubs on its land with 4 N at 3 m/s (1.2 W)."
+
+
+def case(rows, found, reason, cage=CAGE, **evidence):
+    """Runs of a cage, what is judged of them, and what the reason begins with."""
+    return cage, rows, evidence, found, reason
+
+
+ROLLING_CAGE = (
+    "All of the runs settle or roll in their pockets from the worst disturbance, 0.1 m/s; 75 % roll, with up "
+    "to 20 N in a pocket, fed 700 mW (medians)."
+)
+DRIFTING_CAGE = (
+    "The cage has no land and drifts: its offset passed 0.6 mm, the pocket clearance, in 12 of 60 runs"
+)
+NOT_CLEAR = "No clear answer from 0.1 m/s"
 JUDGED = [
-    (CAGE, many(16), {}, "STABLE CENTRED", f"{ALL_SETTLE}."),
-    (CAGE, many(0, 16), FED, "UNSTABLE WHIRLING", f"{ALL_WHIRL}; friction feeds the cage 11 W."),
-    (
-        *(CAGE, many(0, 16), {"whirl_frequency": 1500.0}, "UNSTABLE WHIRLING"),
+    case(many(16), "STABLE CENTRED", f"{ALL_SETTLE}."),
+    case(many(0, 16), "UNSTABLE WHIRLING", f"{ALL_WHIRL}; friction feeds the cage 11 W.", **FED),
+    case(
+        *(many(0, 16), "UNSTABLE WHIRLING"),
         f"{ALL_WHIRL}; the energy passes 100 times that of disturbance and frame.",
+        whirl_frequency=1500.0,
     ),
     # 42 of 64 lie above one half beyond their scatter, 38 do not; settling needs nine in ten
-    (CAGE, many(22, 42), {}, "UNSTABLE WHIRLING", "66 % of the runs from 0.1 m/s whirl"),
-    (CAGE, many(26, 38), {}, "UNDECIDED WHIRLING", "No clear answer from 0.1 m/s"),
-    (CAGE, many(57, 7), {}, "UNDECIDED CENTRED", "No clear answer from 0.1 m/s"),
-    (CAGE, many(58, 6), {}, "STABLE CENTRED", "91 % of the runs settle"),
-    (
-        CAGE,
-        many(8, 8),
-        {},
-        "UNDECIDED WHIRLING",
-        "No clear answer from 0.1 m/s: of 16 runs 8 settle, 8 whirl.",
-    ),
+    case(many(22, 42), "UNSTABLE WHIRLING", "66 % of the runs from 0.1 m/s whirl"),
+    case(many(26, 38), "UNDECIDED WHIRLING", NOT_CLEAR),
+    case(many(57, 7), "UNDECIDED CENTRED", NOT_CLEAR),
+    case(many(58, 6), "STABLE CENTRED", "91 % of the runs settle"),
+    case(many(8, 8), "UNDECIDED WHIRLING", f"{NOT_CLEAR}: of 16 runs 8 settle, 8 whirl."),
     # rolling in the pockets counts as settling; what most runs do is told with force and power
-    (
-        *(CAGE, many(4, 0, 0, 0, 12), {"largest_contact_force": 20.0, "pocket_power": 0.7}, "STABLE ROLLING"),
-        "All of the runs settle or roll in their pockets from the worst disturbance, 0.1 m/s; 75 % roll, "
-        "with up to "
-        "20 N in a pocket, fed 700 mW (medians).",
+    case(
+        *(many(4, 0, 0, 0, 12), "STABLE ROLLING", ROLLING_CAGE), largest_contact_force=20.0, pocket_power=0.7
     ),
-    (CAGE, many(9, 0, 0, 0, 7), {}, "STABLE CENTRED", "All of the runs settle or roll in their pockets from"),
-    (
-        *(CAGE, many(2, 6, 0, 0, 8), {}, "UNDECIDED ROLLING"),
-        "No clear answer from 0.1 m/s: of 16 runs 2 settle, 8 roll, 6 whirl.",
-    ),
-    (CAGE, many(3), {}, "UNDECIDED CENTRED", TOO_FEW),
-    (CAGE, many(0, 3), {}, "UNDECIDED WHIRLING", TOO_FEW),
-    (CAGE, many(4), {}, "STABLE CENTRED", ALL_SETTLE),
-    (CAGE, many(0, 4), {}, "UNSTABLE WHIRLING", "All of the runs from 0.1 m/s whirl"),
+    case(many(9, 0, 0, 0, 7), "STABLE CENTRED", "All of the runs settle or roll in their pockets from"),
+    case(many(2, 6, 0, 0, 8), "UNDECIDED ROLLING", f"{NOT_CLEAR}: of 16 runs 2 settle, 8 roll, 6 whirl."),
+    case(many(3), "UNDECIDED CENTRED", TOO_FEW),
+    case(many(0, 3), "UNDECIDED WHIRLING", TOO_FEW),
+    case(many(4), "STABLE CENTRED", ALL_SETTLE),
+    case(many(0, 4), "UNSTABLE WHIRLING", "All of the runs from 0.1 m/s whirl"),
     # one run beyond the range of numbers keeps a cage from STABLE: nothing is known of how far it went
-    (
-        *(CAGE, [*many(16)[:2], many(15, 0, 0, 1)[0]], {"cause": int(Cause.NOT_FINITE)}, "UNDECIDED CENTRED"),
+    case(
+        *([*many(16)[:2], many(15, 0, 0, 1)[0]], "UNDECIDED CENTRED"),
         "In 1 of 48 runs the motion leaves the range of numbers; lower",
+        cause=int(Cause.NOT_FINITE),
     ),
     # a few other unresolved runs do not hide the others
-    (CAGE, many(15, 0, 0, 1), {}, "STABLE CENTRED", "94 % of the runs settle"),
-    (CAGE, many(13, 0, 0, 3), {}, "UNDECIDED CENTRED", "Of 16 runs from 0.1 m/s 13 settle, 3 are unresolved"),
-    (
-        *(CAGE, many(16, 0, 4), {"largest_offset": [[1e-4] * 16 + [7e-4] * 4] * 3}, "UNDECIDED CENTRED"),
-        "The cage has no land and drifts: its offset passed 0.6 mm, the pocket clearance, in 12 of 60 runs",
-    ),
-    (CAGE, many(7, 0, 9), {}, "UNDECIDED DRIFTING", "The cage has no land and drifts"),
-    (
-        *(GUIDED, many(8), RUBS, "STABLE ON_THE_LAND"),
-        f"{ALL_SETTLE}; the cage then rubs on its land with 4 N at 3 m/s (1.2 W).",
-    ),
+    case(many(15, 0, 0, 1), "STABLE CENTRED", "94 % of the runs settle"),
+    case(many(13, 0, 0, 3), "UNDECIDED CENTRED", "Of 16 runs from 0.1 m/s 13 settle, 3 are unresolved"),
+    case(many(16, 0, 4), "UNDECIDED CENTRED", DRIFTING_CAGE, largest_offset=[[1e-4] * 16 + [7e-4] * 4] * 3),
+    case(many(7, 0, 9), "UNDECIDED DRIFTING", "The cage has no land and drifts"),
+    case(many(8), "STABLE ON_THE_LAND", f"{ALL_SETTLE}; {ON_ITS_LAND}", GUIDED, **RUBS),
     # a land of 8 mm holds the cage, but 4 mm off in pockets of 0.6 mm nobody calls it stable
-    (
-        WIDE,
-        many(16),
-        {"mean_offset": 4e-3},
-        "UNDECIDED CENTRED",
-        f"{OFF} ends up to 4 mm off in 48 of 48 runs",
+    case(
+        many(16), "UNDECIDED CENTRED", f"{OFF} ends up to 4 mm off in 48 of 48 runs", WIDE, mean_offset=4e-3
     ),
-    (
-        *(WIDE, many(16), {"mean_offset": [[0.0] * 16, [0.0] * 13 + [4e-3] * 3, [0.0] * 16]}),
-        *("UNDECIDED CENTRED", f"{OFF} ends up to 4 mm off in 3 of 48 runs"),
+    case(
+        *(many(16), "UNDECIDED CENTRED", f"{OFF} ends up to 4 mm off in 3 of 48 runs", WIDE),
+        mean_offset=[[0.0] * 16, [0.0] * 13 + [4e-3] * 3, [0.0] * 16],
     ),
     # twice the half play of 0.3 mm, or twice the land's gap if that is larger, in one run of any kick
-    (
-        *(GUIDED, many(16), {"largest_offset": once(3e-4, 6.1e-4)}, "UNDECIDED CENTRED"),
-        f"{OFF} reached 0.61 mm, more than 0.6 mm (clearance 0.2 mm)",
+    case(
+        *(
+            many(16),
+            "UNDECIDED CENTRED",
+            f"{OFF} reached 0.61 mm, more than 0.6 mm (clearance 0.2 mm)",
+            GUIDED,
+        ),
+        largest_offset=once(3e-4, 6.1e-4),
     ),
-    (GUIDED, many(16), {"largest_offset": once(3e-4, 5.9e-4)}, "STABLE CENTRED", ALL_SETTLE),
+    case(many(16), "STABLE CENTRED", ALL_SETTLE, GUIDED, largest_offset=once(3e-4, 5.9e-4)),
 ]
 
 
@@ -196,29 +197,19 @@ RACE = SlipField(
 FREE = FreeBall(mass=1e-3, inertia=1e-8, inner=RACE, outer=RACE, fastest_rate=1e4)
 
 
-@pytest.mark.parametrize(
-    ("level", "first", "share", "balls", "said"),
-    [
-        (
-            BallModel.AUTO,
-            WHIRLS,
-            0.3,
-            ["one state", "free"],
-            "reaches 30 % of what the races hold; with one state",
-        ),
-        (BallModel.AUTO, WHIRLS, 0.2, ["one state"], "below 25 % one state is enough."),
-        (
-            BallModel.AUTO,
-            SETTLES,
-            0.3,
-            ["one state"],
-            "A cage that is stable with one state is stable among free",
-        ),
-        (BallModel.TRACTION, WHIRLS, 0.3, ["one state"], None),
-        (BallModel.FREE, WHIRLS, 0.3, ["free"], None),
-        (BallModel.DAMPER, WHIRLS, 0.3, ["damper"], None),
-    ],
-)
+ONE_IS_ENOUGH = "A cage that is stable with one state is stable among free"
+REACHED = "reaches 30 % of what the races hold; with one state"
+ASKED = [
+    (BallModel.AUTO, WHIRLS, 0.3, ["one state", "free"], REACHED),
+    (BallModel.AUTO, WHIRLS, 0.2, ["one state"], "below 25 % one state is enough."),
+    (BallModel.AUTO, SETTLES, 0.3, ["one state"], ONE_IS_ENOUGH),
+    (BallModel.TRACTION, WHIRLS, 0.3, ["one state"], None),
+    (BallModel.FREE, WHIRLS, 0.3, ["free"], None),
+    (BallModel.DAMPER, WHIRLS, 0.3, ["damper"], None),
+]
+
+
+@pytest.mark.parametrize(("level", "first", "share", "balls", "said"), ASKED)
 def test_free_balls_are_asked_before_unstable_is_said(level, first, share, balls, said, monkeypatch):
     """Where a whirl's friction is above a quarter of what the races hold, and no ball is forced."""
     kinds = {"damper": CAGE, "one state": replace(CAGE, traction=LAW), "free": replace(CAGE, free_ball=FREE)}

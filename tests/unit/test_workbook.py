@@ -1,6 +1,5 @@
 """Workbooks that are written: a study reads back the same, results hold what `rank.json` does."""
 
-import json
 import re
 import tomllib
 import zipfile
@@ -12,7 +11,6 @@ import pytest
 from minimal_xlsx import Formula, Shown, workbook
 from rich_studies import PLANE, SPACE
 
-import separatrix
 from separatrix.front import main
 from separatrix.ground.sheet import add_sheet, new_workbook, put, workbook_bytes
 from separatrix.ground.units import parse
@@ -49,23 +47,6 @@ name = "@SUM(1)"
 friction = { "air" = 0.1 }
 material = "Armalon"
 """
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A folder with the study above."""
-    place = tmp_path_factory.mktemp("workbooks")
-    (place / "small.toml").write_text(STUDY)
-    return place
-
-
-@pytest.fixture(scope="module")
-def answer(folder):
-    """The document of a small ranking, as it is saved."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("separatrix.verbs.answer_files._draw", lambda *_: None)  # they take long
-        assert main(["rank", str(folder / "small.toml"), "--out", str(folder / "out"), "--quiet"]) == 0
-    return json.loads((folder / "out" / "rank.json").read_text())
 
 
 def typed(key, value):
@@ -259,34 +240,6 @@ def test_a_text_file_may_extend_a_workbook(tmp_path):
     assert (over.film.thickness, over.cage.mass, over.ranking) == (1e-7, 0.026, base.ranking)
 
 
-# Results
-
-
-def cells(path):
-    """Return every cell of a workbook that holds something, with its sheet."""
-    return [
-        (s.title, c) for s in openpyxl.load_workbook(path) for row in s for c in row if c.value is not None
-    ]
-
-
-@pytest.fixture(scope="module")
-def data(folder, answer):
-    """The dataset of the small ranking, for its units."""
-    return separatrix.load(folder / "out" / "rank.json")
-
-
-EVIL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+1", "-2+3", "\t=1+1", "\r=1", " =1+1", "＝1+1", "\x07bell"]
-
-
-def with_text_everywhere(value, text):
-    """Return a document with every text in it replaced, except units."""
-    if isinstance(value, dict):
-        return {k: v if k == "unit" else with_text_everywhere(v, text) for k, v in value.items()}
-    if isinstance(value, list):
-        return [with_text_everywhere(item, text) for item in value]
-    return text if isinstance(value, str) else value
-
-
 def test_what_we_write_we_read(tmp_path):
     """Numbers and texts put into cells come back through our own reader."""
     book = new_workbook()
@@ -299,12 +252,3 @@ def test_what_we_write_we_read(tmp_path):
     assert tuple(found.cells[1, n].value if (1, n) in found.cells else None for n in range(1, 8)) == written
     with zipfile.ZipFile(tmp_path / "a.xlsx") as archive:
         assert b"_x005F_x003D_1<" in archive.read("xl/worksheets/sheet1.xml")  # else shown and exported as =1
-
-
-def test_a_study_in_a_workbook_is_ranked(folder, answer, capsys):
-    """Every verb takes a workbook: its ranking is that of the same study as text."""
-    (folder / "small.xlsx").write_bytes(in_workbook(STUDY))
-    capsys.readouterr()
-    assert main(["rank", str(folder / "small.xlsx"), "--json", "--quiet"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["overall"] == answer["overall"]

@@ -35,32 +35,24 @@ def changed(content: bytes, line: int, text: str) -> bytes:
 
 BACK = np.where(np.arange(20) == 12, 1.0, TIME)
 BOTH = np.where(np.arange(20) % 2 == 0, 10.0, -10.0)
-TWO = {"time [s]": TIME, "COF": FRICTION, "mu": FRICTION}
 
 WRONG = {
     "an empty file": (b"", "log.txt is empty."),
     "a header only": (lines("time [s],COF"), "has no table of numbers with two columns or more"),
     "one row only": (lines("time [s],COF", "0.0,0.1"), "line 2 is the only row"),
     "a binary file": (bytes(range(256)) * 20, "is not a text file (it has NUL or control characters)"),
-    "control characters": (b"time [s],COF\n\x010,1\n", "is not a text file"),
     "an old Excel file": (b"\xd0\xcf\x11\xe0" + b"\0" * 600, "is an old Excel workbook, not text. Save it as .xlsx"),
     "a compressed file": (b"\x1f\x8b\x08" + b"a" * 99, "is compressed (gzip), not text. Unpack it first."),
     "a byte that Windows-1252 lacks": (csv() + b"caf\xe9 \x81\n", "line 22 cannot be read as cp1252 text; got byte 0x81"),
-    "one column": (lines("COF", "0.1", "0.2", "0.3"), "has no table of numbers with two columns or more"),
     "no header": (csv().split(b"\n", 1)[1], "has 2 open questions, the first: which column is the friction"),
     "a row with too few fields": (changed(csv(), 9, "3.5"), "has an open question: line 9 is among the rows and is left out: '3.5'"),
-    "a row with too many fields": (changed(csv(), 9, "3.5,0.1,7"), "has an open question: line 9 is among the rows and is left out: '3.5,0.1,7'"),
     "a last row cut off": (csv() + b"10.0", 'line 22 has 1 fields where the rows before it have 2; got "10.0"'),
-    "text among the rows": (changed(csv(), 9, "pump stopped"), "has an open question: line 9 is among the rows and is left out: 'pump stopped'"),
     "text in a number column": (changed(csv(), 9, "3.5,abc"), 'line 9, column "COF" must be a number; got "abc"'),
-    "a blank in a number": (changed(csv(), 9, "3.5,1 000"), 'line 9, column "COF" must be a number; got "1 000"'),
     "a decimal comma in one row": (changed(csv(separator=";"), 9, "3,5;0,1"), 'has an open question: has points and commas in its numbers: "3.000000" and "3,5"'),
-    "two points in a number": (changed(csv(separator=";"), 9, "3.5;1.000.0"), "has points and commas in its numbers"),
     "marks between thousands": (lines("time [s];COF", *(f"{i},000.5;0.1" for i in range(1, 9))), 'has an open question: has points and commas in its numbers: "1,000.5"'),
     "decimals or thousands": (lines("time [s];COF", *(f"{i},250;{i},125" for i in range(1, 9))), 'has an open question: does not show whether its marks are decimal signs or between thousands: "8,125"'),
     "a point among decimal commas far below": (csv(separator=";", decimal=",", columns={"time [s]": np.arange(4000), "COF": 0.1 + 0 * np.arange(4000)}) + b"4000,5;1.234\n", 'has an open question: has points and commas in its numbers: "0,100000" and "1.234"'),
     "time running backwards": (csv(columns={"time [s]": BACK, "COF": FRICTION}), "line 14 time must not run backwards; got 1 s after 5.5 s"),
-    "two frictions": (csv(columns=TWO), 'has an open question: "COF", or "mu" (column 3)'),
     "the same header twice": (lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))), "has an open question: 2 columns that could be the friction: 2 or 3"),
     "no friction": (csv(columns={"time [s]": TIME, "a": FRICTION}), "has an open question: which column is the friction"),
     "a friction of unknown name": (csv(columns={"time [s]": TIME, "COF max": FRICTION, "COF min": FRICTION}), 'has an open question: the friction by its name? There are "COF max", "COF min"'),
@@ -68,22 +60,17 @@ WRONG = {
     "friction that may be a force": (csv(columns={"time [s]": TIME, "friction": FRICTION}), 'has an open question: column "friction": the file states no unit'),
     "friction in percent without saying so": (csv(columns={"time [s]": TIME, "COF": FRICTION * 100}), "above 5 in more than a tenth of its rows: not a ratio of forces; got a median of 10.95. If it is in percent"),
     "a tangential force alone": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE}), "has an open question: the log has no normal force"),
-    "a normal force without unit": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz": FORCE}), 'has an open question: column "Fz": the file states no unit'),
     "a normal force in grams": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [g]": FORCE}), 'has an open question: column "Fz [g]": the file writes "g"'),
     "a torque": (csv(columns={"time [s]": TIME, "Torque [Nm]": FORCE, "Fz [N]": FORCE, "Radius [mm]": FORCE}), "has an open question: a torque: write the radius of its track below [test]"),
     "a normal force of both signs": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": BOTH}), "has a normal force of both signs, so that the sign of compression is not certain; got 10 rows above zero, 10 below"),
     "no normal force in any row": (csv(columns={"time [s]": TIME, "Ff [N]": FORCE, "Fz [N]": 0.0 * FORCE}), 'has a normal force that is zero in every row. If the load is a dead weight, write normal_force = "... N" below [test]'),
     "temperatures below 0 K": (csv(columns={"time [s]": TIME, "COF": FRICTION, "T [K]": 0.0 * TIME - 20.0}), 'column "T [K]" has temperatures below absolute zero; got -20 K. State its true unit below [columns] in a column map: temperature = { name = "T [K]", unit = "..." }'),
-    "no abscissa": (csv(columns={"a": TIME, "COF": FRICTION}), "has an open question: which column is the time"),
     "time without unit": (csv(columns={"time": TIME, "COF": FRICTION}), 'has an open question: column "time": the file states no unit'),
-    "time in an unknown unit": (csv(columns={"time [ticks]": TIME, "COF": FRICTION}), 'has an open question: column "time [ticks]": the file writes "ticks"'),
     "two units of a column": (csv(columns={"time [min]": TIME, "COF": FRICTION}, units=("s", "-")), 'has an open question: column "time [min]": the file writes "s, min"'),
-    "frictions of two stations": (csv(columns={"time [s]": TIME, "COF_1": FRICTION, "COF_2": FRICTION}), 'has an open question: the friction by its name? There are "COF_1", "COF_2"'),
     "every friction missing": (csv(columns={"time [s]": TIME, "COF": FRICTION * np.nan}, missing="x"), "needs at least two rows with a friction and its abscissa; got 0 of 20 rows"),
     "dates for a time": (lines("time [s];COF;n", *(f"2026-02-{1 + i:02d};0.{100 + i};{i}" for i in range(9))), "has an open question: which column is the time"),
     "a time among times that is none": (lines("time;COF", "10:00:00;0.1", "10:00:01;0.1", "10:00;0.1", "late;0.1"), 'has an open question: column "time": the file writes "..."'),
     "times of two numbers": (lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))), 'has an open question: column "time": minutes and seconds, or hours and minutes (hh:mm)'),
-    "a force without unit": (csv(columns={"time [s]": TIME, "FrictionForce": FORCE, "Load": FORCE}), 'has 2 open questions, the first: column "FrictionForce": the file states no unit'),
     "a second table without header": (csv() + b"second run\n" + csv().split(b"\n", 1)[1], "has an open question: line 22 is among the rows and is left out: 'second run'"),
 }  # fmt: skip
 
@@ -106,7 +93,6 @@ WRONG_MAPS = {
     "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs header_line"),
     "a column without a name": ({"columns": {"time": 0.5}}, "[columns] time.name must be the name or the number of a column; got 0.5. Write friction ="),
     "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has an open question: no column "Zeit", which the column map names as time'),
-    "a number beyond the columns": ({"columns": {"friction": 7}}, 'has an open question: no column "number 7", which the column map names as friction'),
     "one column for two meanings": ({"columns": {"time": "time [s]", "cycles": 1}}, 'column "time [s]" is both time and cycles in the column map'),
     "a torque as a force in N": ({"columns": {"tangential_force": {"name": "M [Nm]", "unit": "N"}}, "test": {"track_radius": "20 mm"}}, 'column "M [Nm]" is in "N" by its map; got "Nm" in the file. Below [columns] of a column map: tangential_force = { name = "M [Nm]", unit = "Nm" }.'),
     "a torque without the radius": ({"columns": {"tangential_force": "M [Nm]"}}, 'column "M [Nm]" is a torque, not a force'),
@@ -160,11 +146,3 @@ def test_what_is_not_there_or_no_file_is_refused(tmp_path):
         file.truncate(10_000_000_000)
     line = refusal_line(tmp_path / "long.csv", read_log)
     assert "long.csv is too large: at most 2 GB; got 10.0 GB" in line
-
-
-def test_a_column_map_file_is_read(tmp_path):
-    """As a user writes it, with a byte order mark from Notepad."""
-    text = '[columns]\nfriction = "COF"\nnormal_force = { name = "Fz", unit = "N" }\n[test]\ncontact_area = "3 mm²"\n'
-    read = read_column_map(written(tmp_path, "\ufeff" + text, "map.toml"))
-    assert read.columns["normal_force"].unit == "N"
-    assert read.test.contact_area == pytest.approx(3e-6, rel=1e-15)  # one rounding
