@@ -104,6 +104,7 @@ def pressed(name):
 
 PLACES = "Profile.across must be finite, in increasing order, one place for each value [m]; got "
 ONE = "must be one number, finite and > 0; got "
+FILM = "ContactProblem.film_compliance"
 SLIP = "solve: slip must be finite and at most 1000 [-]; got"
 CELLS = "must be a whole number and lie from 4 to 256"
 RULES = [  # what is called with each of the values, and what is said before "; got VALUE."
@@ -117,7 +118,7 @@ RULES = [  # what is called with each of the values, and what is said before "; 
     (lambda c: law(cohesion=c), "FrictionLaw.cohesion must be finite and >= 0 [Pa]", (NAN, -1.0)),
     (lambda s: law(shear_strength=s), "FrictionLaw.shear_strength must be > 0 [Pa]", (NAN,)),
     (lambda v: Profile(across=(0.0,), values=(v,)), "Profile.values must be finite and >= 0", (INF, -0.1)),
-    (lambda L: made(film_compliance=L), "ContactProblem.film_compliance must be finite and >= 0 [m/Pa]", (INF,)),
+    (lambda L: made(film_compliance=L), f"{FILM} must be finite and >= 0 [m/Pa]", (INF, -1.0)),
     (lambda r: made(roughness=r), "ContactProblem.roughness must be finite and >= 0 [m]", (-1e-7, NAN)),
     (lambda n: on(columns=n), f"rolling_contact: columns {CELLS}", (3,)),
     (lambda n: on(rows=n), f"rolling_contact: rows {CELLS}", (10.5, NAN)),
