@@ -15,7 +15,7 @@ from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import reduce_log
 from separatrix.friction.steady import run_in
 
-LOGS = 200
+LOGS, X = 200, (np.arange(256) + 0.5) / 256
 CHANCE = 1e-4
 """Probability with which a right reduction fails a test of coverage."""
 
@@ -49,20 +49,11 @@ def test_the_standard_error_is_the_scatter_of_means(correlation):
     rng = np.random.default_rng(9)
     ratios = []
     for _ in range(400):
-        values = (
-            made(Recipe(rows=512, correlation=correlation), rng).log.friction.reshape(256, 2).mean(axis=1)
-        )
-        found = steady.steady_mean(values)
+        friction = made(Recipe(rows=512, correlation=correlation), rng).log.friction
+        found = steady.steady_mean(friction.reshape(256, 2).mean(axis=1))
         ratios.append((found.mean - 0.12) / found.standard_error)
     within_one = np.mean(np.abs(ratios) < 0.7)
     assert 0.42 < within_one < 0.60  # t holds 0.49 to 0.51 within 0.7; 400 logs scatter by 0.025
-
-
-def test_a_white_series_has_the_textbook_error():
-    """Without correlation the standard error is s over the root of n, up to a tenth more."""
-    rng = np.random.default_rng(2)
-    found = [steady.steady_mean(rng.standard_normal(256)).standard_error for _ in range(200)]
-    assert 0.98 / 16 < np.median(found) < 1.1 / 16  # 60 cosines: 9 % each, 200 of them 0.8 %
 
 
 def test_a_straight_line_is_no_scatter():
@@ -97,12 +88,9 @@ def test_scale_and_level_of_friction_change_nothing_but_themselves():
 def test_an_exponential_is_cut_where_its_rest_is_smaller_than_the_error(share):
     """A fall of known size and length: what stays of it behind the cut, integrated, and no late cut."""
     rng = np.random.default_rng(11)
-    n, size = 256, 1.0
-    x = (np.arange(n) + 0.5) / n
-    values = 2.0 + size * np.exp(-3.0 * x / share) + 0.02 * rng.standard_normal(n)
-    found = run_in(values)
-    behind = x > found.end
-    rest = size * np.exp(-3.0 * x[behind] / share).mean()
+    found = run_in(2.0 + np.exp(-3.0 * X / share) + 0.02 * rng.standard_normal(256))
+    behind = found.end < X
+    rest = np.exp(-3.0 * X[behind] / share).mean()
     error = 0.02 / np.sqrt(behind.sum())
     assert found.ends
     assert rest < 2.0 * np.hypot(error, found.rest)  # the interval, of two standard errors, holds it
@@ -115,8 +103,7 @@ def test_an_excess_that_is_over_is_seldom_told_not_to_end():
     Of 100 logs at most five may say that it does not end.
     """
     rng = np.random.default_rng(16)
-    x = (np.arange(256) + 0.5) / 256
-    found = [run_in(100.0 + 30.0 * np.exp(-10.0 * x) + rng.standard_normal(256)) for _ in range(100)]
+    found = [run_in(100.0 + 30.0 * np.exp(-10.0 * X) + rng.standard_normal(256)) for _ in range(100)]
     assert sum(not one.ends for one in found) <= 5
 
 
@@ -128,8 +115,7 @@ def test_an_excess_that_is_over_is_seldom_told_not_to_end():
 def test_an_excess_that_goes_on_is_told(excess):
     """A slow exponential, and a straight fall of nine tenths of the test: eight of ten logs say so."""
     rng = np.random.default_rng(17)
-    x = (np.arange(256) + 0.5) / 256
-    found = [run_in(30.0 * excess(x) + rng.standard_normal(256)) for _ in range(40)]
+    found = [run_in(30.0 * excess(X) + rng.standard_normal(256)) for _ in range(40)]
     assert sum(not one.ends for one in found) >= 32
 
 
@@ -139,10 +125,9 @@ def test_an_excess_that_noise_hides_is_in_the_error():
     A cut where it is seen, and no more, holds 86 % of them.
     """
     rng = np.random.default_rng(15)
-    x = (np.arange(256) + 0.5) / 256
     held = 0
     for _ in range(300):
-        values = 1.1 * np.exp(-10.0 * x) + rng.standard_normal(256)
+        values = 1.1 * np.exp(-10.0 * X) + rng.standard_normal(256)
         found = run_in(values)
         mean = steady.steady_mean(values[round(found.end * 256) :])
         error = np.hypot(mean.standard_error, found.rest)
@@ -153,8 +138,7 @@ def test_an_excess_that_noise_hides_is_in_the_error():
 def test_a_fall_that_is_no_exponential_is_cut_too():
     """A straight fall over a fifth of the test, which then stops: its end is found to 3 % of the test."""
     rng = np.random.default_rng(12)
-    x = (np.arange(256) + 0.5) / 256
-    values = np.maximum(0.0, 1.0 - x / 0.2) + 0.05 * rng.standard_normal(256)
+    values = np.maximum(0.0, 1.0 - X / 0.2) + 0.05 * rng.standard_normal(256)
     assert 0.17 < run_in(values).end < 0.35
 
 
