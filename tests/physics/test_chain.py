@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from separatrix.cage.disturbance import free_leads
 from separatrix.cage.moving_cage import moving_cage, turned_forward
 from separatrix.chain.lubrication import lubrication_curve
 from separatrix.chain.orbit import orbital_waves
@@ -81,6 +82,14 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     share = 1.0 - np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2
     assert state.orbital_share == pytest.approx(share, abs=1e-9)
+
+
+def test_free_balls_lead_by_the_integral_of_their_speed():
+    """Omega times the slope of the lead over the azimuth is the speed beyond the mean; to its difference."""
+    cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=(0.3, 0.1), orbital_sines=(-0.1, 0.2))
+    azimuth, step = np.linspace(0.0, 6.0, 7), 1e-5
+    slope = (free_leads(cage, azimuth + step) - free_leads(cage, azimuth - step)) / (2.0 * step)
+    assert cage.cage_speed * slope == pytest.approx(waves_at(cage, azimuth), rel=1e-6, abs=1e-8)
 
 
 def test_the_ball_that_a_radial_load_presses_runs_slower():

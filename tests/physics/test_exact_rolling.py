@@ -13,9 +13,7 @@ from exact_cases import MU, P0, body, contact, kalker, saturation, strip, strip_
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from separatrix.chain.exact.grid import elliptic_grid, end_normals
 from separatrix.chain.exact.influence import flexibility, half_space_flexibility
-from separatrix.chain.exact.operator import ROLLING
 from separatrix.chain.exact.rolling import rigid_slip, solve, solve_each
 from separatrix.chain.exact.slip import settle
 from separatrix.ground.errors import ConvergenceError
@@ -203,25 +201,6 @@ def test_slope_with_much_spin():
     spin, e = 150.0 * xs, made.grid.dy * 150.0 * xs
     chord = (kalker(made, e, phi=spin).force - kalker(made, -e, phi=spin).force) / (2.0 * e)
     assert -chord == pytest.approx(1.5 * MU * made.problem.ellipse.load * B / spin, rel=0.01)
-
-
-def test_the_stencil_does_not_see_jumps():
-    """Centres and edges of cells each sum to 0; the mean of their places is 1, that of their squares 0."""
-    shift, factor = np.array(ROLLING).T
-    assert factor[shift % 2 == 0].sum() == factor[shift % 2 == 1].sum() == 0.0
-    assert factor @ shift == -2.0
-    assert factor @ shift**2 == 0.0
-
-
-def test_row_ends_are_edges_with_a_normal():
-    """Circle: cosine and sine of the polar angle of the row, to 0.01."""
-    grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=80, rows=80)
-    cos, sin = end_normals(grid)
-    rows = slice(12, 68)
-    assert sin[rows, -1] == pytest.approx(grid.y[rows], abs=0.01)
-    assert sin[rows, 0] == pytest.approx(-grid.y[rows], abs=0.01)
-    assert np.hypot(cos, sin) == pytest.approx(1.0, rel=1e-14)
-    assert end_normals(strip(20, BARE)[1])[0] == pytest.approx(1.0)
 
 
 def test_coefficients_on_few_cells():

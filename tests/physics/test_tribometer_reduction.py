@@ -66,14 +66,6 @@ def test_a_straight_line_is_no_scatter():
     assert tilted.standard_error == pytest.approx(plain.standard_error, rel=1e-9)
 
 
-def test_cosines_keep_the_sum_of_squares():
-    """Parseval: the projections hold all that is left when mean and line are taken off."""
-    values = np.random.default_rng(4).standard_normal(100)
-    x = np.arange(100.0)
-    left = values - np.polyval(np.polyfit(x, values, 1), x)
-    assert (steady.cosines(values) ** 2).sum() == pytest.approx((left**2).sum(), rel=1e-12)
-
-
 def test_scale_and_level_of_friction_change_nothing_but_themselves():
     """Friction times 3 plus 0.1: cut, degrees of freedom and spans stay, errors are times 3."""
     known = made(Recipe(rows=1000, run_in=0.1, correlation=0.003), np.random.default_rng(8)).log
@@ -135,13 +127,6 @@ def test_an_excess_that_noise_hides_is_in_the_error():
     assert held > 0.89 * 300
 
 
-def test_a_fall_that_is_no_exponential_is_cut_too():
-    """A straight fall over a fifth of the test, which then stops: its end is found to 3 % of the test."""
-    rng = np.random.default_rng(12)
-    values = np.maximum(0.0, 1.0 - X / 0.2) + 0.05 * rng.standard_normal(256)
-    assert 0.17 < run_in(values).end < 0.35
-
-
 def test_noise_and_drift_are_seldom_cut():
     """Without running-in few logs are cut: noise with and without correlation, a drift of 17 %.
 
@@ -190,11 +175,3 @@ def test_a_peak_that_falls_over_a_third_of_a_test_ends_where_a_person_marks_it(n
     test = reduce_log(RawLog(source="peak", checksum="", format="made", friction=friction, cycles=cycles))
     assert 200.0 <= test.run_in_end <= 450.0
     assert test.friction == pytest.approx(0.381, abs=0.003)  # what is left of the fall, 1 % of the mean
-
-
-@pytest.mark.parametrize("correlation", [0.0, 0.01, 0.03])
-def test_a_flat_test_loses_at_most_a_tenth(correlation):
-    """Of forty flat tests, whatever their noise, at least 38 keep nine tenths of their length."""
-    rng = np.random.default_rng(23)
-    logs = [made(Recipe(rows=1000, noise=0.01, correlation=correlation), rng).log for _ in range(40)]
-    assert sum(reduce_log(log).run_in_end > 0.1 * log.time[-1] for log in logs) <= 2
