@@ -113,7 +113,7 @@ def contact(friction: float) -> tuple[Array, Moment]:
 
 
 def test_a_tilted_pocket_meets_its_ball_which_slides_on_it_as_by_exact_rotations():
-    """P1: offset, in a tighter bore, to R tilt^2/2; direction, and P2's normal rate and sliding, to the tilts.
+    """P1: offset, in a tighter bore, to R tilt^2/2; direction, P2's normal rate and sliding to the tilts.
 
     0.11 um, 0.0031, 0.002 and 0.004 measured.
     """
