@@ -128,7 +128,7 @@ WRONG = {  # what follows the verb, and the words of the line
     "a copy of the same name": ("a.csv more/a.csv", "more/a.csv has the same content as a.csv"),
     "a copy with a comma": ("x,1.csv x,2.csv", "x,2.csv has the same content as x,1.csv"),
     "no such map": ("a.csv --map no.toml", "no.toml cannot be read: no such file"),
-    "a wrong map": ("a.csv --map wrong.toml", "wrong.toml: [test] materal"),
+    "a wrong map": ("a.csv --map wrong.toml", "wrong.toml, line 2: [test] materal"),
     "two wrong of three": ("x.csv a.csv y.csv", "1 other file is refused too"),
     "out exists": ("a.csv --map map.toml --out map.toml", "map.toml exists already"),
     "out exists, whatever the logs": ("no.csv --map no.toml --out map.toml", "map.toml exists"),
