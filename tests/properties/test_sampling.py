@@ -154,7 +154,7 @@ def test_a_friction_that_tests_foretell_is_drawn_about_its_median():
 
 REFUSED = [
     (lambda: sample(UNCERTAIN, 0), "samples must be a whole number from 1"),
-    (lambda: sample(UNCERTAIN, 2**20 + 1), "samples must be a whole number from 1"),
+    (lambda: sample(UNCERTAIN, 2**20 + 1), "must be a whole number from 1"),
     (lambda: sample(replace(BASE, name="certain", ranking=None), 16), "certain has no uncertain number"),
     (lambda: uncertain_inputs(of_friction(mean=0.0, standard_deviation=0.1)), "mean must be > 0"),
     (lambda: uncertain_inputs(of_tests(mean=0.08, standard_error=0.0, standard_deviation=0.9)),
