@@ -294,6 +294,12 @@ def test_a_case_that_does_not_settle_is_its_error(monkeypatch):
     assert (second.iterations, second.residual) == (100, 0.5)
 
 
+def test_a_film_that_is_compressed_is_noted():
+    """By 0.2 of its thickness."""
+    (note,) = contact(0.3, race=body(0.25, (1.4e-3, 0.3, 0.01))).notes
+    assert "compressed by 0.2" in note
+
+
 def test_without_friction_everything_slips_and_nothing_is_lost():
     """No traction holds a cell: it slips as the rigid bodies do, and the heat is 0, not -0."""
     found = kalker(contact(0.5, columns=16, rows=16, friction=0.0), xi=0.01, phi=0.1)
