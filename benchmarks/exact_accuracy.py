@@ -10,8 +10,8 @@ import time
 from itertools import chain
 
 import numpy as np
-from exact_cases import MU, body, contact, kalker, saturation, strip_force
-from test_exact_contact import GALIN, coefficients, given
+from exact_cases import MU, body, contact, kalker, loaded, saturation, strip_force
+from test_exact_contact import GALIN, coefficients
 from test_exact_normal import COATED, spheres_on_two_grids
 from test_exact_rolling import (
     CREEPS,
@@ -22,15 +22,12 @@ from test_exact_rolling import (
     circle_area,
     creep_of_unlike_bodies,
 )
-from test_exact_slope import INNER, OUTER, WORN, problem
+from test_exact_slope import BARE_SLOPES, INNER, OUTER, OWN_PRESSURE, WORN, problem, sphere, worn
 
 from separatrix.chain.exact.influence import Layer, solid
-from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact
-from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.rolling import rigid_slip
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.exact.transient import shift, transient
-from separatrix.chain.film_profile import worn_band
-from separatrix.chain.hertz import ContactEllipse
 
 
 def say(*values):
@@ -112,15 +109,7 @@ def spheres_table():
 
 def shifts_table():
     """Cattaneo's shift and transient rolling."""
-    G, nu, load, R = 200.0, 0.42, 9.1954, 50.0
-    a = (3.0 * load * R * (1.0 - nu) / (4.0 * G)) ** (1.0 / 3.0)
-    sphere = ContactEllipse(
-        load=load, semi_major=a, semi_minor=a, max_pressure=1.5 * load / (math.pi * a * a),
-        approach=a * a / R, curvature_rolling=1.0 / R, curvature_transverse=1.0 / R,
-        contact_modulus=G / (1.0 - nu),
-    )  # fmt: skip
-    both = (body(nu, G=G), body(nu, G=G))
-    made = rolling_contact(ContactProblem(ellipse=sphere, bodies=both, friction=FrictionLaw(coefficient=0.4)))
+    load, made = sphere()
     low, high = 8.0e-3, 8.3e-3
     for _ in range(30):
         way = 0.5 * (low + high)
@@ -146,7 +135,7 @@ def contact_examples():
     for options, exact in examples:
         rows = {}
         for cells in (30, 40, 60):
-            made = given(6.3035, 12.6076, 106700.0, 82000.0, 0.28, 0.33, cells=cells, **options)
+            made = loaded(106700.0, 6.3035, 12.6076, 82000.0, 0.28, 0.33, cells=cells, **options)
             rows[cells] = np.array(
                 [-kalker(made, 1e-5).force]
                 + [-kalker(made, xi).force / (0.33 * 106700.0) for xi in (4e-4, 8e-4, 1.2e-3, 1.6e-3)]
@@ -155,7 +144,7 @@ def contact_examples():
         say(exact, rows[40], percent(rows[40], exact), best, percent(best, exact))
     found = []
     for cells in (30, 40, 60):
-        made = given(8.0, 4.0, 82000.0, 82000.0, 0.28, 0.3, cells=cells)
+        made = loaded(82000.0, 8.0, 4.0, 82000.0, 0.28, 0.3, cells=cells)
         one = kalker(made, eta=-6.25e-4, phi=6.25e-4)
         found.append(np.array([abs(one.lateral_force) / (0.3 * 82000.0), abs(one.spin_moment)]))
     print("fastsim .625 47440:", found[1], 2.0 * found[2] - found[0], flush=True)
@@ -164,23 +153,18 @@ def contact_examples():
 def slopes_table():
     """Slopes of a bearing's races."""
     print("## bare slopes: found, error reported, reference, per cent")
-    rows = [(0.05, 1.833, 6.79), (0.1, 3.665, 13.65), (0.2, 7.33, 30.2), (0.3, 10.97, 41.07)]
-    for mu, *expected in rows:
+    for mu, *expected in BARE_SLOPES:
         for (ellipse, creep), value in zip((INNER, OUTER), expected, strict=True):
             s = traction_slope(problem(ellipse, mu), creep)
             lateral = s.solution.lateral_force / (mu * ellipse.load)
             say(mu, s.slope, s.slope_error, value, percent([s.slope], [value]), "lateral", lateral)
     print("## worn track")
-    L = 3e-6 / solid(1.5e9, 0.4).shear_modulus
     for share, *expected in WORN:
         for (ellipse, creep), value in zip((INNER, OUTER), expected, strict=True):
-            w = share * ellipse.semi_major
-            friction, compliance = worn_band(w, worn=0.3, film=0.1), worn_band(w, worn=0.0, film=L)
-            s = traction_slope(problem(ellipse, friction, film_compliance=compliance), creep)
+            s = traction_slope(worn(ellipse, share), creep)
             say(share, s.slope, s.slope_error, value, percent([s.slope], [value]))
     print("## own pressure, outer race, mu 0.1")
-    films = ((0.5, 0.46, 1, 11.989), (0.5, 0.46, 3, 8.877), (4, 0.38, 3, 13.957), (4, 0.38, 10, 12.642))
-    for E, nu, h, ref in films:
+    for E, nu, h, ref in OWN_PRESSURE:
         film = Layer(thickness=h * 1e-6, solid=solid(E * 1e9, nu))
         s = traction_slope(problem(OUTER[0], film=film, own_pressure=True), OUTER[1])
         say(E, h, s.slope, s.slope_error, ref, s.solution.max_pressure / 1e6)

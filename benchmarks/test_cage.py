@@ -7,6 +7,7 @@ counts until then, and with `whole` for its whole duration of 0.3 s.
 from dataclasses import replace
 
 import pytest
+from cages import ON_A_LAND
 
 from separatrix.cage import MovingCage, moving_cage, run_ensemble
 from separatrix.chain.ball_traction import BallTraction
@@ -16,35 +17,17 @@ from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, Guidance, MotionModel, StabilitySettings
 
 SETTINGS = StabilitySettings(kicks=(0.5,), runs=64, duration=0.3)
-SHIPPED = MovingCage(
-    mass=0.025,
-    moment_of_inertia=26.4e-6,
-    transverse_inertia=13.8e-6,
-    ball_count=13,
-    pitch_radius=0.0325,
-    cage_speed=670.0,
-    inner_speed=1570.8,
-    outer_speed=0.0,
-    pocket_clearance=6e-4,
-    ball_cage_stiffness=3e6,
-    race_damping=600.0,
+SHIPPED = replace(
+    ON_A_LAND, moment_of_inertia=26.4e-6, transverse_inertia=13.8e-6, inner_speed=1570.8, race_damping=600.0,
     ball_cage_friction=0.1,
-    guidance=Guidance.OUTER,
-    land_clearance=1e-3,
-)
+)  # fmt: skip
 LAW = BallTraction(mass=6.567e-3, slope=188.0, speed=73.0 / 188.0)
 INERTIA = replace(SHIPPED, traction=LAW)
 SPACE = replace(
-    SHIPPED,
-    motion=MotionModel.SPACE,
-    ball_spin=(-4083.218, 1942.614, -3.53),
-    ball_diameter=11.1125e-3,
-    groove_damping=766.0,
-    groove_stiffness=5.05e6,
-    pivot_speed=0.05,
-    race_damping=356.0,
+    SHIPPED, motion=MotionModel.SPACE, ball_spin=(-4083.218, 1942.614, -3.53), ball_diameter=11.1125e-3,
+    groove_damping=766.0, groove_stiffness=5.05e6, pivot_speed=0.05, race_damping=356.0,
     ball_cage_friction=0.08,
-)
+)  # fmt: skip
 CASES = {
     "plane, settles": SHIPPED,
     "plane, whirls": replace(SHIPPED, race_damping=2000.0, ball_cage_friction=0.2),

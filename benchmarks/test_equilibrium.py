@@ -6,19 +6,10 @@ import pytest
 
 from separatrix.chain.equilibrium import equilibrium
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
+from separatrix.study.reading import read_study
+from separatrix.study.study import KinematicModel, Operation
 
-STEEL = Material(name="440C", elastic_modulus=199.948e9, poisson_ratio=0.25, density=7750.37)
-BEARING = BallBearing(
-    ball_diameter=7.938e-3,
-    pitch_diameter=38.5e-3,
-    ball_count=10,
-    contact_angle=math.radians(20.0),
-    inner_conformity=0.56,
-    outer_conformity=0.52,
-    ball_material=STEEL,
-    ring_material=STEEL,
-)
+BEARING = read_study("le7").bearing
 SPEED = 50_000 * 2.0 * math.pi / 60.0
 AXIAL = Operation(inner_speed=SPEED, axial_load=2670.0)
 COMBINED = Operation(inner_speed=SPEED, axial_load=2670.0, radial_load=800.0, moment=1.0)

@@ -18,6 +18,7 @@ import tempfile
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -43,39 +44,6 @@ WARNED = ("may be too narrow", "does not end")
 
 Answer = tuple[TestFriction, Made, RawLog]
 Writer = Callable[[Path, RawLog, float], Path]
-
-
-def anton_paar(folder: Path, log: RawLog, cycle: float) -> Path:
-    """Anton Paar TRB, decimal comma."""
-    return _text(folder, raw_logs.anton_paar(log.friction, log.time, laps=log.time / cycle, decimal=","))
-
-
-def rtec(folder: Path, log: RawLog, cycle: float) -> Path:
-    """Rtec CSV."""
-    return _text(folder, raw_logs.rtec(log.friction, log.time, speed_rpm=60.0 / cycle, total=""))
-
-
-def umt(folder: Path, log: RawLog, _cycle: float) -> Path:
-    """Bruker UMT text; the time of a cycle is said in a column map."""
-    return _text(folder, raw_logs.umt(log.friction, log.time, unit="N"))
-
-
-def compend(folder: Path, log: RawLog, _cycle: float) -> Path:
-    """Phoenix Compend; its writer counts two cycles a second, as the logs made for it do."""
-    return _text(folder, raw_logs.compend(log.friction, log.time))
-
-
-def csv(folder: Path, log: RawLog, cycle: float) -> Path:
-    """CSV with the cycles done."""
-    columns = {"time [s]": log.time, "cycles": log.time / cycle, "COF": log.friction}
-    return _text(folder, raw_logs.plain_csv(columns))
-
-
-def tsv(folder: Path, log: RawLog, _cycle: float) -> Path:
-    """TSV, decimal comma, forces instead of friction; the time of a cycle is said in a column map."""
-    force = np.full_like(log.time, 10.0)
-    columns = {"time [s]": log.time, "friction force [N]": 10.0 * log.friction, "normal force [N]": force}
-    return _text(folder, raw_logs.plain_csv(columns, separator="\t", decimal=","))
 
 
 def xlsx(folder: Path, log: RawLog, cycle: float) -> Path:
@@ -106,12 +74,41 @@ def tdms(folder: Path, log: RawLog, cycle: float) -> Path:
     return folder / "log.tdms"
 
 
-def _text(folder: Path, content: bytes) -> Path:
-    (folder / "log.txt").write_bytes(content)
+TEXTS: dict[str, Callable[[RawLog, float], bytes]] = {
+    "anton_paar": lambda log, cycle: raw_logs.anton_paar(
+        log.friction, log.time, laps=log.time / cycle, decimal=","
+    ),
+    "rtec": lambda log, cycle: raw_logs.rtec(log.friction, log.time, speed_rpm=60.0 / cycle, total=""),
+    "umt": lambda log, _: raw_logs.umt(log.friction, log.time, unit="N"),
+    # its writer counts two cycles a second, as the logs made for it do
+    "compend": lambda log, _: raw_logs.compend(log.friction, log.time),
+    "csv": lambda log, cycle: raw_logs.plain_csv(
+        {"time [s]": log.time, "cycles": log.time / cycle, "COF": log.friction}
+    ),
+    # forces instead of friction
+    "tsv": lambda log, _: raw_logs.plain_csv(
+        {
+            "time [s]": log.time,
+            "friction force [N]": 10.0 * log.friction,
+            "normal force [N]": np.full_like(log.time, 10.0),
+        },
+        separator="\t",
+        decimal=",",
+    ),
+}
+
+
+def text(name: str, folder: Path, log: RawLog, cycle: float) -> Path:
+    """File of a format of text."""
+    (folder / "log.txt").write_bytes(TEXTS[name](log, cycle))
     return folder / "log.txt"
 
 
-FORMATS: dict[str, Writer] = {w.__name__: w for w in (anton_paar, rtec, umt, compend, csv, tsv, xlsx, tdms)}
+FORMATS: dict[str, Writer] = {
+    **{name: partial(text, name) for name in TEXTS},
+    "xlsx": xlsx,
+    "tdms": tdms,
+}
 CYCLES = {"compend": 0.5}
 """Time of a cycle that a format's writer fixes [s]."""
 

@@ -150,17 +150,9 @@ def test_fastsim():
     Half the step between the two, 0.002 mu N and 0.2 %, and the reference's own: 0.003 and 0.4 %.
     """
     one = problem(ellipse_of_axes(82000.0, 8.0 * MM, 4.0 * MM, modulus(STEEL)), STEEL, 0.3)
-    rough, fine = (
-        np.array([found.sliding_share[1], 1e3 * found.solution.spin_moment])
-        for found in solved(
-            *(
-                ContactCase(
-                    setup=ContactSetup(problem=one, columns=n, rows=n), lateral_creep=-0.000625, spin=-0.625
-                )
-                for n in (30, 60)
-            )
-        )
-    )
+    setups = [ContactSetup(problem=one, columns=n, rows=n) for n in (30, 60)]
+    found = solved(*(ContactCase(setup=at, lateral_creep=-0.000625, spin=-0.625) for at in setups))
+    rough, fine = (np.array([one.sliding_share[1], 1e3 * one.solution.spin_moment]) for one in found)
     force, moment = 2.0 * fine - rough
     assert force == pytest.approx(-0.625, abs=3e-3)
     assert moment == pytest.approx(-47440.0, rel=4e-3)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.hertz import ellipse_of_axes
 from separatrix.chain.traction_curve import traction_slope
 
 TABLE = Path(__file__).parent / "sources" / "kalker_c11.csv"
@@ -34,16 +34,7 @@ def strips(ratio, nu):
     """C11 of the ellipse of strips, from a steel contact of that shape."""
     G, a, load = 80e9, 1e-3, 500.0
     b = ratio * a
-    ellipse = ContactEllipse(
-        load=load,
-        semi_major=a,
-        semi_minor=b,
-        max_pressure=1.5 * load / (3.141592653589793 * a * b),
-        approach=0.0,
-        curvature_rolling=200.0,
-        curvature_transverse=20.0,
-        contact_modulus=G / (1.0 - nu),
-    )
+    ellipse = ellipse_of_axes(load, b, a, G / (1.0 - nu))
     creep = Creep(spin=0.0, curvature=0.0)
     slope, _ = traction_slope(ellipse, creep, race_friction=0.1, film_compliance=0.0)
     return slope * load / (a * b * G)

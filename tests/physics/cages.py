@@ -74,6 +74,12 @@ def damping_of(eta: float) -> float:
     return math.sqrt(AT_REST.ball_cage_stiffness * AT_REST.mass) / (2 * zeta)
 
 
+def gripped(damping: float, friction: float = 0.0, **change: object) -> MovingCage:
+    """`AT_REST` with pockets that have no clearance."""
+    grip = {"pocket_clearance": 0.0, "race_damping": damping, "ball_cage_friction": friction}
+    return replace(AT_REST, **(grip | change))
+
+
 def linear_roots(cage: MovingCage) -> np.ndarray:
     """Exact rates of small motions without clearance, fastest growing first, shape (3,) or (4,) [rad/s].
 
@@ -147,14 +153,9 @@ def follow(
     cage, *, kick, direction, ball_lead, duration, samples=4000, until=None, real=np.float64, refine=1
 ) -> History:
     """Follow the run that starts in this direction [rad] and with these leads, shape (ball,) [m]."""
-    starts = Starts(
-        direction=np.array([direction]),
-        tilt_direction=np.zeros(1),
-        axial_sense=np.ones(1),
-        lead=np.array([ball_lead]),
-        more=np.zeros((1, cage.ball_count)),
-        angle=np.array([cage.ball_angles]),
-    )
+    leads, none = np.array([ball_lead]), np.zeros((1, cage.ball_count))
+    angle = np.array([cage.ball_angles])
+    starts = Starts(np.array([direction]), np.zeros(1), np.ones(1), leads, none, angle)
     return follow_start(cage, kick, starts, duration, samples, until, real=real, refine=refine)
 
 

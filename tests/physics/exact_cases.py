@@ -9,7 +9,7 @@ from separatrix.chain.exact.influence import Body, Layer, Solid
 from separatrix.chain.exact.operator import rolling_operator
 from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve
 from separatrix.chain.exact.slip import FrictionLaw, settle
-from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.hertz import ContactEllipse, ellipse_of_axes
 
 MU = 0.1
 P0 = 1e-3  # over G
@@ -21,29 +21,26 @@ def body(nu, *layers, G=1.0):
     return Body(base=Solid(shear_modulus=G, poisson_ratio=nu), layers=tuple(made))
 
 
-def ellipse(b, a=1.0, p0=P0, modulus=1.0, rolling=1.0, transverse=1.0):
+def ellipse(b, a=1.0, p0=P0, modulus=1.0):
     """Ellipse of half length b along rolling and a across."""
     return ContactEllipse(
-        load=2.0 / 3.0 * math.pi * a * b * p0,
-        semi_major=a,
-        semi_minor=b,
-        max_pressure=p0,
-        approach=0.0,
-        curvature_rolling=rolling,
-        curvature_transverse=transverse,
-        contact_modulus=modulus,
-    )
+        load=2.0 / 3.0 * math.pi * a * b * p0, semi_major=a, semi_minor=b, max_pressure=p0, approach=0.0,
+        curvature_rolling=1.0, curvature_transverse=1.0, contact_modulus=modulus,
+    )  # fmt: skip
+
+
+def loaded(load, b, a, G, nu, mu, *, cells=40, **given):
+    """Equal bodies of shear modulus G that a load presses on an ellipse of half lengths b and a."""
+    both, law = body(nu, G=G), FrictionLaw(coefficient=mu)
+    pressed = ellipse_of_axes(load, b, a, G / (1.0 - nu))
+    problem = ContactProblem(ellipse=pressed, bodies=(both, both), friction=law, **given)
+    return rolling_contact(problem, columns=cells, rows=cells)
 
 
 def contact(b, nu=0.25, *, columns=40, rows=40, friction=MU, race=None, **given):
     """Two bodies of G = 1 on an ellipse of a = 1 under p0 = P0; `race` may be coated."""
-    ball = body(nu)
-    problem = ContactProblem(
-        ellipse=ellipse(b),
-        bodies=(ball, race or ball),
-        friction=FrictionLaw(coefficient=friction),
-        **given,
-    )
+    bodies, law = (body(nu), race or body(nu)), FrictionLaw(coefficient=friction)
+    problem = ContactProblem(ellipse=ellipse(b), bodies=bodies, friction=law, **given)
     return rolling_contact(problem, columns=columns, rows=rows)
 
 

@@ -77,12 +77,20 @@ def test_a_ball_is_spun_up_by_the_driving_race():
     )
 
 
+C_i, C_o, M_B, R_B = 65.58149, 290.99772, 5.496616e-3, 5.55625e-3
+"""Creep of both contacts, mass and radius of the ball of E2."""
+
+
+def creeping():
+    """Modes of a ball that creeps in two contacts."""
+    S, D = C_i + C_o, C_i - C_o
+    slopes = -np.array(((S, R_B * D), (R_B * D, R_B**2 * S)))
+    return modes(slopes, np.diag((M_B, 0.4 * M_B * R_B**2)))
+
+
 def test_a_ball_with_creep_in_two_contacts():
     """Contact angle 0: rates [3.5 S -+ sqrt(2.25 S^2 + 10 D^2)]/2m, u/F = (1/C_i + 1/C_o)/4 (E2)."""
-    C_i, C_o, m, R = 65.58149, 290.99772, 5.496616e-3, 5.55625e-3
-    S, D = C_i + C_o, C_i - C_o
-    slopes = -np.array(((S, R * D), (R * D, R**2 * S)))
-    found = modes(slopes, np.diag((m, 0.4 * m * R**2)))
+    found = creeping()
     assert found.rates.real == pytest.approx((32460.24, 194593.50), rel=1e-6)
     assert 1.0 / found.relaxed == pytest.approx(0.25 * (1.0 / C_i + 1.0 / C_o), rel=1e-12)
 
@@ -90,11 +98,9 @@ def test_a_ball_with_creep_in_two_contacts():
 @pytest.mark.parametrize(("sense", "damping"), [(1.0, 190.0508), (-1.0, 245.0634)])
 def test_pocket_friction_of_a_ball_with_creep(sense, damping):
     """E2: C = 4/[(1 +- f)/C_i + (1 -+ f)/C_o] at no contact angle, + from the front, f .2; to the digits."""
-    C_i, C_o, m, R, f = 65.58149, 290.99772, 5.496616e-3, 5.55625e-3, 0.2
-    S, D = C_i + C_o, C_i - C_o
-    found = modes(-np.array(((S, R * D), (R * D, R**2 * S))), np.diag((m, 0.4 * m * R**2)))
+    found, f = creeping(), 0.2
     # the spin counts against the orbit; -1 from the front comes with a couple of -f R that brakes it
-    u = np.linalg.solve(-found.slopes, (1.0, sense * f * R))[0]
+    u = np.linalg.solve(-found.slopes, (1.0, sense * f * R_B))[0]
     assert 1.0 / u == pytest.approx(damping, rel=5e-7)
 
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from cages import AT_REST, ON_A_LAND, damping_of, followed, impact_restitution, linear_roots
+from mobile_balls import impact
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
@@ -39,10 +40,7 @@ def one_ball(**change: object) -> MovingCage:
 @pytest.mark.parametrize("may_turn", [False, True])
 @pytest.mark.parametrize("eta", [0.07, 0.6, 0.94])
 def test_one_impact_returns_the_restitution_of_its_closed_form(eta, may_turn):
-    """Spring and damper in series: 1e-3 at the step that runs have, 1e-4 at a quarter.
-
-    Half of it is measured.
-    """
+    """Spring and damper in series: 1e-3 at the step that runs have, 1e-4 at a quarter; half is measured."""
     inertia = M * R * R if may_turn else 1e9
     cage = one_ball(race_damping=damping_of(eta), moment_of_inertia=inertia)
     back = impact_restitution(cage, may_turn=may_turn)
@@ -101,32 +99,19 @@ def test_a_hertz_impact_has_the_force_and_the_time_of_the_closed_form():
     assert after.ball_speed[-1, 0] == pytest.approx(0.5, rel=3e-8)  # 1e-8: ends within a step
 
 
-def struck(law: BallTraction, mass: float, stiffness: float, speed: float) -> tuple[float, float]:
-    """Speed of a mass after an impact on a ball of this law, and the time of contact."""
-
-    def rates(_, z):
-        force = stiffness * z[0]
-        return [z[1] - z[2], -force / mass, (force - law.force(z[2])) / law.mass]
-
-    def parted(t, z):
-        return z[0] if t > 1e-6 else 1.0
-
-    parted.terminal = True
-    how = {"rtol": 1e-12, "atol": 1e-16, "events": parted, "method": "DOP853"}
-    course = solve_ivp(rates, (0.0, 0.1), [0.0, speed, 0.0], **how)
-    return course.y[1, -1], course.t[-1]
-
-
 @pytest.mark.parametrize("kick", [0.02, 0.5, 2.0])
 @pytest.mark.parametrize(("law", "mass", "stiffness"), [(CRYO, 0.025, 3e6), (WHEEL, 0.005, 1e6)])
 def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
     """One ball: the pocket's speed is that of half the ring's mass; scipy on the three equations."""
     ring = {"mass": mass, "moment_of_inertia": mass * R * R, "ball_cage_stiffness": stiffness}
-    left, contact = struck(law, mass / 2, stiffness, kick)
+    exactly = {"rtol": 1e-12, "atol": 1e-16, "method": "DOP853"}
+    back, _, contact = impact(
+        lambda x, N: (N - law.force(x)) / law.mass, 1, (mass / 2, stiffness), kick, **exactly
+    )
     after = followed(one_ball(traction=law, **ring), 5e-4 / kick + contact, kick=kick, refine=8)
-    back = after.velocity[-1, 1] + R * after.rotation_rate[-1]
+    pocket = after.velocity[-1, 1] + R * after.rotation_rate[-1]
     # 3e-5: begin and end of the impact within an eighth of the usual step
-    assert back / kick == pytest.approx(left / kick, abs=8e-5)
+    assert -pocket / kick == pytest.approx(back, abs=8e-5)
 
 
 def test_a_knocked_ball_comes_to_rest_where_its_traction_leaves_it():
@@ -232,10 +217,21 @@ def on_a_land(**changes: object) -> MovingCage:
     return replace(ON_A_LAND, **(given | changes))
 
 
+def rising(angle):
+    """Places before which a swing rises through zero."""
+    return np.flatnonzero((angle[:-1] < 0.0) & (angle[1:] >= 0.0))
+
+
 def crossings(time, angle):
     """Mean period of a swing through zero."""
-    i = np.flatnonzero((angle[:-1] < 0.0) & (angle[1:] >= 0.0))
+    i = rising(angle)
     return np.diff(time[i] - angle[i] * (time[i + 1] - time[i]) / (angle[i + 1] - angle[i])).mean()
+
+
+def whirl(found, late):
+    """Angular speed of the centre about the axis."""
+    (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
+    return (x * vy - y * vx) / (x * x + y * y)
 
 
 @pytest.mark.parametrize(("friction", "frequency"), [(0.0, 22.28925), (0.8, 15.76088)])
@@ -257,8 +253,7 @@ def test_a_rolling_cage_swings_far_as_the_elliptic_pendulum_does():
     found = followed(cage, 0.3, kick=0.3, direction=math.radians(62.0), samples=8001)
     late = found.time > 0.02
     angle = np.arctan2(*found.position[late].T[::-1])
-    i = np.flatnonzero((angle[:-1] < 0.0) & (angle[1:] >= 0.0))
-    amplitude = np.array([0.5 * np.ptp(angle[a:b]) for a, b in pairwise(i)])
+    amplitude = np.array([0.5 * np.ptp(angle[a:b]) for a, b in pairwise(rising(angle))])
     rate = math.sqrt(G / (2.0 * C_G))
     period = (4.0 / rate * ellipk(np.sin(amplitude / 2.0) ** 2)).mean()
     assert amplitude[0] > math.radians(50.0)
@@ -280,8 +275,7 @@ def test_a_dry_land_slows_down_a_whirl_against_it():
     lead = np.array([0.0, 0.05 - 3e-4])
     found = followed(cage, 0.03, lead=lead, kick=1.5, direction=math.pi / 4, samples=1501)
     late = found.time > 0.01
-    (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
-    nu = -(x * vy - y * vx) / (x * x + y * y)
+    nu = -whirl(found, late)
     gained = found.rotation_rate[late][-1] - found.rotation_rate[late][0]
     assert nu[0] > nu[-1] > 30.0
     assert np.polyfit(found.time[late], 1.0 / nu, 1)[0] == pytest.approx(f, rel=1e-4)
@@ -302,8 +296,7 @@ def test_a_dry_land_speeds_up_a_whirl(sense):
     held = {"moment_of_inertia": 1e3, "guidance": Guidance.OUTER, "outer_speed": 1e4 * sense}
     found = followed(on_a_land(**held, land_friction=f), 0.04, kick=0.3, direction=0.0, samples=4001)
     late = found.time > 0.02
-    (x, y), (vx, vy) = found.position[late].T, found.velocity[late].T
-    nu = (x * vy - y * vx) / (x * x + y * y)
+    nu = whirl(found, late)
     assert np.all(nu * sense > 0.0)
     assert np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0] == pytest.approx(-f, rel=5e-5)
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import AT_REST, TURNING, damping_of, followed, linear_roots
+from cages import AT_REST, TURNING, damping_of, followed, gripped, linear_roots
 
 from separatrix.cage import (
     MovingCage,
@@ -22,12 +22,6 @@ M, K, Z, R = AT_REST.mass, AT_REST.ball_cage_stiffness, AT_REST.ball_count, AT_R
 LAW = BallTraction(mass=6.567e-3, slope=900.0, speed=math.inf)
 BACKWARD = {"inner_speed": 0.0, "outer_speed": 1500.0}
 """Rotation of the outer ring, for whose friction whirl is backward."""
-
-
-def gripped(damping: float, friction: float = 0.0, **change: object) -> MovingCage:
-    """Cage whose pockets have no clearance."""
-    grip = {"pocket_clearance": 0.0, "race_damping": damping, "ball_cage_friction": friction}
-    return replace(AT_REST, **(grip | change))
 
 
 def growth_rate(cage: MovingCage, duration: float) -> float:

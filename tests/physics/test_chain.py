@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from separatrix.cage.disturbance import free_leads
 from separatrix.cage.moving_cage import moving_cage, turned_forward
 from separatrix.chain.lubrication import lubrication_curve
 from separatrix.chain.orbit import orbital_waves
@@ -13,9 +14,8 @@ from separatrix.study.reading import read_study
 from separatrix.study.study import KinematicModel, Kinematics
 
 SHIPPED = read_study("cryogenic-turbopump")
-STUDY = replace(
-    SHIPPED, kinematics=Kinematics(model=KinematicModel.OUTER_RACE_CONTROL)
-)  # quick, and free of the race friction
+CONTROLLED = Kinematics(model=KinematicModel.OUTER_RACE_CONTROL)
+STUDY = replace(SHIPPED, kinematics=CONTROLLED)  # quick, and free of the race friction
 
 
 def eta(study):
@@ -37,16 +37,10 @@ def test_more_load_returns_more_and_more_speed_less():
 
 def test_the_lubrication_curve_goes_through_the_study():
     """At the study's own film and friction it has the study's restitution factor; rounding."""
-    state = solve(SHIPPED)
-    curve = lubrication_curve(
-        state.bearing.inner,
-        state.bearing.outer,
-        SHIPPED.film.body,
-        ball_cage_stiffness=state.restitution.ball_cage_stiffness,
-        cage_mass=state.restitution.cage_mass,
-        film_thicknesses=(0.0, SHIPPED.film.thickness),
-        race_frictions=(SHIPPED.film.race_friction,),
-    )
+    state, film = solve(SHIPPED), SHIPPED.film
+    own = {"film_thicknesses": (0.0, film.thickness), "race_frictions": (film.race_friction,)}
+    own |= {name: getattr(state.restitution, name) for name in ("ball_cage_stiffness", "cage_mass")}
+    curve = lubrication_curve(state.bearing.inner, state.bearing.outer, film.body, **own)
     assert curve.restitution_factor[0, 1] == pytest.approx(state.restitution.restitution_factor, rel=1e-9)
 
 
@@ -86,9 +80,16 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     left = waves_at(cage, found.azimuth) - beyond
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
-    assert 1.0 - state.orbital_share == pytest.approx(
-        np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2, abs=1e-9
-    )
+    share = 1.0 - np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2
+    assert state.orbital_share == pytest.approx(share, abs=1e-9)
+
+
+def test_free_balls_lead_by_the_integral_of_their_speed():
+    """Omega times the slope of the lead over the azimuth is the speed beyond the mean; to its difference."""
+    cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=(0.3, 0.1), orbital_sines=(-0.1, 0.2))
+    azimuth, step = np.linspace(0.0, 6.0, 7), 1e-5
+    slope = (free_leads(cage, azimuth + step) - free_leads(cage, azimuth - step)) / (2.0 * step)
+    assert cage.cage_speed * slope == pytest.approx(waves_at(cage, azimuth), rel=1e-6, abs=1e-8)
 
 
 def test_the_ball_that_a_radial_load_presses_runs_slower():

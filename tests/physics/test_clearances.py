@@ -17,12 +17,15 @@ from separatrix.study.ball_bearing import Expansion
 from separatrix.study.distribution import Uniform
 from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
-from separatrix.study.study import CageDesign, ClearanceState, Guidance, Material
+from separatrix.study.study import ClearanceState, Guidance, Material
 from separatrix.verdict.beyond_models import pocket_of
 from separatrix.verdict.draws import sample
 
 STUDY = read_study("cryogenic-turbopump")
 BEARING = STUDY.bearing
+RUNNING = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
+"""The shipped study with clearances at rest."""
+
 STEEL = replace(BEARING.ring_material, expansions=(), thermal_expansion=10e-6)
 PLASTIC = Material(
     name="plastic", elastic_modulus=5e9, poisson_ratio=0.35, density=1500.0, thermal_expansion=40e-6
@@ -70,7 +73,7 @@ def test_pocket_and_land_by_hand():
 
 def test_thin_ring_and_solid_limits():
     """Rho w^2 r^3 / E of a thin ring; a hole's edge and a disc's rim as in Timoshenko's closed forms."""
-    rho, E, nu, w = 1500.0, 5e9, 0.35, 2000.0
+    rho, E, nu, w = RING.values()
     thin = rho * w**2 * 0.03**3 / E
     assert ring_growth(0.03, inner=0.03, outer=0.03, **RING) == pytest.approx(thin, rel=1e-12)
     assert ring_growth(0.03, inner=0.03, outer=0.031, **RING) == pytest.approx(thin, rel=0.06)
@@ -83,7 +86,7 @@ def test_thin_ring_and_solid_limits():
 
 def test_thick_ring_solves_its_differential_equation():
     """R u'' + u' - u/r = -(1 - nu^2) rho w^2 r^2 / E with free edges, by collocation."""
-    rho, E, nu, w, a, b = 1500.0, 5e9, 0.35, 2000.0, 0.02, 0.03
+    (rho, E, nu, w), a, b = RING.values(), 0.02, 0.03
     scale = rho * w**2 * b**3 / E
 
     def slope(r, y):
@@ -128,34 +131,31 @@ def test_published_contractions():
         assert (alpha * (293.0 - temperature), why) == (pytest.approx(contraction, rel=2e-3), "")
 
 
-def test_what_closes_or_is_not_known_is_refused():
+UNKNOWN = [
+    ({"pocket_clearance": 20e-6}, r"^[^\n]*pocket_clearance closes to -.* at 90 K .*20 um at 293 K[^\n]*$"),
+    ({"material": replace(PLASTIC, thermal_expansion=None)}, r"thermal expansion from 293 K to 90 K.*um/m/K"),
+    ({"temperature": None}, "temperature is missing"),
+    ({"material": None}, "material is missing"),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), UNKNOWN)
+def test_what_closes_or_is_not_known_is_refused(given, said):
     """One line with the numbers, or what is missing with its cure."""
-    with pytest.raises(
-        InputError, match=r"pocket_clearance closes to -.* at 90 K .*20 um at 293 K"
-    ) as closed:
-        running(pocket_clearance=20e-6)
-    assert "\n" not in str(closed.value)
-    with pytest.raises(InputError, match=r"thermal expansion from 293 K to 90 K.*um/m/K"):
-        running(material=replace(PLASTIC, thermal_expansion=None))
-    with pytest.raises(InputError, match="temperature is missing"):
-        running(None)
-    with pytest.raises(InputError, match="material is missing"):
-        running(material=None)
+    with pytest.raises(InputError, match=said):
+        running(**given)
 
 
 def test_draws_and_sweeps_go_through_it():
     """Each study that is drawn has its own running clearance; the study keeps those at rest."""
-    cage = replace(STUDY.cage, clearances=ClearanceState.AT_REST)
-    study = replace(STUDY, cage=cage)
-    cold = solve(study)
-    warm = solve(with_values(study, {"operation.temperature": 200.0}))
-    fast = solve(with_values(study, {"operation.inner_speed": 2000.0}))
-    assert cold.clearances.pocket < warm.clearances.pocket < cage.pocket_clearance
+    cold = solve(RUNNING)
+    warm = solve(with_values(RUNNING, {"operation.temperature": 200.0}))
+    fast = solve(with_values(RUNNING, {"operation.inner_speed": 2000.0}))
+    assert cold.clearances.pocket < warm.clearances.pocket < RUNNING.cage.pocket_clearance
     assert fast.clearances.hoop_strain > cold.clearances.hoop_strain
     assert moving_cage(cold, 0.1).pocket_clearance == cold.clearances.pocket
-    assert cold.study.cage.pocket_clearance == cage.pocket_clearance
-    assert isinstance(cold.design, CageDesign)
-    drawn = with_distributions(study, {"operation.temperature": Uniform(low=70.0, high=200.0)})
+    assert cold.study.cage.pocket_clearance == RUNNING.cage.pocket_clearance
+    drawn = with_distributions(RUNNING, {"operation.temperature": Uniform(low=70.0, high=200.0)})
     each = sample(drawn, 4)
     found = [solve(each.setter()(row)).clearances.pocket for row in each.values]
     assert len(set(found)) == 4
@@ -163,8 +163,7 @@ def test_draws_and_sweeps_go_through_it():
 
 def test_guesses_are_noted():
     """The library's expansion of Armalon is one."""
-    study = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
-    solution = solve(study)
+    solution = solve(RUNNING)
     assert solution.notes == ()
     _ = solution.design
     (note,) = solution.notes
@@ -173,8 +172,7 @@ def test_guesses_are_noted():
 
 def test_each_candidate_has_its_own_pocket():
     """With one stiffness for all; the second verdict, by the other ball, has the same clearances."""
-    study = replace(STUDY, cage=replace(STUDY.cage, clearances=ClearanceState.AT_REST))
-    solved = [solve(study, one) for one in study.ranking.candidates]
+    solved = [solve(RUNNING, one) for one in RUNNING.ranking.candidates]
     pockets = {pocket_of(one) for one in solved}
     assert len({pocket.stiffness for pocket in pockets}) == 1
     expansions = {one.cage_material.expansions for one in solved}

@@ -40,9 +40,8 @@ def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
     central = solve(study)
     cage = moving_cage(central, 0.2)
     settings = settings_for(study.stability, cage)
-    kicks = settings.kicks
-    certain = judge(cage, run_ensemble(cage, settings, kicks=kicks, runs=8))
-    found = drawn.judge(CASE, kicks, Runner())
+    certain = judge(cage, run_ensemble(cage, settings, runs=8))
+    found = drawn.judge(CASE, settings.kicks, Runner())
     # settled and whirling runs alike: a change of 1e-12 is a different motion after some impacts
     assert [count.settles for count in found.by_kick] == [count.settles for count in certain.by_kick]
 

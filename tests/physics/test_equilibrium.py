@@ -11,7 +11,8 @@ from scipy.optimize import root
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.hertz import contact_ellipse, contact_modulus, race_curvatures
 from separatrix.ground.units import Array
-from separatrix.study.study import BallBearing, KinematicModel, Material, Operation, Race
+from separatrix.study.reading import read_study
+from separatrix.study.study import BallBearing, KinematicModel, Operation, Race
 
 OUTER, INNER, FREE = (
     KinematicModel.OUTER_RACE_CONTROL,
@@ -22,11 +23,7 @@ RPM = 2.0 * math.pi / 60.0
 BALANCED = 2e-6  # the ring stops at 1e-6 of its load, the balls far below
 
 
-LE7_STEEL = Material(name="440C", elastic_modulus=199.948e9, poisson_ratio=0.25, density=7750.37)
-LE7 = BallBearing(
-    ball_diameter=7.938e-3, pitch_diameter=38.5e-3, ball_count=10, contact_angle=math.radians(20.0),
-    inner_conformity=0.56, outer_conformity=0.52, ball_material=LE7_STEEL, ring_material=LE7_STEEL,
-)  # fmt: skip
+LE7 = read_study("le7").bearing
 """A turbopump's bearing."""
 
 SPINNING = Operation(inner_speed=10_000 * RPM, axial_load=22_250.0)

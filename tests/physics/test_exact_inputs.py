@@ -51,9 +51,10 @@ def film(E=4e9, nu=0.38, h=1e-6):
     return Layer(thickness=h, solid=solid(E, nu))
 
 
-def slope(**creep):
+def slope(columns=(6, 8), **creep):
     """Slope under a creep."""
-    return traction_slope(problem(), Creep(**{"spin": 0.0, "curvature": 0.0} | creep), columns=(6, 8), rows=8)
+    creep = Creep(**{"spin": 0.0, "curvature": 0.0} | creep)
+    return traction_slope(problem(), creep, columns=columns, rows=8)
 
 
 def slipping(**creeps):
@@ -62,134 +63,99 @@ def slipping(**creeps):
     return solve(contact, rigid_slip(contact.grid, **creeps))
 
 
-def flat(**changed):
-    """Ellipse with a field changed, its own pressure solved."""
-    return made(ellipse=replace(ELLIPSE, **changed), own_pressure=True)
+def flat(curvature):
+    """A gap of this curvature across, whose own pressure is solved."""
+    return made(ellipse=replace(ELLIPSE, curvature_transverse=curvature), own_pressure=True)
 
 
 FIELD = np.zeros((2, 8, 8))
 SPOILT = np.full((2, 8, 8), NAN)
 
 
-def rows(make, says, *values, form="g"):
-    """Rows of the values that one rule refuses."""
-    return [(lambda value=value: make(value), f"{says}; got {value:{form}}.") for value in values]
+def sheared(G=1.0, nu=0.3):
+    """A solid by its shear modulus."""
+    return Solid(shear_modulus=G, poisson_ratio=nu)
 
 
-POSITIVE, SLIP = "must be finite and > 0", "solve: slip must be finite and at most 1000 [-]"
+def law(**changed):
+    """A friction law with a change."""
+    return FrictionLaw(**{"coefficient": 0.1} | changed)
+
+
+def on(**cells):
+    """The contact on other cells."""
+    return rolling_contact(problem(), **cells)
+
+
+def band(half_width):
+    """A worn band."""
+    return worn_band(half_width, worn=0.3, film=0.1)
+
+
+def field(**given):
+    """Solution without a slip."""
+    return solve(made(), FIELD, **given)
+
+
+def pressed(name):
+    """What builds a contact with another value of this field of its ellipse."""
+    return lambda value: made(ellipse=replace(ELLIPSE, **{name: value}))
+
+
 PLACES = "Profile.across must be finite, in increasing order, one place for each value [m]; got "
+ONE = "must be one number, finite and > 0; got "
+FILM = "ContactProblem.film_compliance"
+SLIP = "solve: slip must be finite and at most 1000 [-]; got"
+CELLS = "must be a whole number and lie from 4 to 256"
+RULES = [  # what is called with each of the values, and what is said before "; got VALUE."
+    (lambda E: solid(E, 0.3), "solid: elastic_modulus must be finite and > 0 [Pa]", (NAN, INF)),
+    (lambda nu: solid(1e9, nu), "solid: poisson_ratio must lie from 0 to 0.5 [-]", (-1.0, NAN)),
+    (lambda G: sheared(G=G), "Solid.shear_modulus must be finite and > 0 [Pa]", (INF, 0.0)),
+    (lambda nu: sheared(nu=nu), "Solid.poisson_ratio must lie from 0 to 0.5 [-]", (0.6,)),
+    (lambda h: film(h=h), "Layer.thickness must be finite and > 0 [m]", (NAN, INF, 0.0)),
+    (lambda nu: film(nu=nu), "Layer.solid.poisson_ratio must not exceed 0.49 in a film [-]", (0.495,)),
+    (lambda mu: law(coefficient=mu), "FrictionLaw.coefficient must be finite and >= 0 [-]", (NAN, INF, -0.1)),
+    (lambda c: law(cohesion=c), "FrictionLaw.cohesion must be finite and >= 0 [Pa]", (NAN, -1.0)),
+    (lambda s: law(shear_strength=s), "FrictionLaw.shear_strength must be > 0 [Pa]", (NAN,)),
+    (lambda v: Profile(across=(0.0,), values=(v,)), "Profile.values must be finite and >= 0", (INF, -0.1)),
+    (lambda L: made(film_compliance=L), f"{FILM} must be finite and >= 0 [m/Pa]", (INF, -1.0)),
+    (lambda r: made(roughness=r), "ContactProblem.roughness must be finite and >= 0 [m]", (-1e-7, NAN)),
+    (lambda n: on(columns=n), f"rolling_contact: columns {CELLS}", (3,)),
+    (lambda n: on(rows=n), f"rolling_contact: rows {CELLS}", (10.5, NAN)),
+    (lambda s: slope(spin=s), "traction_slope: creep.spin must be finite", (NAN,)),
+    (lambda q: slope(curvature=q), "traction_slope: creep.curvature must be finite", (INF,)),
+    (lambda t: field(tolerance=t), "solve: tolerance must be > 0 and at most 0.1 [-]", (NAN, 0.0)),
+]  # fmt: skip
 REFUSED = [
-    # solids and films
-    *rows(lambda E: solid(E, 0.3), f"solid: elastic_modulus {POSITIVE} [Pa]", NAN, INF),
-    *rows(lambda nu: solid(1e9, nu), "solid: poisson_ratio must lie from 0 to 0.5 [-]", -1.0, NAN),
-    *rows(
-        lambda G: Solid(shear_modulus=G, poisson_ratio=0.3), f"Solid.shear_modulus {POSITIVE} [Pa]", INF, 0.0
+    *((lambda ask=ask, x=x: ask(x), f"{says}; got {x:g}.") for ask, says, values in RULES for x in values),
+    *(
+        (lambda name=name, x=x: pressed(name)(x), f"ContactProblem.ellipse.{name} {ONE}{x}.")
+        for name in ("load", "semi_minor", "semi_major", "max_pressure")
+        for x in (NAN, INF, 0.0)
     ),
-    *rows(
-        lambda nu: Solid(shear_modulus=1.0, poisson_ratio=nu),
-        "Solid.poisson_ratio must lie from 0 to 0.5 [-]",
-        0.6,
-    ),
-    *rows(lambda h: film(h=h), f"Layer.thickness {POSITIVE} [m]", NAN, INF, 0.0),
-    *rows(lambda nu: film(nu=nu), "Layer.solid.poisson_ratio must not exceed 0.49 in a film [-]", 0.495),
     (lambda: made(film(h=1.0)), "Body.layers must be at most"),
-    (
-        lambda: made(film(E=9e12, h=1e-8), film(h=1e-5)),
-        "Body.layers must fit 24 images to 0.001 of their span [-]; got",
-    ),
+    (lambda: made(film(9e12, h=1e-8), film(h=1e-5)), "Body.layers must fit 24 images to 0.001 of their span"),
     (lambda: made(film(E=0.2e9)), "rolling_contact: film strain p0/M_c must not exceed 1 [-]; got 2."),
-    # friction and profiles
-    *rows(
-        lambda mu: FrictionLaw(coefficient=mu),
-        "FrictionLaw.coefficient must be finite and >= 0 [-]",
-        *(NAN, INF, -0.1),
-    ),
-    *rows(
-        lambda c: FrictionLaw(coefficient=0.1, cohesion=c),
-        "FrictionLaw.cohesion must be finite and >= 0 [Pa]",
-        *(NAN, -1.0),
-    ),
-    (
-        lambda: FrictionLaw(coefficient=0.1, shear_strength=NAN),
-        "FrictionLaw.shear_strength must be > 0 [Pa]; got nan.",
-    ),
     (lambda: Profile(across=(0.0, NAN), values=(0.1, 0.1)), f"{PLACES}(0.0, nan)."),
     (lambda: Profile(across=(0.0,), values=(0.1, 0.2)), f"{PLACES}(0.0,)."),
-    *rows(
-        lambda value: Profile(across=(0.0,), values=(value,)),
-        "Profile.values must be finite and >= 0",
-        *(NAN, INF, -0.1),
-    ),
-    (lambda: worn_band(NAN, worn=0.3, film=0.1), f"{PLACES}(nan, nan,"),
-    (lambda: worn_band(-1e-4, worn=0.3, film=0.1), f"{PLACES}(0.0001, 0"),
-    # problem and grid
-    *(
-        row
-        for name in ("load", "semi_minor", "semi_major", "max_pressure")
-        for row in rows(
-            lambda value, name=name: made(ellipse=replace(ELLIPSE, **{name: value})),
-            f"ContactProblem.ellipse.{name} must be one number, finite and > 0",
-            *(NAN, INF, 0.0),
-            form="",
-        )
-    ),
-    (
-        lambda: made(ellipse=contact_ellipse(np.array([1.0, 2.0]), 180.0, 15.0, 110e9)),
-        "ContactProblem.ellipse.load must be one number, finite and > 0; got [1. 2.].",
-    ),
-    (
-        lambda: flat(curvature_transverse=0.0),
-        "ContactProblem.ellipse.curvature_transverse must be one number, finite and > 0; got 0.0.",
-    ),
-    (
-        lambda: flat(curvature_transverse=1e-12),
-        "ContactProblem: contact under its own pressure must not reach beyond 100 half lengths",
-    ),
-    *rows(
-        lambda L: made(film_compliance=L),
-        "ContactProblem.film_compliance must be finite and >= 0 [m/Pa]",
-        *(NAN, INF, -1.0),
-    ),
-    *rows(lambda r: made(roughness=r), "ContactProblem.roughness must be finite and >= 0 [m]", *(-1e-7, NAN)),
-    *rows(
-        lambda n: rolling_contact(problem(), columns=n),
-        "rolling_contact: columns must be a whole number and lie from 4 to 256",
-        3,
-    ),
-    *rows(
-        lambda n: rolling_contact(problem(), rows=n),
-        "rolling_contact: rows must be a whole number and lie from 4 to 256",
-        *(10.5, NAN),
-    ),
-    # creeps
-    *rows(lambda xi: slipping(longitudinal=xi), SLIP, 1e9),
-    *rows(lambda eta: slipping(lateral=eta), SLIP, NAN),
-    (lambda: slipping(spin=INF), f"{SLIP}; got"),
-    (lambda: slipping(curvature=1e20), f"{SLIP}; got"),
-    *rows(lambda s: slope(spin=s), "traction_slope: creep.spin must be finite", NAN),
-    (lambda: slope(spin=1e9), f"{SLIP}; got"),
-    *rows(lambda q: slope(curvature=q), "traction_slope: creep.curvature must be finite", INF),
-    (
-        lambda: traction_slope(problem(), Creep(spin=0.0, curvature=0.0), columns=(20, 20)),
-        "traction_slope: columns must be strictly increasing; got (20, 20).",
-    ),
-    # fields
+    (lambda: band(NAN), f"{PLACES}(nan, nan,"),
+    (lambda: band(-1e-4), f"{PLACES}(0.0001, 0"),
+    (lambda: pressed("load")(np.array([1.0, 2.0])), f"ContactProblem.ellipse.load {ONE}[1. 2.]."),
+    (lambda: flat(0.0), f"ContactProblem.ellipse.curvature_transverse {ONE}0.0."),
+    (lambda: flat(1e-12), "ContactProblem: contact under its own pressure must not reach beyond 100 half"),
+    (lambda: slipping(longitudinal=1e9), SLIP),
+    (lambda: slipping(lateral=NAN), SLIP),
+    (lambda: slipping(spin=INF), SLIP),
+    (lambda: slipping(curvature=1e20), SLIP),
+    (lambda: slope(spin=1e9), SLIP),
+    (lambda: slope(columns=(20, 20)), "traction_slope: columns must be strictly increasing; got (20, 20)."),
     (lambda: solve(made(), np.zeros((2, 3, 3))), "solve: slip must have the shape (2, 8, 8); got (2, 3, 3)."),
-    (lambda: solve_each(made(), [SPOILT]), f"{SLIP}; got nan."),
-    (lambda: solve(made(), FIELD, start=SPOILT), "solve: start must be finite [Pa]; got nan."),
-    (
-        lambda: solve(made(), FIELD, start=FIELD[:1]),
-        "solve: start must have the shape (2, 8, 8); got (1, 8, 8).",
-    ),
-    *rows(
-        lambda t: solve(made(), FIELD, tolerance=t),
-        "solve: tolerance must be > 0 and at most 0.1 [-]",
-        NAN,
-        0.0,
-    ),
-    (lambda: shift(made(), SPOILT), f"{SLIP}; got nan."),
-    (lambda: transient(made(), [SPOILT]), f"{SLIP}; got nan."),
-]
+    (lambda: field(start=FIELD[:1]), "solve: start must have the shape (2, 8, 8); got (1, 8, 8)."),
+    (lambda: field(start=SPOILT), "solve: start must be finite [Pa]; got nan."),
+    (lambda: solve_each(made(), [SPOILT]), f"{SLIP} nan."),
+    (lambda: shift(made(), SPOILT), f"{SLIP} nan."),
+    (lambda: transient(made(), [SPOILT]), f"{SLIP} nan."),
+]  # fmt: skip
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # 0 x inf where a spin of inf meets y = 0

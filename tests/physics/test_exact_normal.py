@@ -166,15 +166,6 @@ def test_the_axisymmetric_method_agrees(ratio, h, a, d, p0):
     assert (radius, approach, centre / top) == pytest.approx((a, d, p0), rel=2e-4)
 
 
-def test_own_pressure_of_a_thin_film_is_that_of_hertz():
-    """Film thickness -> 0 is continuous."""
-    hertz = contact_ellipse(1e-3, 2.0, 1.0, 1.0 / 0.75)
-    bodies = body(0.25), body(0.25, (0.2, 0.3, 1e-5 * hertz.semi_minor))
-    _, bare, _ = pressed_contact(hertz, (bodies[0], bodies[0]), columns=16, rows=16)
-    _, coated, _ = pressed_contact(hertz, bodies, columns=16, rows=16)
-    assert coated == pytest.approx(bare, rel=2e-3, abs=2e-3 * bare.max())
-
-
 def test_film_strain_is_pressure_over_compression_modulus():
     """4 GPa and nu 0.38 under 1350 MPa: 0.18; 0.5 GPa and 0.46: 0.58."""
     for E, nu, strain in ((4e9, 0.38, 0.18), (0.5e9, 0.46, 0.58)):
@@ -195,20 +186,17 @@ def test_a_gap_gives_the_contact_of_its_ellipse():
     The share of the load on the cells at the outline is (2/40)^1.5 = 1 %.
     """
     hertz = ellipse_of_curvatures(1e-3, 1.0, 0.3, 1.0 / (1.0 - 0.25))  # E* of G = 1
-    problem = ContactProblem(
-        ellipse=hertz, bodies=(body(0.25), body(0.25)), friction=FrictionLaw(coefficient=MU)
-    )
-    (x, dx), (y, dy) = (
-        (2.2 * h / 44 * np.arange(-21.5, 22.0), 2.2 * h / 44) for h in (hertz.semi_minor, hertz.semi_major)
-    )
+    law = FrictionLaw(coefficient=MU)
+    problem = ContactProblem(ellipse=hertz, bodies=(body(0.25), body(0.25)), friction=law)
+    dx, dy = 2.2 * hertz.semi_minor / 44, 2.2 * hertz.semi_major / 44
+    x, y = dx * np.arange(-21.5, 22.0), dy * np.arange(-21.5, 22.0)
     gap = 0.5 * (x * x + dx * dx / 12.0) + 0.5 * 0.3 * (y * y + dy * dy / 12.0)[:, None]
     made = gap_contact(problem, gap, along=x, across=y, spacing=(dy, dx))
     xi = 0.5 * 2.0 * MU * hertz.max_pressure / hertz.contact_modulus
-    other = rolling_contact(problem)
-    for one, two in zip(
-        *([kalker(at, xi).force, kalker(at, 0.0, xi).lateral_force] for at in (made, other)), strict=True
-    ):
-        assert one == pytest.approx(two, rel=1e-2)
+    one, two = (
+        [kalker(at, xi).force, kalker(at, 0.0, xi).lateral_force] for at in (made, rolling_contact(problem))
+    )
+    assert one == pytest.approx(two, rel=1e-2)
     assert made.problem.ellipse.max_pressure == pytest.approx(hertz.max_pressure, rel=1e-2)
     with pytest.raises(InputError, match="must reach beyond the contact on all sides"):
         gap_contact(problem, gap[:, 8:], along=x[8:], across=y, spacing=(dy, dx))

@@ -13,10 +13,9 @@ from exact_cases import MU, P0, body, contact, kalker, saturation, strip, strip_
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from separatrix.chain.exact.grid import elliptic_grid, end_normals
-from separatrix.chain.exact.operator import ROLLING
-from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve, solve_each
-from separatrix.chain.exact.slip import FrictionLaw, settle
+from separatrix.chain.exact.influence import flexibility, half_space_flexibility
+from separatrix.chain.exact.rolling import rigid_slip, solve, solve_each
+from separatrix.chain.exact.slip import settle
 from separatrix.ground.errors import ConvergenceError
 
 BARE = (body(0.25), body(0.25))
@@ -63,8 +62,6 @@ def cauchy_slope(coated, n=160):
     edges = np.linspace(0.0, 40.0 / h, 41)
     k = (0.5 * np.diff(edges)[:, None] * (k_nodes + 1.0) + edges[:-1, None]).ravel()
     wk = (0.5 * np.diff(edges)[:, None] * k_weights).ravel()
-    from separatrix.chain.exact.influence import flexibility, half_space_flexibility
-
     surface = half_space_flexibility(coated.surface)[0]
     excess = (flexibility(coated, k)[0] - surface) * wk
     local = surface + half_space_flexibility(base.base)[0]
@@ -206,25 +203,6 @@ def test_slope_with_much_spin():
     assert -chord == pytest.approx(1.5 * MU * made.problem.ellipse.load * B / spin, rel=0.01)
 
 
-def test_the_stencil_does_not_see_jumps():
-    """Centres and edges of cells each sum to 0; the mean of their places is 1, that of their squares 0."""
-    shift, factor = np.array(ROLLING).T
-    assert factor[shift % 2 == 0].sum() == factor[shift % 2 == 1].sum() == 0.0
-    assert factor @ shift == -2.0
-    assert factor @ shift**2 == 0.0
-
-
-def test_row_ends_are_edges_with_a_normal():
-    """Circle: cosine and sine of the polar angle of the row, to 0.01."""
-    grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=80, rows=80)
-    cos, sin = end_normals(grid)
-    rows = slice(12, 68)
-    assert sin[rows, -1] == pytest.approx(grid.y[rows], abs=0.01)
-    assert sin[rows, 0] == pytest.approx(-grid.y[rows], abs=0.01)
-    assert np.hypot(cos, sin) == pytest.approx(1.0, rel=1e-14)
-    assert end_normals(strip(20, BARE)[1])[0] == pytest.approx(1.0)
-
-
 def test_coefficients_on_few_cells():
     """C11 at 10, 20 and 40 columns and rows: 0.05 % (exact 3.3750)."""
     for n in (10, 20, 40):
@@ -252,26 +230,16 @@ print(kalker(made, 5e-5, phi=1e-4).traction.tobytes().hex()[:4000])
 
 def test_threads_of_libraries_are_the_same():
     """Bit for bit in processes with one and four BLAS threads, fit of the images included."""
-    answers = set()
+    answers, path = set(), os.pathsep.join([os.path.dirname(__file__), *sys.path])
     for threads in ("1", "4"):
-        extra = {"OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
-        path = os.pathsep.join([os.path.dirname(__file__), *sys.path])
-        done = subprocess.run(
-            [sys.executable, "-W", "ignore", "-c", BITS],
-            env=os.environ | extra | {"PYTHONPATH": path},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        answers.add(done.stdout)
+        extra = {"OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads, "PYTHONPATH": path}
+        call = [sys.executable, "-W", "ignore", "-c", BITS]
+        answers.add(subprocess.run(call, env=os.environ | extra, capture_output=True, check=True).stdout)
     assert len(answers) == 1
 
 
 def test_1000_random_contacts_converge():
-    """Shape, creeps, film, friction, Poisson's ratio and grid at random, all from a cold start.
-
-    4.1 passes on average, 12 at most; 5 s.
-    """
+    """Shape, creeps, film, friction, Poisson's ratio and grid at random, cold: 4.1 passes on average."""
     rng = np.random.default_rng(2026)
     passes = [random_case(rng).iterations for _ in range(1000)]
     assert max(passes) <= 40
@@ -330,20 +298,6 @@ def test_a_film_that_is_compressed_is_noted():
     """By 0.2 of its thickness."""
     (note,) = contact(0.3, race=body(0.25, (1.4e-3, 0.3, 0.01))).notes
     assert "compressed by 0.2" in note
-
-
-def test_own_grid_is_the_hertz_grid():
-    """Pressure solved instead of Hertz's: sticking force within 1 % at 20 columns."""
-    from separatrix.chain.hertz import contact_ellipse
-
-    hertz = contact_ellipse(1e-9, 3.0, 1.0, 1.0 / 0.75)
-    law = FrictionLaw(coefficient=1e6)
-    forces = []
-    for own in (False, True):
-        problem = ContactProblem(ellipse=hertz, bodies=BARE, friction=law, own_pressure=own)
-        made = rolling_contact(problem, columns=20, rows=20)
-        forces.append(kalker(made, xi=1e-3).force)
-    assert forces[1] == pytest.approx(forces[0], rel=0.01)
 
 
 def test_without_friction_everything_slips_and_nothing_is_lost():

@@ -22,23 +22,15 @@ quick = settings(derandomize=True, max_examples=12, deadline=None)
 B = 0.2
 
 
-def alone(columns, *, friction, roughness=1.0):
+def alone(columns, *, friction):
     """Rough interface between rigid bodies."""
-    stiff = body(0.25, G=1e9)
-    problem = ContactProblem(
-        ellipse=ellipse(B),
-        bodies=(stiff, stiff),
-        friction=FrictionLaw(coefficient=friction),
-        roughness=roughness,
-    )
+    stiff, law = (body(0.25, G=1e9),) * 2, FrictionLaw(coefficient=friction)
+    problem = ContactProblem(ellipse=ellipse(B), bodies=stiff, friction=law, roughness=1.0)
     return rolling_contact(problem, columns=columns, rows=columns)
 
 
 def test_rough_interface_alone_in_stick():
-    """Traction p xi d/l, d the distance from the leading edge: force 9 pi/32 N b xi/l.
-
-    0.04 % at 40 x 40 cells; 0.3/n^1.5.
-    """
+    """Traction p xi d/l, d the distance from the leading edge: force 9 pi/32 N b xi/l to 0.3/n^1.5."""
     for columns in (20, 40):
         force = -kalker(alone(columns, friction=1e9), xi=1.0).force
         exact = 9.0 * math.pi / 32.0 * ellipse(B).load * B
@@ -80,9 +72,7 @@ def test_smooth_surfaces_are_no_film():
     made, smooth = contact(B, columns=20, rows=20), contact(B, columns=20, rows=20, roughness=1e-12)
     xs = saturation(0.25)
     slip = rigid_slip(made.grid, longitudinal=0.4 * xs, spin=xs)
-    for one, other in zip(
-        solve_each(made, [slip, 2.0 * slip]), solve_each(smooth, [slip, 2.0 * slip]), strict=True
-    ):
+    for one, other in zip(*(solve_each(c, [slip, 2.0 * slip]) for c in (made, smooth)), strict=True):
         assert other.force == pytest.approx(one.force, rel=2e-5)
     creep = Creep(spin=2.0 * xs, curvature=xs)
     slopes = [traction_slope(c.problem, creep, columns=(10, 14), rows=16).slope for c in (made, smooth)]

@@ -27,6 +27,16 @@ def measured(friction, **changes):
     return FrictionTest(**known | changes)
 
 
+def fitted(tests, *scatter):
+    """Fit of material A."""
+    return fit_friction(tests, *scatter).of("A", ENVIRONMENT)
+
+
+def at_speed(friction, speed, **changes):
+    """One test at a slip speed."""
+    return measured(friction, slip_speed=(speed, speed), **changes)
+
+
 def one_way(rng, samples, repeats, between, within):
     """A balanced one-way model: a mean, samples, repeats of each."""
     sample = np.repeat(np.arange(samples), repeats)
@@ -89,27 +99,21 @@ def test_variance_components_are_recovered_without_bias():
     """Over 80 simulated plans the mean of each variance is the true one, within four standard errors."""
     rng = np.random.default_rng(7)
     found = [variance_components([one_way(rng, 10, 3, 0.1, 0.05)]) for _ in range(80)]
-    for values, true in (
-        ([f.between_samples**2 for f in found], 0.1**2),
-        ([f.between_tests**2 for f in found], 0.05**2),
-    ):
+    for name, true in (("between_samples", 0.1**2), ("between_tests", 0.05**2)):
+        values = [getattr(one, name) ** 2 for one in found]
         error = np.std(values) / sqrt(len(values))
         assert abs(np.mean(values) - true) < 4.0 * error  # one draw in 16000 lies outside
         assert error < 0.12 * true
 
 
 def test_a_single_test_returns_its_value_with_the_assumed_scatter():
-    """One test, nothing repeated: its own value, known to 9 %, and a new sample scatters by 9 %."""
-    found = fit_friction([measured(0.12)]).of("A", ENVIRONMENT).at()
+    """Its own value, known to 9 %, and a new sample scatters by 9 %; its own error adds in quadrature."""
+    found = fitted([measured(0.12)]).at()
     assert found.mean == pytest.approx(0.12, rel=1e-12)  # rounding of exp and log
     assert found.standard_error == pytest.approx(0.09 * 0.12, rel=1e-9)  # rounding of sums over the grid
     assert found.standard_deviation == pytest.approx(0.09 * 0.12, rel=1e-9)
     assert found.assumed_scatter
-
-
-def test_the_own_error_of_a_single_test_adds_to_the_assumed_scatter():
-    """A standard error of 5 % of the mean, beside 9 %: their root of the sum of squares."""
-    found = fit_friction([measured(0.1, standard_error=0.005)]).of("A", ENVIRONMENT).at()
+    found = fitted([measured(0.1, standard_error=0.005)]).at()
     assert found.standard_error == pytest.approx(0.1 * sqrt(0.09**2 + 0.05**2), rel=1e-9)
 
 
@@ -118,7 +122,7 @@ def test_the_fit_of_one_test_is_the_printed_mean_of_a_table():
     conditions = {"slip_speed": 21.0, "pressure": 1e8, "temperature": 300.0, "medium": "air"}
     ranges = {"slip_speed": (1.0, 5.0), "temperature": (77.0, 77.0)}
     stated = StatedFriction(mean=0.12, ranges=ranges, medium="liquid nitrogen", default_scatter=0.09)
-    one = fit_friction([measured(0.12, **ranges)]).of("A", ENVIRONMENT)
+    one = fitted([measured(0.12, **ranges)])
     a, b = stated.at(**conditions), one.at(**conditions)
     assert a.extrapolation == b.extrapolation
     assert len(a.extrapolation) == 4
@@ -132,12 +136,9 @@ def test_the_fit_of_one_test_is_the_printed_mean_of_a_table():
 
 def test_exact_power_laws_of_speed_and_pressure_come_back():
     """Tests without any noise on f = 0.1 V^0.2 p^-0.1: both exponents, and the friction between the tests."""
-    tests = [
-        measured(0.1 * v**0.2 * (p / 1e6) ** -0.1, slip_speed=(v, v), pressure=(p, p))
-        for v in (1.0, 2.0, 5.0)
-        for p in (1e6, 4e6)
-    ]
-    one = fit_friction(tests).of("A", ENVIRONMENT)
+    plan = [(v, p) for v in (1.0, 2.0, 5.0) for p in (1e6, 4e6)]
+    tests = [at_speed(0.1 * v**0.2 * (p / 1e6) ** -0.1, v, pressure=(p, p)) for v, p in plan]
+    one = fitted(tests)
     assert one.slopes["slip_speed"].value == pytest.approx(0.2, abs=1e-9)  # least squares to rounding
     assert one.slopes["pressure"].value == pytest.approx(-0.1, abs=1e-9)
     found = one.at(slip_speed=3.0, pressure=2e6)
@@ -147,25 +148,22 @@ def test_exact_power_laws_of_speed_and_pressure_come_back():
 
 def test_slopes_are_not_carried_beyond_the_tests():
     """At 21 m/s the friction is that of 5 m/s, the scatter grows by the steepest plausible power law."""
-    tests = [measured(0.1 * v**0.3, slip_speed=(v, v)) for v in (1.0, 2.0, 3.0, 5.0)]
-    one = fit_friction(tests).of("A", ENVIRONMENT)
+    tests = [at_speed(0.1 * v**0.3, v) for v in (1.0, 2.0, 3.0, 5.0)]
+    one = fitted(tests)
     at, beyond = one.at(slip_speed=5.0), one.at(slip_speed=21.0)
     assert beyond.mean == pytest.approx(at.mean, rel=1e-12)
     steep = sqrt(0.3**2 + one.slopes["slip_speed"].standard_error ** 2)
     assert beyond.widening == pytest.approx(beyond.mean * steep * log(21.0 / 5.0), rel=1e-6)
-    assert beyond.standard_deviation**2 == pytest.approx(
-        at.standard_deviation**2 + beyond.widening**2, rel=1e-9
-    )
+    both = np.hypot(at.standard_deviation, beyond.widening)
+    assert beyond.standard_deviation == pytest.approx(both, rel=1e-9)
     said = "slip speed in the pocket 21 m/s, tests cover 1 to 5 m/s: value at 5 m/s used"
     assert beyond.extrapolation == (said,)
 
 
 def test_speed_and_pressure_that_rise_together_give_one_slope_on_their_product():
     """Friction 0.1 (pV)^0.15 with p in proportion to V: the exponent of pV."""
-    tests = [
-        measured(0.1 * (v * v) ** 0.15, slip_speed=(v, v), pressure=(1e6 * v, 1e6 * v)) for v in (1, 2, 3, 5)
-    ]
-    one = fit_friction(tests).of("A", ENVIRONMENT)
+    tests = [at_speed(0.1 * (v * v) ** 0.15, v, pressure=(1e6 * v, 1e6 * v)) for v in (1, 2, 3, 5)]
+    one = fitted(tests)
     assert list(one.slopes) == ["pressure_velocity"]
     assert one.slopes["pressure_velocity"].value == pytest.approx(0.15, abs=1e-9)
     assert one.at(slip_speed=2.0, pressure=2e6).mean == pytest.approx(0.1 * 4.0**0.15, rel=1e-9)
@@ -174,11 +172,9 @@ def test_speed_and_pressure_that_rise_together_give_one_slope_on_their_product()
 @pytest.mark.parametrize("wobble", [1.0, 1.05])
 def test_tests_at_one_pv_have_a_slope_on_slip_speed_alone(wobble):
     """Pressure falls as speed rises, exactly or nearly: the friction at a tested speed comes back."""
-    tests = [
-        measured(0.1 * v**0.2, slip_speed=(v, v), pressure=(1e7 / v * w, 1e7 / v * w))
-        for v, w in ((1.0, 1.0), (2.0, wobble), (5.0, 1.0), (10.0, 1.0))
-    ]
-    one = fit_friction(tests).of("A", ENVIRONMENT)
+    plan = (1.0, 1.0), (2.0, wobble), (5.0, 1.0), (10.0, 1.0)
+    tests = [at_speed(0.1 * v**0.2, v, pressure=(1e7 / v * w, 1e7 / v * w)) for v, w in plan]
+    one = fitted(tests)
     assert list(one.slopes) == ["slip_speed"]
     assert one.slopes["slip_speed"].value == pytest.approx(0.2, abs=1e-9)  # least squares to rounding
     assert one.covariates.notes == ("pressure fell as slip speed rose: slope on slip speed, for both",)
@@ -186,11 +182,9 @@ def test_tests_at_one_pv_have_a_slope_on_slip_speed_alone(wobble):
 
 def test_a_speed_and_a_pressure_never_tested_together_are_said():
     """5 m/s and 5 MPa were tested, each beside the lowest of the other: at both, pV is held and widened."""
-    tests = [
-        measured(0.1 * pv**0.2, slip_speed=(v, v), pressure=(1e6 * p, 1e6 * p))
-        for v, p, pv in ((1.0, 1.0, 1.0), (5.0, 1.0, 5.0), (1.0, 5.0, 5.0))
-    ]
-    one = fit_friction(tests).of("A", ENVIRONMENT)
+    plan = (1.0, 1.0), (5.0, 1.0), (1.0, 5.0)
+    tests = [at_speed(0.1 * (p * v) ** 0.2, v, pressure=(1e6 * p, 1e6 * p)) for v, p in plan]
+    one = fitted(tests)
     assert list(one.slopes) == ["pressure_velocity"]
     corner, edge = one.at(slip_speed=5.0, pressure=5e6), one.at(slip_speed=5.0, pressure=1e6)
     assert corner.mean == pytest.approx(0.1 * 5.0**0.2, rel=1e-9)  # of the tested 5 MPa m/s, not of 25
@@ -201,6 +195,11 @@ def test_a_speed_and_a_pressure_never_tested_together_are_said():
     steep = sqrt(slope.value**2 + slope.standard_error**2)
     assert corner.widening == pytest.approx(corner.mean * steep * log(5.0), rel=1e-6)
     assert not edge.extrapolation
+
+
+def law_of(tests):
+    """Friction of material A as these tests foretell it."""
+    return TestedFriction(material="A", environment=ENVIRONMENT, tests=tuple(tests), default_scatter=0.09)
 
 
 WARM_AND_COLD = [measured(f, temperature=(k, k)) for f, k in ((0.05, 77.0), (0.05, 90.0), (0.2, 295.0))]
@@ -219,18 +218,14 @@ WARM_AND_COLD = [measured(f, temperature=(k, k)) for f, k in ((0.05, 77.0), (0.0
 def test_tests_at_the_nearest_temperature_serve(temperature, friction, words):
     """0.05 in the cold and 0.2 in the warm: never their mean, which is the friction of neither."""
     for tests in (WARM_AND_COLD, WARM_AND_COLD[::-1]):
-        law = TestedFriction(material="A", environment=ENVIRONMENT, tests=tuple(tests), default_scatter=0.09)
-        found = law.at(temperature=temperature)
+        found = law_of(tests).at(temperature=temperature)
         assert found.mean == pytest.approx(friction, rel=1e-9)  # rounding of exp and log
         assert found.extrapolation == words
 
 
 def test_a_test_that_states_no_temperature_serves_at_any():
     """What is not known leaves nobody out."""
-    law = TestedFriction(
-        material="A", environment=ENVIRONMENT, default_scatter=0.09,
-        tests=(WARM_AND_COLD[0], measured(0.05), WARM_AND_COLD[2]),
-    )  # fmt: skip
+    law = law_of([WARM_AND_COLD[0], measured(0.05), WARM_AND_COLD[2]])
     assert len(law.serving(80.0)) == 2
     assert law.at(temperature=80.0).mean == pytest.approx(0.05, rel=1e-9)
 
@@ -250,17 +245,11 @@ def test_intervals_of_the_parameters_hold_the_truth():
     """
     rng, hits = np.random.default_rng(8), np.zeros(2)
     for _ in range(200):
-        deviation = 0.07 * rng.standard_normal(5)
-        tests = [
-            measured(
-                exp(log(0.1) + 0.1 * log(v) + deviation[s] + 0.05 * rng.standard_normal()),
-                slip_speed=(v, v),
-                sample=f"s{s}",
-            )
-            for s in range(5)
-            for v in (1.0, 2.0, 5.0)
-        ]
-        one = fit_friction(tests).of("A", ENVIRONMENT)
+        sample, speed = np.repeat(np.arange(5), 3), np.tile((1.0, 2.0, 5.0), 5)
+        off = (0.07 * rng.standard_normal(5))[sample] + 0.05 * rng.standard_normal(15)
+        rows = zip((0.1 * speed**0.1 * np.exp(off)).tolist(), speed.tolist(), sample, strict=True)
+        tests = [at_speed(f, v, sample=f"s{s}") for f, v, s in rows]
+        one = fitted(tests)
         true = log(0.1) + 0.1 * one.covariates.centres[0], 0.1
         ends = [[one.posterior.quantile(c, p) for p in (0.025, 0.975)] for c in np.eye(2)]
         hits += [low <= t <= high for (low, high), t in zip(ends, true, strict=True)]
@@ -276,14 +265,14 @@ def test_the_assumption_weighs_as_much_as_four_repeated_tests(found):
     """
     z = np.linspace(-1.0, 1.0, 5)
     tests = [measured(0.1 * exp(x)) for x in found * z / z.std(ddof=1)]
-    assert fit_friction(tests).of("A", ENVIRONMENT).scatter == pytest.approx(sqrt(0.09 * found), rel=0.12)
+    assert fitted(tests).scatter == pytest.approx(sqrt(0.09 * found), rel=0.12)
 
 
 def test_a_material_with_few_tests_borrows_scatter_from_the_others():
     """Beside a material that scatters by 30 %, a single test is trusted less than the assumed 9 %."""
     rng = np.random.default_rng(9)
     others = [measured(0.1 * exp(0.3 * rng.standard_normal()), material="B") for _ in range(12)]
-    alone = fit_friction([measured(0.12)]).of("A", ENVIRONMENT)
+    alone = fitted([measured(0.12)])
     beside = fit_friction([measured(0.12), *others])
     pooled, own = beside.of("A", ENVIRONMENT), beside.of("B", ENVIRONMENT)
     assert alone.scatter < pooled.scatter < own.scatter
@@ -299,17 +288,17 @@ def test_many_tests_outweigh_the_assumed_scatter(count, source):
     """Sixty beyond the mean."""
     rng = np.random.default_rng(3)
     tests = [measured(0.1 * exp(0.3 * rng.standard_normal())) for _ in range(count)]
-    assert fit_friction(tests, 0.12).of("A", ENVIRONMENT).scatter_source == source
+    assert fitted(tests, 0.12).scatter_source == source
 
 
 def test_repeats_on_one_sample_do_not_tell_how_samples_scatter():
     """However well they agree the next cage scatters by a guess, and that is said; a second sample tells."""
     one = [measured(x, sample="s1") for x in (0.1000, 0.1001, 0.1002)]
-    alone = fit_friction(one).of("A", ENVIRONMENT)
+    alone = fitted(one)
     assert alone.scatter_source == "assumed"
     assert alone.at().assumed_scatter
     assert alone.scatter > 0.05  # 9 %, less what repeats on the sample tell
-    two = fit_friction([*one, measured(0.11, sample="s2")]).of("A", ENVIRONMENT)
+    two = fitted([*one, measured(0.11, sample="s2")])
     assert two.scatter_source == "its own tests, drawn towards the assumed 9 %"
     assert not two.at().assumed_scatter
 
@@ -391,12 +380,7 @@ def test_a_ball_that_rolls_without_spin_slides_by_the_closed_form():
 @pytest.mark.parametrize("groups", [1, 2])
 def test_any_number_of_equal_tests_has_a_fit(groups):
     """Their likelihood leaves one node of the scatter; the weights of the others are below all numbers."""
-    tests = [
-        FrictionTest(material="A", counterface=f"B{k}", medium="gas", friction=0.1)
-        for k in range(groups)
-        for _ in range(150)
-    ]
-    fit = fit_friction(tests)
-    for one in fit.groups.values():
+    tests = [measured(0.1, counterface=f"B{k}") for k in range(groups) for _ in range(150)]
+    for one in fit_friction(tests).groups.values():
         assert one.at().mean == pytest.approx(0.1, rel=1e-12)  # rounding of a mean of equal logarithms
         assert 0.0 < one.scatter < 0.01

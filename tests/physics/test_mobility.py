@@ -6,13 +6,11 @@ are printed to 4 to 6 digits; 1e-3 covers the quadrature of theirs and of ours.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from mobile_balls import NAMES, held, modes_of, records, study_of
-from scipy.integrate import solve_ivp
+from mobile_balls import NAMES, held, impact, modes_of, records, study_of
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
@@ -30,46 +28,68 @@ from separatrix.chain.ball_mobility import (
 )
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.contacts import bearing_state, race_tracks
+from separatrix.chain.equilibrium.balance import slip_coefficients
+from separatrix.chain.equilibrium.groove import friction_resultants, touch
 from separatrix.chain.race_curve import race_slope
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
 from separatrix.study.study import KinematicModel, TractionModel, TractionSettings
 
-
-@pytest.mark.parametrize(
-    ("name", "rates"),
-    [
-        ("cryo", (666.06, 31384.0, 178112.0, 347702.0)),
-        ("wheel 2000", (62.755, 263886.0, 720685.0, 1742155.0)),
-    ],
-)
-def test_four_rates(name, rates):
-    """Orbit, pivoting attitude and two rates of spin (dynamics3d 2.2)."""
-    found = modes_of(name).rates
-    assert found.real == pytest.approx(rates, rel=1e-3)
-    assert found.imag == pytest.approx(0.0, abs=1e-6)
+FOUR_RATES = {
+    "cryo": (666.06, 31384.0, 178112.0, 347702.0), "wheel 2000": (62.755, 263886.0, 720685.0, 1742155.0),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("name", "relaxed", "locked"), [("cryo", 175.83, 368.37), ("wheel 2000", 283.35, 283.45)]
-)
-def test_dampings(name, relaxed, locked):
-    """C_eff with the spin free, C_locked with it held (dynamics3d 2.2)."""
+@pytest.mark.parametrize("name", FOUR_RATES)
+def test_four_rates(name):
+    """Orbit, pivoting attitude and two rates of spin (dynamics3d 2.2); dampings rise with what is held."""
     found = modes_of(name)
-    assert found.relaxed == pytest.approx(relaxed, rel=1e-4)
-    assert found.locked == pytest.approx(locked, rel=1e-4)
+    assert found.rates.real == pytest.approx(FOUR_RATES[name], rel=1e-3)
+    assert found.rates.imag == pytest.approx(0.0, abs=1e-6)
     assert found.relaxed <= found.held <= found.locked
-
-
-@pytest.mark.parametrize(
-    ("name", "damping", "mass"), [("cryo", 206.1, 6.567e-3), ("wheel 6000", 74.3, 1.289e-3)]
-)
-def test_one_state_of_a_ball(name, damping, mass):
-    """C_f and m_e with the attitude held: C_f/m_e is the second rate (dynamics3d 2.2)."""
-    found = modes_of(name)
-    assert found.held == pytest.approx(damping, rel=1e-3)
-    assert found.mass == pytest.approx(mass, rel=1e-3)
     assert found.mass > held(name).problem.ball_mass  # the spin that follows adds to it
+
+
+NUMBERS = {  # of dynamics3d: what they are, how near, and those of the bearings
+    "C_eff, spin free (2.2)": (
+        lambda name: modes_of(name).relaxed, {"rel": 1e-4}, {"cryo": 175.83, "wheel 2000": 283.35}
+    ),
+    "C_locked, spin held (2.2)": (
+        lambda name: modes_of(name).locked, {"rel": 1e-4}, {"cryo": 368.37, "wheel 2000": 283.45}
+    ),
+    "C_f, attitude held (2.2)": (
+        lambda name: modes_of(name).held, {"rel": 1e-3}, {"cryo": 206.1, "wheel 6000": 74.3}
+    ),
+    "m_e, C_f over the second rate (2.2)": (
+        lambda name: modes_of(name).mass, {"rel": 1e-3}, {"cryo": 6.567e-3, "wheel 6000": 1.289e-3}
+    ),
+    "k of the speed (F/C_eff)(1 + k f) of a push from the front (E2)": (
+        lambda name: pocket_friction_effect(held(name)), {"abs": 1e-4},
+        dict(zip(NAMES, (0.79192, 0.73517, -0.12903, 0.98216), strict=True)),
+    ),
+    "damping along the groove (2.2)": (lambda name: groove(held(name))[0], {"rel": 1e-3}, {"cryo": 766.2}),
+    "the same, which by another quadrature is wider": (
+        lambda name: groove(held(name))[0], {"rel": 4e-3},
+        {"le7": 395.0, "wheel 2000": 728.8, "wheel 6000": 312.8},
+    ),
+    "stiffness along the groove, with the friction that turns with the angle (2.2)": (
+        lambda name: groove(held(name))[1], {"rel": 4e-3}, {"cryo": 5.047e6}
+    ),
+    "race friction times both loads (F2)": (
+        lambda name: held(name).capacity, {"rel": 1e-3}, {"cryo": 95.70, "le7": 135.5, "wheel 2000": 1.331}
+    ),
+    "pitch of the spin axis, to two digits (1.5, E9)": (
+        lambda name: math.degrees(pitch_angle(held(name))), {"abs": 6e-3},
+        {"cryo": 25.44303, "le7": 18.59, "wheel 6000": 14.00},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", NUMBERS)
+def test_numbers_of_dynamics3d(what):
+    """Each of another program."""
+    found, near, expected = NUMBERS[what]
+    assert {name: found(name) for name in expected} == pytest.approx(expected, **near)
 
 
 def test_modes_are_those_of_the_motion():
@@ -81,37 +101,6 @@ def test_modes_are_those_of_the_motion():
         response = np.sum(found.shares * found.rates / (s + found.rates))
         assert response == pytest.approx(x[0], rel=1e-9)
         assert 1.0 / response.real == pytest.approx(damping, rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("name", "effect"), [*zip(NAMES, (0.79192, 0.73517, -0.12903, 0.98216), strict=True)]
-)
-def test_pocket_friction_brakes_the_spin(name, effect):
-    """The speed is (F/C_eff)(1 + k f) for a push from the front (dynamics3d E2)."""
-    assert pocket_friction_effect(held(name)) == pytest.approx(effect, abs=1e-4)
-
-
-@pytest.mark.parametrize(("name", "damping"), [*zip(NAMES, (766.2, 395.0, 728.8, 312.8), strict=True)])
-def test_damping_along_the_groove(name, damping):
-    """Lateral friction of both contacts where the grooves give least (dynamics3d 2.2, other quadrature)."""
-    assert groove(held(name))[0] == pytest.approx(damping, rel=1e-3 if name == "cryo" else 4e-3)
-
-
-def test_stiffness_along_the_groove():
-    """Cryo: 5.047e6 N/m (dynamics3d 2.2); the friction that turns with the angle is in it."""
-    assert groove(held("cryo"))[1] == pytest.approx(5.047e6, rel=4e-3)
-
-
-@pytest.mark.parametrize(("name", "capacity"), [("cryo", 95.70), ("le7", 135.5), ("wheel 2000", 1.331)])
-def test_capacity(name, capacity):
-    """Race friction times both loads (dynamics3d F2)."""
-    assert held(name).capacity == pytest.approx(capacity, rel=1e-3)
-
-
-@pytest.mark.parametrize(("name", "pitch"), [("cryo", 25.44303), ("le7", 18.59), ("wheel 6000", 14.00)])
-def test_pitch_of_the_spin_axis(name, pitch):
-    """dynamics3d 1.5 and E9; printed to two digits."""
-    assert math.degrees(pitch_angle(held(name))) == pytest.approx(pitch, abs=6e-3)
 
 
 def relaxed_push(name: str, speeds: Array) -> Array:
@@ -140,25 +129,6 @@ def test_push_with_the_contact_angles_held():
 
 RING = {"cryo": (12.5e-3, 3e6), "wheel 6000": (2.5e-3, 1e6)}
 """Mass that an impact feels, M/2 of a ring free to turn, and stiffness of the pocket."""
-
-
-def impact(moved: Callable, size: int, ring: tuple[float, float], speed: float) -> tuple[float, float, float]:
-    """Restitution, largest force and duration of an impact on a ball with x' = moved(x, force)."""
-    mass, k = ring
-
-    def rates(_: float, z: Array) -> Array:
-        force = k * z[size + 1]
-        return np.append(moved(z[:size], force), (-force / mass, z[size] - z[0]))
-
-    def parted(t: float, z: Array) -> float:
-        return float(z[size + 1]) if t > 1e-7 else 1.0
-
-    parted.terminal = True
-    start = np.zeros(size + 2)
-    start[size] = speed
-    how = {"events": parted, "rtol": 1e-6, "atol": 1e-13, "method": "LSODA"}
-    end = solve_ivp(rates, (0.0, 0.02), start, **how)
-    return -end.y[size, -1] / speed, k * end.y[size + 1].max(), end.t[-1]
 
 
 def by_fields(name: str, speed: float, sense: float = 1.0) -> tuple[float, float, float]:
@@ -202,25 +172,27 @@ def test_push_begins_with_the_linear_law():
     assert relaxed == pytest.approx(found.relaxed, rel=5e-5)
 
 
+def moved(name, *, model=None, film=None, **operation):
+    """Mobility of a bearing with another operation, kinematic model or film."""
+    bearing, usual, own_model, own_film, traction = records(name)
+    return mobility(bearing, replace(usual, **operation), model or own_model, film or own_film, traction)
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_push_saturates_below_the_capacity(name):
-    """Six times the speed of capacity over C_f: all slips, and spin takes some of the friction."""
-    found = mobility(*records(name))
+def test_push_saturates_below_the_capacity_and_the_law_of_traction_with_it(name):
+    """At six times the speed of capacity over C_f all slips, and spin takes some of the friction.
+
+    The law has the exact slope at rest, and is 2 % of the capacity from the slip fields at most.
+    """
+    found = moved(name)
     for force in (found.force_forward, found.force_backward):
         assert 0.85 < force[-1] / found.capacity < 1.0
     assert found.force_forward[0] / found.speed[0] == pytest.approx(found.linear.damping, rel=0.02)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_law_of_traction(name):
-    """Exact slope at rest; two hundredths of the capacity from the slip fields at most."""
-    found = mobility(*records(name))
     assert found.traction.slope == pytest.approx(found.linear.damping, rel=1e-12)
     assert found.traction.mass == found.linear.effective_mass
     assert found.law_error < 0.02
-    assert found.law_error == pytest.approx(
-        np.abs(found.force_law - 0.5 * (found.force_forward + found.force_backward)).max() / found.capacity
-    )
+    off = np.abs(found.force_law - 0.5 * (found.force_forward + found.force_backward)).max()
+    assert found.law_error == pytest.approx(off / found.capacity)
 
 
 def test_law_finds_its_own_speed():
@@ -281,11 +253,16 @@ def test_one_state_reproduces_an_impact(name):
 # The slip law, and which ball.
 
 
+def state_of(name):
+    """State of a bearing."""
+    bearing, operation, model, film, _ = records(name)
+    return bearing_state(bearing, operation, model, film.race_friction)
+
+
 def test_elastic_creep_meets_the_spin_moment_of_the_exact_contact():
     """At the same spin the outer pivoting moment is met within 1 % by elastic creep; rigid, it is 4 % off."""
     asked = study_of("cryo")
-    state = bearing_state(asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction)
-    tracks = race_tracks(asked.bearing, asked.film, state)
+    tracks = race_tracks(asked.bearing, asked.film, state_of("cryo"))
     outer = race_slope(tracks[1], TractionSettings(model=TractionModel.EXACT))
     exact = abs(outer.solution.spin_moment)
     rigid, elastic = (_outer_moment(law) for law in (SlipLaw.RIGID, SlipLaw.ELASTIC))
@@ -296,9 +273,6 @@ def test_elastic_creep_meets_the_spin_moment_of_the_exact_contact():
 
 def _outer_moment(law: SlipLaw) -> float:
     """Pivoting moment of the outer contact at the spin of the rigid equilibrium, without a traction force."""
-    from separatrix.chain.equilibrium.balance import slip_coefficients
-    from separatrix.chain.equilibrium.groove import friction_resultants, touch
-
     ball, rigid = held("cryo", law), held("cryo")
     p, out, c = ball.problem, np.empty((5, 7)), np.empty(4)
     at = touch(p, 1.0, rigid.state[0], rigid.state[1], 0.0)
@@ -306,10 +280,9 @@ def _outer_moment(law: SlipLaw) -> float:
     c[3] = 0.0
     a = at.major_coefficient * at.load ** (1.0 / 3.0)
     radius = 2.0 * 0.52 * p.ball_diameter / (2.0 * 0.52 + 1.0)
+    sizes = a, a * at.axis_ratio, 0.5 * p.ball_diameter, radius
     for _ in range(30):
-        friction_resultants(
-            c, a, a * at.axis_ratio, 0.5 * p.ball_diameter, radius, ball.slips[1], 96, rigid.nodes, out
-        )
+        friction_resultants(c, *sizes, ball.slips[1], 96, rigid.nodes, out)
         c[2] -= out[2, 0] / out[2, 3]
     return abs(p.friction * at.load * out[0, 0])
 
@@ -325,12 +298,7 @@ def test_slip_speeds_are_those_of_the_elastic_creep():
 
 def test_a_bearing_that_turns_the_other_way_is_the_same():
     """Mirrored: the same rates and the same law."""
-    asked = study_of("cryo")
-    other = replace(asked.operation, inner_speed=-asked.operation.inner_speed)
-    one, two = (
-        mobility(asked.bearing, operation, asked.kinematics.model, asked.film, asked.traction)
-        for operation in (asked.operation, other)
-    )
+    one, two = moved("cryo"), moved("cryo", inner_speed=-study_of("cryo").operation.inner_speed)
     assert two.linear.rates == pytest.approx(one.linear.rates, rel=1e-6)
     assert two.force_forward[-8:] == pytest.approx(one.force_forward[-8:], rel=1e-6)
     assert one.force_forward[-8:] != pytest.approx(one.force_backward[-8:], rel=1e-2)
@@ -338,28 +306,20 @@ def test_a_bearing_that_turns_the_other_way_is_the_same():
 
 def test_outer_ring_rotation():
     """The outer ring turns: the ball settles, with as many positive rates."""
-    asked = study_of("cryo")
-    operation = replace(asked.operation, inner_speed=0.0, outer_speed=asked.operation.inner_speed)
-    found = mobility(asked.bearing, operation, asked.kinematics.model, asked.film, asked.traction)
-    assert np.all(found.linear.rates > 0.0)
-    assert 0.0 < found.linear.damping_relaxed <= found.linear.damping
+    found = moved("cryo", inner_speed=0.0, outer_speed=study_of("cryo").operation.inner_speed).linear
+    assert np.all(found.rates > 0.0)
+    assert 0.0 < found.damping_relaxed <= found.damping
 
 
 def test_race_control_gives_the_place_and_friction_the_spin():
     """Outer race control puts the ball a degree elsewhere; its mobility is that of friction all the same."""
-    asked = study_of("le7")
-    control = KinematicModel.OUTER_RACE_CONTROL
-    one, two = (
-        mobility(asked.bearing, asked.operation, model, asked.film, asked.traction)
-        for model in (asked.kinematics.model, control)
-    )
+    one, two = (moved("le7", model=model) for model in (None, KinematicModel.OUTER_RACE_CONTROL))
     assert two.linear.damping == pytest.approx(one.linear.damping, rel=0.02)
 
 
 def test_a_ball_off_the_inner_race_is_refused(monkeypatch):
     """Nothing turns it there."""
-    given = records("cryo")
-    state = bearing_state(given[0], given[1], given[2], given[3].race_friction)
+    given, state = records("cryo"), state_of("cryo")
     lifted = replace(state, inner=replace(state.inner, load=0.0))
     monkeypatch.setattr(ball_mobility, "bearing_state", lambda *_: lifted)
     with pytest.raises(InputError, match="must press a ball on both races"):
@@ -368,9 +328,7 @@ def test_a_ball_off_the_inner_race_is_refused(monkeypatch):
 
 def test_a_radial_bearing_has_no_pitch():
     """Contact angle 0: pivoting does not take part, C_f is C_eff; no gyroscopic mode is left out."""
-    asked = study_of("cryo")
-    operation = replace(asked.operation, axial_load=0.0, radial_load=1000.0)
-    film = replace(asked.film, material=None, thickness=None)
-    found = mobility(asked.bearing, operation, asked.kinematics.model, film, asked.traction).linear
+    film = replace(study_of("cryo").film, material=None, thickness=None)
+    found = moved("cryo", film=film, axial_load=0.0, radial_load=1000.0).linear
     assert found.damping == pytest.approx(found.damping_relaxed, rel=1e-6)
     assert found.pitch_angle == pytest.approx(0.0, abs=1e-6)

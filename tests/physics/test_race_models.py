@@ -40,6 +40,11 @@ EXACT = TractionSettings(model=TractionModel.EXACT)
 CAGE = CageDesign(mass=0.025, pocket_clearance=6e-4, ball_cage_stiffness=3e6)
 
 
+def film(E, nu, h=1e-6):
+    """A film of another material and thickness."""
+    return replace(COATED, thickness=h, material=Material(name="film", elastic_modulus=E, poisson_ratio=nu))
+
+
 def study(film=COATED, **given):
     """A bearing with a film."""
     return Study(name="models", title="Models", bearing=BEARING, operation=POINT, film=film, **given)
@@ -92,22 +97,16 @@ def test_where_a_soft_film_takes_the_strips_out_of_their_range():
     assert "across the groove" in found
     assert "The film changes the pressure" not in found
     thick = replace(COATED, thickness=1e-5)
+    bare = Film(race_friction=0.1)
+    assert film_strain(track(bare), 1e9) == 0.0
+    assert "linearly elastic" not in outside(bare)
     assert 'consider [traction] pressure = "coated"' in outside(thick)
     assert "off those of the exact contact" in outside(thick)
 
 
-def test_bare_races_have_a_lateral_force():
-    """No film, no strain. The lateral forces of the races oppose each other, as their spins do."""
-    bare = Film(race_friction=0.1)
-    inner, outer = (exact_slope(track(bare, race), EXACT).solution for race in Race)
-    assert inner.lateral_force * outer.lateral_force < 0.0
-    assert film_strain(track(bare), 1e9) == 0.0
-    assert "linearly elastic" not in outside(bare)
-
-
 def test_a_film_that_the_exact_contact_does_not_take_is_named_with_its_reason():
     """Too soft for this pressure: strips answer, the sentence says why not; asked for, it is refused."""
-    soft = replace(COATED, material=Material(name="gum", elastic_modulus=0.1e9, poisson_ratio=0.4))
+    soft = film(0.1e9, 0.4)
     found = outside(soft)
     assert found.startswith("The exact contact has no answer")
     assert "film strain p0/M_c must not exceed 1" in found
@@ -117,10 +116,7 @@ def test_a_film_that_the_exact_contact_does_not_take_is_named_with_its_reason():
 
 def test_a_hard_thin_film_leaves_the_ellipse_of_hertz():
     """10 nm of steel's modulus: half lengths within 0.5 %, the cells of the pressure; the load is kept."""
-    film = replace(
-        COATED, thickness=1e-8, material=Material(name="hard", elastic_modulus=205e9, poisson_ratio=0.285)
-    )
-    own = track(film)
+    own = track(film(205e9, 0.285, 1e-8))
     found = coated_ellipse(own)
     assert found.semi_minor == pytest.approx(own.ellipse.semi_minor, rel=5e-3)
     assert found.semi_major == pytest.approx(own.ellipse.semi_major, rel=5e-3)
@@ -131,10 +127,7 @@ def test_a_hard_thin_film_leaves_the_ellipse_of_hertz():
 
 def test_the_pressure_of_coated_bodies_cures_the_strips_in_part():
     """3 um of 0.5 GPa: a longer contact, and slopes by strips that lie nearer to the exact ones."""
-    soft = replace(
-        COATED, thickness=3e-6, material=Material(name="soft", elastic_modulus=0.5e9, poisson_ratio=0.46)
-    )
-    own = track(soft)
+    own = track(film(0.5e9, 0.46, 3e-6))
     assert coated_ellipse(own).semi_minor > 1.15 * own.ellipse.semi_minor
     best = exact_slope(own, replace(EXACT, pressure=ContactPressure.COATED)).slope
     hertz, coated = (strips(own, pressure).slope for pressure in ContactPressure)
@@ -159,8 +152,7 @@ def test_a_worn_film_has_the_pressure_of_hertz():
 
 def test_the_exact_contact_is_solved_once(monkeypatch):
     """The range of the strips takes the exact contact of the chain."""
-    solution = solve(study(traction=EXACT, cage=CAGE))
-    _ = solution.traction
+    _ = solve(study(traction=EXACT, cage=CAGE)).traction
     monkeypatch.setattr(exact, "traction_slope", None)  # a second solution would fail
     assert "across the groove" in outside(model=TractionModel.EXACT)
 
@@ -194,7 +186,6 @@ def test_slip_by_the_pressure_is_that_of_the_plane():
 
 def test_a_worn_film_may_be_nearly_incompressible():
     """It is in series; as a layer the exact contact would refuse it."""
-    rubber = Material(name="rubber", elastic_modulus=1e9, poisson_ratio=0.495)
-    whole = replace(COATED, material=rubber)
+    whole = film(1e9, 0.495)
     assert "must not exceed 0.49" in outside(whole)
     assert "no answer" not in outside(replace(whole, wear=Wear(friction=0.3, share=0.1)))

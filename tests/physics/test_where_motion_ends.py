@@ -84,18 +84,23 @@ def test_a_run_is_not_settled_before_it_touches_anything():
     assert found.pocket_impacts.sum(axis=2).min() > 0
 
 
+@lru_cache
+def of_the_pump(radial_load: float) -> Judgement:
+    """Verdict on the liquid oxygen turbopump from its default kicks."""
+    cage = shipped("lox-turbopump", radial_load)
+    return judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION)))
+
+
 @pytest.mark.parametrize("radial_load", [0.0, 500.0])
 def test_a_fast_or_radially_loaded_bearing_is_decided(radial_load):
     """Liquid oxygen turbopump, 40 000 rpm, f 0.08, default kicks: STABLE with and without a radial load."""
-    cage = shipped("lox-turbopump", radial_load)
-    found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION)))
+    found = of_the_pump(radial_load)
     assert (found.verdict, found.probability_stable) == (Verdict.STABLE, 1.0), found.reason
 
 
 def test_a_settled_cage_that_rubs_its_land_says_how_hard():
     """Thrown out by the turning frame it rides on the land: its class, force, speed and heat are stated."""
-    cage = shipped("lox-turbopump")
-    found = judge(cage, run_ensemble(cage, StabilitySettings(runs=4, duration=DURATION)))
+    cage, found = shipped("lox-turbopump"), of_the_pump(0.0)
     assert found.cage_motion is CageMotion.ON_THE_LAND
     # judged as soon as its offset moves by less than 5 %, from where it still rebounds a little
     assert found.mean_offset == pytest.approx(cage.land_gap, rel=0.05)
@@ -135,22 +140,6 @@ def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
 
-INTO_THE_LAND = MovingCage(
-    mass=9.084e-3, moment_of_inertia=1.0758e-5, ball_count=7, pitch_radius=0.0344139, cage_speed=1892.95,
-    inner_speed=5235.99, outer_speed=0.0, pocket_clearance=4.9392e-3, ball_cage_stiffness=323998.0,
-    race_damping=35.623, ball_cage_friction=0.01, guidance=Guidance.OUTER, land_clearance=1e-3,
-    land_friction=0.0, land_stiffness=1e7, land_restitution=0.5, pocket_position_scatter=8.15e-4,
-)  # fmt: skip
-
-
-def test_a_cage_driven_21_mm_into_its_land_is_not_stable():
-    """A kick of 1000 m/s goes through a clearance of 1 mm: whatever it ends as, no verdict is STABLE."""
-    settings = StabilitySettings(kicks=(1000.0,), runs=4, duration=1.7256639e-3, seed=0)
-    found = judge(INTO_THE_LAND, run_ensemble(INTO_THE_LAND, settings))
-    assert found.largest_offset > largest_room(INTO_THE_LAND)
-    assert found.verdict is not Verdict.STABLE
-
-
 def test_a_state_that_leaves_the_range_of_numbers_is_not_settled():
     """NaN once counted as a motion that dies."""
     looks = np.full((1, of(LOOK_COLUMNS)), np.nan, np.float32)
@@ -169,15 +158,14 @@ def test_a_cage_that_leaves_its_room_is_not_stable():
     cage = replace(shipped("cryogenic-turbopump"), land_clearance=1e-9)
     found = run_ensemble(cage, StabilitySettings(kicks=(1000.0,), runs=8, duration=5e-3))
     assert np.isfinite(found.end_energy).all()
-    assert found.largest_offset.min() > 1e-3
+    assert found.largest_offset.min() > max(1e-3, largest_room(cage))
     assert judge(cage, found).verdict is not Verdict.STABLE
 
 
 def test_a_cage_without_play_or_land_is_driven_out_by_its_frame():
     """It drifts at the slow root of the linear equations; the friction of a drift is not a whirl."""
-    cage = shipped("cryogenic-turbopump")
-    cage = replace(cage, guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0)
-    cage = replace(cage, ball_cage_friction=0.02)
+    free = {"guidance": Guidance.BALL, "land_clearance": None, "pocket_clearance": 0.0}
+    cage = replace(shipped("cryogenic-turbopump", friction=0.02), **free)
     found = judge(cage, run_ensemble(cage, StabilitySettings(duration=0.3), kicks=(0.1,), runs=8))
     assert (found.by_kick[0].drifts, found.verdict) == (8, Verdict.UNDECIDED)
     # the motion is linear, and the two fast roots have decayed by exp(-600): single precision of offsets

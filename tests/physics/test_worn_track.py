@@ -76,15 +76,13 @@ def test_a_profile_of_equal_values_is_a_number(places, friction, compliance, spi
 
 def test_full_sliding_takes_the_mean_friction_under_the_load():
     """Saturated: the integral of mu p over N, whose density is (3/4)(1 - y^2/a^2); 1e-6: Gauss panels."""
-    ellipse, creep = INNER[0], Creep(spin=0.0, curvature=0.0)
     friction, compliance = band(INNER, 0.3)
-    curve = traction_curve(
-        ellipse,
-        creep,
-        race_friction=friction,
-        film_compliance=compliance,
-        creep_increments=np.array([-1.0, 1.0]),
-    )
+    how = {
+        "race_friction": friction,
+        "film_compliance": compliance,
+        "creep_increments": np.array([-1.0, 1.0]),
+    }
+    curve = traction_curve(INNER[0], Creep(spin=0.0, curvature=0.0), **how)
     inside = 0.75 * 2.0 * (0.3 - 0.3**3 / 3.0)
     expected = 0.3 * inside + 0.1 * (1.0 - inside)
     assert curve.traction_coefficient == pytest.approx([-expected, expected], rel=1e-6)

@@ -59,9 +59,9 @@ CLASSES = {
 }  # fmt: skip
 
 
-def sane_study(seed: int, folder: Path, *, duration: str = "", runs: int = 0, name: str = "") -> Study:
+def sane_study(seed: int, folder: Path) -> Study:
     """The study of `sane_text`, read from a file that is written into a folder."""
-    return _read(sane_text(seed, duration=duration, runs=runs, name=name), f"sane-{seed}", folder)
+    return _read(sane_text(seed), f"sane-{seed}", folder)
 
 
 def bearing_study(seed: int, folder: Path) -> Study:
@@ -75,22 +75,14 @@ def _read(text: str, name: str, folder: Path) -> Study:
     return read_study(path)
 
 
-def sane_text(seed: int, *, duration: str = "", runs: int = 0, name: str = "") -> str:
+def sane_text(seed: int, *, duration: str = "", runs: int = 0) -> str:
     """A study for `rank`: bearing, film, cage and two candidates, a smooth and a rough one.
 
-    Parameters
-    ----------
-    seed : int
-        Of the study: the same seed is the same text.
-    duration : str
-        Of a run, with its unit; the default of [stability] if absent.
-    runs : int
-        Per kick and friction; the default of [stability] if 0. Kicks are always left out.
-    name : str
-        Class of the bearing; by the seed if absent.
+    The same seed is the same text. `duration`, with its unit, and `runs` are the defaults of [stability] if
+    they are absent; kicks always are.
     """
     rng = np.random.default_rng((17, seed))
-    name = name or str(rng.choice(sorted(CLASSES)))
+    name = str(rng.choice(sorted(CLASSES)))
     of_class, geometry = CLASSES[name], _geometry(CLASSES[name], rng)
     axial = _axial_load(of_class, geometry, rng)
     radial = axial * rng.uniform(0.05, 0.4) if rng.random() < 0.5 else 0.0

@@ -152,26 +152,23 @@ def test_a_friction_that_tests_foretell_is_drawn_about_its_median():
     assert one.central == 0.08
 
 
-def test_tests_that_tell_nothing_are_refused():
-    """A friction known to ten powers of e is none: its mean would overflow."""
-    with pytest.raises(InputError, match=r"tests of Tested in air must not scatter by ten times"):
-        uncertain_inputs(of_tests(mean=0.08, standard_error=0.0, standard_deviation=0.9))
+REFUSED = [
+    (lambda: sample(UNCERTAIN, 0), "samples must be a whole number from 1"),
+    (lambda: sample(UNCERTAIN, 2**20 + 1), "must be a whole number from 1"),
+    (lambda: sample(replace(BASE, name="certain", ranking=None), 16), "certain has no uncertain number"),
+    (lambda: uncertain_inputs(of_friction(mean=0.0, standard_deviation=0.1)), "mean must be > 0"),
+    (lambda: uncertain_inputs(of_tests(mean=0.08, standard_error=0.0, standard_deviation=0.9)),
+     "tests of Tested in air must not scatter by ten times"),
+]  # fmt: skip
 
 
-def test_a_friction_of_zero_is_drawn_as_certain_only_where_it_is():
-    """Without a scatter it is no input; with one it is refused, not taken as certain."""
+@pytest.mark.parametrize(("draw", "words"), REFUSED)
+def test_what_cannot_be_drawn_is_refused(draw, words):
+    """Too few, too many, or nothing uncertain; a zero that scatters; a friction known to ten powers of e."""
+    with pytest.raises(InputError, match=words):
+        draw()
+
+
+def test_a_friction_of_zero_without_scatter_is_certain():
+    """It is no input."""
     assert uncertain_inputs(of_friction(mean=0.0)) == ()
-    with pytest.raises(InputError, match="mean must be > 0"):
-        uncertain_inputs(of_friction(mean=0.0, standard_deviation=0.1))
-
-
-def test_what_cannot_be_drawn_is_refused():
-    """Too few, too many, or nothing uncertain, each in one line."""
-    bare = replace(BASE, name="certain", ranking=None)
-    for study, samples, words in (
-        (UNCERTAIN, 0, "samples must be a whole number from 1"),
-        (UNCERTAIN, 2**20 + 1, "samples must be a whole number from 1"),
-        (bare, 16, "certain has no uncertain number to draw"),
-    ):
-        with pytest.raises(InputError, match=words):
-            sample(study, samples)

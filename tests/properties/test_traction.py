@@ -67,14 +67,6 @@ def test_with_heathcote_the_trends_hold_within_three_percent(mu, lam, factor, sp
 
 
 @quick
-@given(friction, film, st.one_of(st.just(0.0), signed), st.floats(1e-3, 20.0))
-def test_pure_spin_or_creep_gives_an_odd_curve(mu, lam, spin, increment):
-    """C_T(-x) = -C_T(x), to rounding."""
-    low, high = curve(creep(spin), mu, lam, [-increment * mu * XI, increment * mu * XI])
-    assert low == pytest.approx(-high, abs=1e-12)
-
-
-@quick
 @given(friction, film, signed, signed)
 def test_mirroring_the_contact_changes_nothing(mu, lam, spin, heathcote):
     """Spin of the other sign is the same contact seen from the other side of the groove."""

@@ -43,37 +43,16 @@ duration = "10 ms"
 friction = "pin-on-disk-77K"
 """
 
-WRONG_STUDIES = {
-    "unknown key": ("ball_count = 13", "ball_cuont = 13", "ball_count"),
-    "unknown section": ("[film]", "[flim]", "film"),
-    "bare number": ('"11.1125 mm"', "11.1125", "mm"),
-    "wrong dimension": ('"300 daN"', '"300 mm"', "force"),
-    "decimal comma": ('"11.1125 mm"', '"11,1125 mm"', "decimal point"),
-    "nan": ('"300 daN"', '"nan N"', "axial_load"),
-    "inf": ('"300 daN"', '"inf N"', "axial_load"),
-    "nan ratio": ("race_friction = 0.1", "race_friction = nan", "race_friction"),
-    "negative diameter": ('"11.1125 mm"', '"-11.1125 mm"', "ball_diameter"),
-    "zero diameter": ('"11.1125 mm"', '"0 mm"', "ball_diameter"),
-    "conformity below one half": ("inner_conformity = 0.52", "inner_conformity = 0.49", "inner_conformity"),
-    "conformity of a radius": ("outer_conformity = 0.52", "outer_conformity = 5.88", "outer_conformity"),
-    "more balls than fit": ("ball_count = 13", "ball_count = 30", "ball"),
-    "lifted off": ('"300 daN"', '"-300 daN"', "axial_load"),
-    "pocket wider than the gap": ('"0.6 mm"', '"6 mm"', "pocket_clearance"),
-    "no runs": ("runs = 4", "runs = 0", "runs"),
-    "no kicks": ('kicks = ["0.5 m/s"]', "kicks = []", "kicks"),
-    "missing section": ("[operation]", "[operations]", "operation"),
-    "duplicate key": ("ball_count = 13", "ball_count = 13\nball_count = 13", "line"),
-    "unknown material": ('ball_material = "440C"', 'ball_material = "440D"', "440C"),
-    "unknown friction table": ('"pin-on-disk-77K"', '"pin-on-disk-78K"', "pin-on-disk-77K"),
+WRONG_STUDIES = {  # one for each step of reading; every rule is in test_study_refusals
     "broken TOML": ("[bearing]", "[bearing", "line"),
     "deeply nested": ("ball_count = 13", "ball_count = " + "[" * 3000 + "]" * 3000, ""),
-    "film without thickness": ('thickness = "0.5 um"', "", "thickness"),
-    "text for a count": ("ball_count = 13", 'ball_count = "thirteen"', "ball_count"),
-    "boolean for a count": ("ball_count = 13", "ball_count = true", "ball_count"),
-    "unknown guidance": ('mass = "25 g"', 'mass = "25 g"\nguidance = "outside"', "guidance"),
-    "huge unit": ('"300 daN"', '"9**9**9 m"', "axial_load"),
-    "negative seed": ("runs = 4", "runs = 4\nseed = -1", "seed"),
-    "zero duration": ('"10 ms"', '"0 s"', "duration"),
+    "duplicate key": ("ball_count = 13", "ball_count = 13\nball_count = 13", "line"),
+    "unknown key": ("ball_count = 13", "ball_cuont = 13", "ball_count"),
+    "missing section": ("[operation]", "[operations]", "operation"),
+    "nan": ('"300 daN"', '"nan N"', "axial_load"),
+    "unknown material": ('ball_material = "440C"', 'ball_material = "440D"', "440C"),
+    "more balls than fit": ("ball_count = 13", "ball_count = 30", "ball"),
+    "conformity of a radius": ("outer_conformity = 0.52", "outer_conformity = 5.88", "outer_conformity"),
 }
 
 
@@ -124,23 +103,18 @@ def test_eight_mistakes_are_eight_lines(verb, capsys):
         text = text.replace(right, wrong)
     Path("study.toml").write_text(text)
     lines = refused(capsys, verb, "study.toml").splitlines()
-    keys = (
-        *("ball_material", "ring_material", "inner_speed", "axial_load"),
-        *("material", "mass", "runs", "friction"),
-    )
+    keys = [
+        "ball_material",
+        "ring_material",
+        "inner_speed",
+        "axial_load",
+        "material",
+        "mass",
+        "runs",
+        "friction",
+    ]
     assert len(lines) == len(keys)
     assert all(f"] {key} " in line for key, line in zip(keys, lines, strict=True))
-
-
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [(b"", "empty"), (b"\xff\xfe\x00", "UTF-8"), (b"# x\n" * 1_400_000, "")],
-    ids=["empty", "not UTF-8", "5 MB"],
-)
-def test_a_file_that_is_no_study_is_refused(content, said, capsys):
-    """An empty file, one that is not text, and one of 5 MB."""
-    Path("study.toml").write_bytes(content)
-    assert said in refused(capsys, "check", "study.toml")
 
 
 USAGE = {
@@ -150,9 +124,7 @@ USAGE = {
     "two studies": (["bearing", "le7", "le7"], "le7"),
     "unknown option": (["bearing", "le7", "--jsn"], "--jsn"),
     "no jobs": (["bearing", "le7", "--jobs", "0"], "--jobs"),
-    "negative jobs": (["bearing", "le7", "--jobs", "-2"], "--jobs"),
     "too many jobs": (["bearing", "le7", "--jobs", "1000000"], "--jobs"),
-    "jobs in words": (["bearing", "le7", "--jobs", "two"], "--jobs"),
     "out without a folder": (["bearing", "le7", "--out"], "--out"),
     "new without a path": (["new"], "PATH"),
     "study with control characters": (["bearing", "a\x1b[31m\nb"], ""),
@@ -196,13 +168,13 @@ def test_an_unknown_verb_is_answered_in_whole_sentences(arguments, said, capsys)
     assert refused(capsys, *arguments) == f'separatrix: {said} Try "separatrix --help".\n'
 
 
-@pytest.mark.parametrize(
-    ("verb", "option"),
-    [
-        *((verb, "--jobs") for verb in ("check", "rank", "map", "simulate", "sensitivity", "tribometer")),
-        *(("map", "--points"), ("map", "--runs"), ("simulate", "--run"), ("sensitivity", "--samples")),
-    ],
-)
+WHOLE_NUMBERS = [
+    *((verb, "--jobs") for verb in ("check", "rank", "map", "simulate", "sensitivity", "tribometer")),
+    *(("map", "--points"), ("map", "--runs"), ("simulate", "--run"), ("sensitivity", "--samples")),
+]
+
+
+@pytest.mark.parametrize(("verb", "option"), WHOLE_NUMBERS)
 @pytest.mark.parametrize("value", ["two", "1.5", "", "9" * 5000])
 def test_an_option_that_is_no_whole_number_is_refused_in_our_words(verb, option, value, capsys):
     """Where, rule, value and cure, whichever option takes the number."""

@@ -31,7 +31,7 @@ def two():
 
 
 def test_a_cluster_gives_the_same_curve(two):
-    """To the last bit; benchmarks/cluster_kill.py kills a worker in the middle."""
+    """To the last bit."""
     with cluster(two.scheduler_address) as (executor, threads):
         assert threads == 4  # two for each worker
         runner = Runner(jobs=threads, executor=executor)

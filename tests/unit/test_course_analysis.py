@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from cages import ON_A_LAND
 
 from separatrix.cage import Cause, History, MovingCage, RunOutcome, analyse
 from separatrix.cage.course import SOURCES, ball_set_speed, phase_of
 from separatrix.cage.numbers import look_time
-from separatrix.study.study import Guidance, MotionModel
+from separatrix.study.study import MotionModel
 
 OMEGA, BALLS, RADIUS = 600.0, 5, 0.03
 TIME = np.linspace(0.0, 0.2, 8001)
@@ -18,23 +20,8 @@ TIME = np.linspace(0.0, 0.2, 8001)
 
 def cage(**changes) -> MovingCage:
     """A cage in space with an outer land whose balls go round at `OMEGA`."""
-    values = {
-        "mass": 0.02,
-        "moment_of_inertia": 1.8e-5,
-        "ball_count": BALLS,
-        "pitch_radius": RADIUS,
-        "cage_speed": OMEGA,
-        "inner_speed": 1500.0,
-        "outer_speed": 0.0,
-        "motion": MotionModel.SPACE,
-        "pocket_clearance": 6e-4,
-        "ball_cage_stiffness": 1e6,
-        "race_damping": 200.0,
-        "ball_cage_friction": 0.2,
-        "guidance": Guidance.OUTER,
-        "land_clearance": 1e-3,
-    }
-    return MovingCage(**{**values, **changes})
+    turning = {"ball_count": BALLS, "cage_speed": OMEGA, "inner_speed": 1500.0, "motion": MotionModel.SPACE}
+    return replace(ON_A_LAND, pitch_radius=RADIUS, ball_cage_friction=0.2, **turning | changes)
 
 
 def around(size: float, speed: float, phase: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -49,34 +36,33 @@ TILTS = ("axial_place", "axial_speed", "lean", "lean_rate", "ball_axial")
 
 def history(**changes) -> History:
     """A cage at rest in the middle of its balls, with these changes."""
-    count, none = TIME.size, np.zeros(TIME.size)
-    flat, of_balls = np.zeros((count, 2)), np.zeros((count, BALLS))
+    none, flat, of_balls = (np.zeros((TIME.size, *shape)) for shape in ((), (2,), (BALLS,)))
+    numbers = [
+        "rotation",
+        "rotation_rate",
+        "kinetic_energy",
+        "stored_energy",
+        "land_force",
+        "axial_place",
+        "axial_speed",
+    ]
+    balls = ["ball_lead", "ball_speed", "ball_axial", "contact_force", "contact_angle"]
     values = {
-        "time": TIME,
+        **dict.fromkeys((one.name for one in fields(History)), 0.0),
+        **dict.fromkeys(numbers, none),
         **dict.fromkeys(("position", "velocity", "lean", "lean_rate"), flat),
-        **dict.fromkeys(("rotation", "rotation_rate", "kinetic_energy", "stored_energy", "land_force"), none),
-        **dict.fromkeys(("axial_place", "axial_speed"), none),
-        **dict.fromkeys(
-            ("ball_lead", "ball_speed", "ball_axial", "contact_force", "contact_angle"), of_balls
-        ),
-        "work": dict.fromkeys(SOURCES, none),
-        "pocket_angle": 2.0 * np.pi * np.arange(BALLS) / BALLS,
-        "half_play": np.full(BALLS, 3e-4),
+        **dict.fromkeys(balls, of_balls),
         **dict.fromkeys(("pocket_impacts", "pocket_rubbing"), np.zeros(BALLS)),
-        "outcome": RunOutcome.SETTLES,
-        "cause": Cause.NONE,
+        "time": TIME,
+        "work": dict.fromkeys(SOURCES, none),
+        "half_play": np.full(BALLS, 3e-4),
+        "pocket_angle": 2.0 * np.pi * np.arange(BALLS) / BALLS,
         "judged_from": 0.1,
         "followed": 0.2,
-        **dict.fromkeys(
-            ("end_energy", "growth_rate", "drift_rate", "largest_offset", "whirl_frequency"), 0.0
-        ),
-        **dict.fromkeys(("pocket_power", "land_power", "rubbing_force", "rubbing_speed", "left_time"), 0.0),
-        **dict.fromkeys(("largest_contact_force", "largest_land_force", "energy_imbalance"), 0.0),
-        **dict.fromkeys(("mean_offset", "offset_spread", "orbit_speed", "largest_tilt", "cone_speed"), 0.0),
-        **dict.fromkeys(("axial_low", "axial_high"), 0.0),
-        **dict.fromkeys(("whirl_direction", "land_impacts", "left_ball"), 0),
+        "outcome": RunOutcome.SETTLES,
+        "cause": Cause.NONE,
     }
-    return History(**{**values, **changes})
+    return History(**values | changes)
 
 
 @pytest.mark.parametrize("speed", [900.0, -600.0, -1500.0])

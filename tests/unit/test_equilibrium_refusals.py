@@ -34,33 +34,23 @@ def test_a_turning_ball_needs_a_density() -> None:
     assert equilibrium(bearing, still, KinematicModel.OUTER_RACE_CONTROL, 0.1).load_inner[0] > 0.0
 
 
-@pytest.mark.parametrize("load", [{"axial_load": -3000.0}, {"axial_load": 0.0}])
-def test_a_load_that_lifts_the_ring_off_is_refused(load: dict[str, float]) -> None:
-    """The operation itself says that nothing presses the balls."""
-    with pytest.raises(InputError, match="axial_load must be"):
-        dataclasses.replace(OPERATION, **load)
-
-
-TIGHT = dataclasses.replace(
-    BEARING, inner_conformity=0.508, outer_conformity=0.567, contact_angle=math.radians(45.0)
-)
-
-
 @pytest.mark.parametrize("model", list(KinematicModel))
 def test_balls_beside_their_grooves_are_refused(model: KinematicModel) -> None:
     """A grain of axial load at 4e6 DN and a tight inner groove: the ball climbs its groove to the edge."""
-    operation = Operation(inner_speed=6000.0, axial_load=100.0)
-    with pytest.raises(InputError, match="out of their grooves: a contact angle reaches") as caught:
-        equilibrium(TIGHT, operation, model, 0.1)
-    assert "raise the axial load" in str(caught.value)
+    tight = {"inner_conformity": 0.508, "outer_conformity": 0.567, "contact_angle": math.radians(45.0)}
+    bearing, operation = (
+        dataclasses.replace(BEARING, **tight),
+        Operation(inner_speed=6000.0, axial_load=100.0),
+    )
+    with pytest.raises(InputError, match=r"out of their grooves: a contact angle .*raise the axial load"):
+        equilibrium(bearing, operation, model, 0.1)
 
 
 def test_a_contact_wider_than_its_groove_is_refused() -> None:
     """Grooves that hug the balls make long ellipses: over 90 deg from the bottom there is no groove."""
     hugging = dataclasses.replace(BEARING, inner_conformity=0.5005, outer_conformity=0.5005)
-    with pytest.raises(InputError, match="press balls over the edges of their grooves") as caught:
+    with pytest.raises(InputError, match="press balls over the edges of their grooves"):
         equilibrium(hugging, Operation(inner_speed=10.0, axial_load=1e5), KinematicModel.FREE, 0.1)
-    assert "\n" not in str(caught.value)
 
 
 def test_balls_that_touch_nothing_have_nominal_angles() -> None:
@@ -82,12 +72,9 @@ def test_balls_that_touch_nothing_have_nominal_angles() -> None:
 def test_a_load_that_cannot_be_carried_is_one_sentence(model: KinematicModel) -> None:
     """A ring that weighs next to nothing and may tilt: said in one line, with a cure and how far it came."""
     afloat = Operation(inner_speed=1500.0, axial_load=1e-6, radial_load=5e-6, moment=0.0)
-    with pytest.raises(ConvergenceError) as caught:
+    with pytest.raises(ConvergenceError, match=r"^[^\n]*axial load[^\n]*$") as caught:
         equilibrium(BEARING, afloat, model, 0.1)
-    assert "axial load" in str(caught.value)
-    assert "\n" not in str(caught.value)
-    assert caught.value.iterations > 0
-    assert caught.value.residual > 0.0
+    assert min(caught.value.iterations, caught.value.residual) > 0
 
 
 @pytest.mark.parametrize("radial", [0.0, 1e-6, 1000.0])

@@ -48,9 +48,7 @@ def test_a_batch_of_creeps():
 
 def test_a_force_of_zero_between_equal_bodies_needs_no_creep():
     """Free rolling; another force has the creep of its sign, along and across."""
-    free, pulled = solved(
-        ContactCase(setup=SETUP, wanted=(0.0, None)), ContactCase(setup=SETUP, wanted=(0.5, -0.5))
-    )
+    free, pulled = solved(case(wanted=(0.0, None)), case(wanted=(0.5, -0.5)))
     assert free.case.longitudinal_creep == 0.0
     assert pulled.sliding_share == pytest.approx((0.5, -0.5), abs=1e-4)  # how far it is searched
     assert pulled.case.longitudinal_creep < 0.0 < pulled.case.lateral_creep
@@ -67,8 +65,8 @@ def test_a_case_that_does_not_converge_is_a_row_with_its_reason(monkeypatch):
         return usual(*given, **options)
 
     monkeypatch.setattr(module, "solve", fails_second)
-    steady = ContactCase(setup=SETUP, longitudinal_creep=1e-4)
-    further = replace(steady, motion=ContactMotion.TRANSIENT, distance=0.05e-3, continues=True)
+    steady = case(longitudinal_creep=1e-4)
+    further = replace(steady, **TRANSIENT, distance=0.05e-3, continues=True)
     found = solved(steady, steady, further, steady, further)
     assert [one.solution is None for one in found] == [False, True, True, False, False]
     assert (found[1].residual, found[1].reason) == (0.02, "Tractions did not settle.")
@@ -87,12 +85,10 @@ def test_the_slope_is_that_of_the_curve():
 
 def test_a_shift_and_rolling_from_a_start():
     """A further shift has a larger force; rolling goes on from the tractions before, in whole columns."""
-    shift = ContactCase(setup=SETUP, motion=ContactMotion.SHIFT, longitudinal_shift=0.1e-6, turn=1e-4)
+    shift = case(**SHIFT, longitudinal_shift=0.1e-6, turn=1e-4)
     near, far = solved(shift, replace(shift, longitudinal_shift=0.2e-6))
     assert far.solution.force < near.solution.force < 0.0
-    start = ContactCase(
-        setup=SETUP, motion=ContactMotion.TRANSIENT, longitudinal_creep=0.001, distance=0.05e-3
-    )
+    start = case(**TRANSIENT, longitudinal_creep=0.001, distance=0.05e-3)
     begun, further = solved(start, replace(start, distance=0.151e-3, continues=True))
     assert further.solution.force < begun.solution.force < 0.0
     # columns of 2 x 0.15 mm/12
@@ -106,15 +102,9 @@ def test_rough_surfaces_and_the_pressure_under_tractions():
     assert abs(rolled(roughness=1e-6).force) < 0.9 * abs(rolled().force)
     soft = separatrix.Body(base=separatrix.solid(100e9, 0.285))
     unlike = replace(PROBLEM, bodies=(soft, STEEL), own_pressure=True, coupled=True)
-    one, two = (
-        solved(
-            ContactCase(
-                setup=ContactSetup(problem=unlike, columns=12, rows=12, is_two_way=is_two_way),
-                longitudinal_creep=2e-4,
-            )
-        )[0].solution.max_pressure
-        for is_two_way in (False, True)
-    )
+    one_way = ContactSetup(problem=unlike, columns=12, rows=12)
+    ways = (case(setup=replace(one_way, is_two_way=way), longitudinal_creep=2e-4) for way in (False, True))
+    one, two = (found.solution.max_pressure for found in solved(*ways))
     assert one != two
     assert two == pytest.approx(one, rel=0.02)  # of the order of beta mu
 
@@ -142,9 +132,9 @@ def case(**changed):
     return ContactCase(**{"setup": SETUP} | changed)
 
 
-def setup(**changed):
-    """A contact with changes of the problem."""
-    return ContactSetup(problem=replace(PROBLEM, **changed))
+def on(columns=40, rows=40, **changed):
+    """A contact on these cells with changes of the problem."""
+    return ContactSetup(problem=replace(PROBLEM, **changed), columns=columns, rows=rows)
 
 
 def gap(**changed):
@@ -154,84 +144,49 @@ def gap(**changed):
     return separatrix.Gap(**given | {"height": 50.0 * (x**2 + y[:, None] ** 2)} | changed)
 
 
-def question(*cases):
-    """Solve cases, of which one cannot be set up."""
-    return separatrix.exact_contact(ContactQuestion(cases=cases))
-
-
 TWO_WAY = ContactSetup(problem=PROBLEM, is_two_way=True)
-FINE = ContactSetup(problem=PROBLEM, columns=256, rows=256)
-THIN = separatrix.Layer(thickness=1e-7, solid=STEEL.base)
-TRANSIENT = ContactMotion.TRANSIENT
+LAYERED = replace(STEEL, layers=(separatrix.Layer(thickness=1e-7, solid=STEEL.base),) * 5)
+SHIFT, TRANSIENT = ({"motion": one} for one in (ContactMotion.SHIFT, ContactMotion.TRANSIENT))
+WRONG_CASES = [  # fields of a case, and what is said of ContactCase
+    ({"longitudinal_creep": 1e9}, "longitudinal_creep must be finite and at most 1e+03"),
+    ({"lateral_creep": math.nan}, "lateral_creep must be finite and at most 1e+03 [-]"),
+    ({"spin": 1e9}, "spin must be finite and at most 2.22e+06 [1/m]; got 1e+09."),
+    ({"curvature": math.inf}, "curvature must be finite and at most 4.94e+09 [1/m2]"),
+    (SHIFT | {"lateral_shift": 1e4}, "lateral_shift must be finite and at most 1e+03 [m]; got 1e+04."),
+    ({"turn": 0.1}, "turn must be 0: the motion is rolling; got 0.1."),
+    (TRANSIENT, "distance must be > 0 in a transient [m]; got 0."),
+    (TRANSIENT | {"distance": 1.0}, "distance must be finite and at most 0.00586 [m]; got 1."),
+    ({"wanted": (0.8, 0.7)}, "wanted must be below the force of sliding, 1 [-]"),
+    ({"wanted": (None, 0.7)}, "wanted must be below the force of sliding, 1 [-], and"),
+    (SHIFT | {"setup": TWO_WAY}, "setup.is_two_way is for steady rolling, with cells over the ellipse."),
+]
+WRONG_CONTACTS = [  # fields of a problem, and what is said of ContactProblem
+    ({"ellipse": separatrix.ellipse_of_axes(300.0, 0.15e-6, 0.45e-3, MODULUS)},
+     "ellipse.max_pressure must be below the modulus of the pair, 1.09e+11 Pa; got"),
+    ({"ellipse": replace(PROBLEM.ellipse, load=1e13)}, "ellipse.load must be at most 1e+12 in SI units;"),
+    ({"friction": separatrix.FrictionLaw(coefficient=300.0)}, "friction.coefficient must be at most 100"),
+    ({"bodies": (STEEL, LAYERED)}, "bodies: number of layers must be at most 4"),
+    ({"roughness": 0.1}, "roughness must be at most 0.001"),
+]  # fmt: skip
 REFUSED = [
-    (lambda: case(longitudinal_creep=1e9), "ContactCase.longitudinal_creep must be finite and at most 1e+03"),
-    (lambda: case(lateral_creep=math.nan), "ContactCase.lateral_creep must be finite and at most 1e+03 [-]"),
-    (lambda: case(spin=1e9), "ContactCase.spin must be finite and at most 2.22e+06 [1/m]; got 1e+09."),
-    (lambda: case(curvature=math.inf), "ContactCase.curvature must be finite and at most 4.94e+09 [1/m2]"),
-    (
-        lambda: case(motion=ContactMotion.SHIFT, lateral_shift=1e4),
-        "ContactCase.lateral_shift must be finite and at most 1e+03 [m]; got 1e+04.",
-    ),
-    (lambda: case(turn=0.1), "ContactCase.turn must be 0: the motion is rolling; got 0.1."),
-    (lambda: case(motion=TRANSIENT), "ContactCase.distance must be > 0 in a transient [m]; got 0."),
-    (
-        lambda: case(motion=TRANSIENT, distance=1.0),
-        "ContactCase.distance must be finite and at most 0.00586 [m]; got 1.",
-    ),
-    (lambda: case(wanted=(0.8, 0.7)), "ContactCase.wanted must be below the force of sliding, 1 [-]"),
-    (lambda: case(wanted=(None, 0.7)), "ContactCase.wanted must be below the force of sliding, 1 [-], and"),
-    (
-        lambda: case(setup=TWO_WAY, motion=ContactMotion.SHIFT),
-        "ContactCase.setup.is_two_way is for steady rolling, with cells over the ellipse.",
-    ),
-    (
-        lambda: question(case(setup=TWO_WAY)),
-        "case 1: solve_two_way: problem must have own_pressure and coupled",
-    ),
-    (lambda: question(), "ContactQuestion.cases needs at least one case."),
-    (lambda: question(case(continues=True)), "ContactQuestion.cases begins with a case that continues"),
-    (
-        lambda: question(*[case(setup=FINE)] * 500),
-        "ContactQuestion.cases, here 500, must have at most 5000000 cells together; got 32768000.",
-    ),
-    (
-        lambda: question(
-            case(), case(setup=ContactSetup(problem=PROBLEM), motion=TRANSIENT, distance=1e-4, continues=True)
-        ),
-        "case 2: continues must not start from a case on other cells.",
-    ),
-    (
-        lambda: question(case(setup=ContactSetup(problem=PROBLEM, columns=2))),
-        "case 1: rolling_contact: columns must be a whole number and lie from 4 to 256; got 2.",
-    ),
-    (
-        lambda: setup(ellipse=separatrix.ellipse_of_axes(300.0, 0.15e-6, 0.45e-3, MODULUS)),
-        "ContactProblem.ellipse.max_pressure must be below the modulus of the pair, 1.09e+11 Pa; got",
-    ),
-    (
-        lambda: setup(ellipse=replace(PROBLEM.ellipse, load=1e13)),
-        "ContactProblem.ellipse.load must be at most 1e+12 in SI units; got 1e+13.",
-    ),
-    (
-        lambda: setup(friction=separatrix.FrictionLaw(coefficient=300.0)),
-        "ContactProblem.friction.coefficient must be at most 100",
-    ),
-    (
-        lambda: setup(bodies=(STEEL, replace(STEEL, layers=(THIN,) * 5))),
-        "ContactProblem.bodies: number of layers must be at most 4",
-    ),
-    (lambda: setup(roughness=0.1), "ContactProblem.roughness must be at most 0.001"),
+    *((lambda given=given: case(**given), f"ContactCase.{says}") for given, says in WRONG_CASES),
+    *((lambda given=given: on(**given), f"ContactProblem.{says}") for given, says in WRONG_CONTACTS),
+    (lambda: solved(case(setup=TWO_WAY)), "case 1: solve_two_way: problem must have own_pressure and"),
+    (lambda: solved(), "ContactQuestion.cases needs at least one case."),
+    (lambda: solved(case(continues=True)), "ContactQuestion.cases begins with a case that continues"),
+    (lambda: solved(*[case(setup=on(256, 256))] * 500),
+     "ContactQuestion.cases, here 500, must have at most 5000000 cells together; got 32768000."),
+    (lambda: solved(case(), case(**TRANSIENT, setup=on(), distance=1e-4, continues=True)),
+     "case 2: continues must not start from a case on other cells."),
+    (lambda: solved(case(setup=on(2))),
+     "case 1: rolling_contact: columns must be a whole number and lie from 4 to 256; got 2."),
     (lambda: gap(height=np.zeros((6, 5))), "Gap.height must have the shape (across, along), here (5, 6),"),
     (lambda: gap(row_width=0.0), "Gap: row_width, column_width must be > 0 [m]; got 0, 0.0001."),
-    (
-        lambda: separatrix.rolling_cases(PROBLEM, longitudinal=[1.0, 2.0], lateral=[1.0, 2.0, 3.0]),
-        "rolling_cases needs creeps that can be broadcast to each other; got (2,), (3,), (1,), (1,).",
-    ),
-    (
-        lambda: separatrix.rolling_cases(PROBLEM, spin=np.nan),
-        "ContactCase.spin must be finite and at most 2.22e+06 [1/m]; got nan.",
-    ),
-]
+    (lambda: separatrix.rolling_cases(PROBLEM, longitudinal=[1.0, 2.0], lateral=[1.0, 2.0, 3.0]),
+     "rolling_cases needs creeps that can be broadcast to each other; got (2,), (3,), (1,), (1,)."),
+    (lambda: separatrix.rolling_cases(PROBLEM, spin=np.nan),
+     "ContactCase.spin must be finite and at most 2.22e+06 [1/m]; got nan."),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("wrong", "says"), REFUSED, ids=map(str, range(len(REFUSED))))
