@@ -27,6 +27,7 @@ FULL = {"model": CageModel.FULL}
 
 
 def solved(**models):
+    """Chain of the shipped study with other keys of its cage."""
     return separatrix.solve(replace(SHIPPED, cage=replace(SHIPPED.cage, **models)))
 
 
