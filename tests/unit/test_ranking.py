@@ -25,7 +25,7 @@ from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.ledger import NAME, Ledger
 from separatrix.verdict.long_jobs import Interrupted, Runner
-from separatrix.verdict.ranking import _row, rank
+from separatrix.verdict.ranking import Asked, _row, rank
 from separatrix.verdict.ranking_records import (
     MeanFriction,
     NotFinished,
@@ -319,7 +319,7 @@ def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     pocket = Pocket(0.02, 1e6, 1e-4, 0.0)
     question = SimpleNamespace(pockets={"A": pocket}, cages={pocket: SimpleNamespace(restitution=eta)})
     evidence = judgement(largest_contact_force=float(bad))
-    found = SimpleNamespace(judgements={(pocket, 0.1): evidence}, points={})
+    found = SimpleNamespace(judgements={Asked(pocket, 0.1): evidence}, points={})
     row = _row(question, found, Case("A", "air"), MeanFriction(0.1, 0.01), None)
     assert isinstance(row, NotFinished)
     assert row.judgement is None

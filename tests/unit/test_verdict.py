@@ -214,7 +214,7 @@ def test_free_balls_are_asked_before_unstable_is_said(level, first, share, balls
     """Where a whirl's friction is above a quarter of what the races hold, and no ball is forced."""
     kinds = {"damper": CAGE, "one state": replace(CAGE, traction=LAW), "free": replace(CAGE, free_ball=FREE)}
     names = {BallModel.DAMPER: "damper", BallModel.FREE: "free"}
-    solution = SimpleNamespace(design=SimpleNamespace(ball=level))
+    solution = SimpleNamespace(design=SimpleNamespace(ball_model=level))
     monkeypatch.setattr(which_ball, "transmitted_force", lambda _: 40.0)
     monkeypatch.setattr(which_ball, "whirl_share", lambda *_: share)
     monkeypatch.setattr(

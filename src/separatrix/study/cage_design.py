@@ -274,11 +274,15 @@ class CageDesign:
     model: CageModel = key(default=CageModel.PAPER)
     """The best estimate, "full", or "paper"."""
 
-    ball: BallModel | None = key(default=None, without='"auto" in the model "full", "damper" in "paper"')
+    ball: BallModel | None = key(
+        default=None, without='"auto" in the model "full", "damper" in "paper"', example='"auto"'
+    )
     """Of a ball: "damper" as in the paper, "traction" with one state, "free" with three spins, or "auto"."""
 
     motion: MotionModel | None = key(
-        default=None, without='"plane" in the model "paper" and with square pockets, else "space"'
+        default=None,
+        without='"plane" in the model "paper" and with square pockets, else "space"',
+        example='"space"',
     )
     """In the "plane" as in the paper, or in "space" with tilt and axial motion."""
 
@@ -318,8 +322,7 @@ class CageDesign:
     @property
     def motion_model(self) -> MotionModel:
         """Motion that is stated, else that of the model."""
-        is_flat = self.model is CageModel.PAPER or self.pocket_shape is PocketShape.SQUARE
-        return self.motion or (MotionModel.PLANE if is_flat else MotionModel.SPACE)
+        return self.motion or motion_of(self.model, self.pocket_shape)
 
     @property
     def is_of_paper(self) -> bool:
@@ -330,6 +333,12 @@ class CageDesign:
     def has_shape(self) -> bool:
         """Whether the ring's diameters and width are given."""
         return None not in (self.inner_diameter, self.outer_diameter, self.width)
+
+
+def motion_of(model: CageModel, pocket_shape: PocketShape) -> MotionModel:
+    """Motion of a model: in the plane where the pockets are square, for there space has the same answer."""
+    is_flat = model is CageModel.PAPER or pocket_shape is PocketShape.SQUARE
+    return MotionModel.PLANE if is_flat else MotionModel.SPACE
 
 
 def least_step(angles: Sequence[Radian]) -> tuple[Radian, int]:
@@ -470,12 +479,19 @@ def _land_has_a_clearance(guidance: Guidance, land_clearance: Metre | None) -> F
 
 @check(CageDesign)
 def _lands_have_a_distance(
-    guidance: Guidance, land_count: int, land_spacing: Metre | None, land_width: Metre, cage: CageDesign
+    model: CageModel,
+    motion: MotionModel | None,
+    pocket_shape: PocketShape,
+    guidance: Guidance,
+    land_count: int,
+    land_spacing: Metre | None,
+    land_width: Metre,
 ) -> Faults:
     name, is_guided = "land_spacing", guidance is not Guidance.BALL
+    moves_in = motion or motion_of(model, pocket_shape)
     if is_guided and land_count == 1 and land_spacing is not None:
         yield Fault(name, "has no meaning for one land", "Give it with land_count = 2.")
-    if is_guided and land_count == 2 and land_spacing is None and cage.motion_model is MotionModel.SPACE:
+    if is_guided and land_count == 2 and land_spacing is None and moves_in is MotionModel.SPACE:
         yield Fault(name, "is missing: two lands of a cage in space have a distance", got="")
     if land_count == 2 and land_spacing is not None and land_spacing < land_width:
         rule = f"must be at least a land's width, {format_quantity(land_width, 'm')}"

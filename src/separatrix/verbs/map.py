@@ -138,12 +138,15 @@ def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str,
     Restitution factor and disturbance are not keys of a study: they are options of `simulate`, as the models
     of the cage are.
     """
+    from separatrix.study.study import MODELS
+
     axes = ((answer["x"], x), (answer["y"], y))
     point = {axis["parameter"]: _nearest(axis["values"], at) for axis, at in axes}
     units = {axis["parameter"]: axis["unit"] for axis, _ in axes}
     plain = {name: name.rpartition(".")[2].replace("_", " ") for name in point}
     words = ", ".join(f"{plain[name]} {format_number(value)}" for name, value in point.items())
-    options: dict[str, object] = {one: answer["study"]["cage"][one]["value"] for one in ("motion", "ball")}
+    stated = ((one, answer["study"]["cage"].get(one, {}).get("value")) for one in MODELS)
+    options: dict[str, object] = {one: value for one, value in stated if value is not None}
     options[KICK] = f"{point.pop(KICK, answer['kick']):.9g} m/s"
     if RESTITUTION in point:
         options[RESTITUTION] = f"{point.pop(RESTITUTION):.9g}"

@@ -14,12 +14,9 @@ from separatrix.front.page import drafts as draft
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import shown
-from separatrix.study.study import BallModel, MotionModel, shipped_studies
+from separatrix.study.study import MODELS, shipped_studies
 from separatrix.study.template import template
 from separatrix.verbs import VERBS, verb_named
-
-MODELS = {"motion": [one.value for one in MotionModel], "ball": [one.value for one in BallModel]}
-"""Of a cage that moves: what may be chosen beside the study."""
 
 CHANGED = "Another tab changed this study; its text is shown now. Make your change again."
 
@@ -69,7 +66,7 @@ def routes(page: Page) -> APIRouter:
             title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
             kind_of=kind_of,
-            models=MODELS,
+            models={name: [one.value for one in kind] for name, kind in MODELS.items()},
             tables=page.folder.tables(name),
             answers=page.answered(name),
         )

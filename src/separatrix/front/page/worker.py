@@ -241,12 +241,13 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
 
 def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
+    from separatrix.study.study import MODELS
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
 
     source, place = folder.asked(job.name, job.verb), folder.answers(job.name, job.verb)
     question = dict(job.question)
-    models = {name: str(question.pop(name)) for name in ("motion", "ball") if question.get(name)}
+    models = {name: str(question.pop(name)) for name in MODELS if question.get(name)}
     with reading_only_in(folder.root):
         for path in (place, *(place.iterdir() if place.is_dir() else ())):
             folder.refuse_link_out(path)
