@@ -274,15 +274,12 @@ class CageDesign:
     model: CageModel = key(default=CageModel.PAPER)
     """The best estimate, "full", or "paper"."""
 
-    ball: BallModel | None = key(
-        default=None, without='"auto" in the model "full", "damper" in "paper"', example='"auto"'
-    )
+    ball: BallModel | None = key(default=None, without='"auto" in the model "full", "damper" in "paper"')
     """Of a ball: "damper" as in the paper, "traction" with one state, "free" with three spins, or "auto"."""
 
     motion: MotionModel | None = key(
         default=None,
         without='"plane" in the model "paper" and with square pockets, else "space"',
-        example='"space"',
     )
     """In the "plane" as in the paper, or in "space" with tilt and axial motion."""
 

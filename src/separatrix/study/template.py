@@ -65,6 +65,8 @@ EXAMPLES = {
     "film.poisson_ratio": "0.38",
     "film.wear": '{ width = "0.2 mm", friction = 0.3 }',
     "film.wear.width": '"0.2 mm"',
+    "cage.ball": '"auto"',
+    "cage.motion": '"space"',
     "cage.inner_diameter": '"58 mm"',
     "cage.outer_diameter": '"72 mm"',
     "cage.width": '"14 mm"',
