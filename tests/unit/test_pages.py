@@ -35,6 +35,8 @@ kicks = ["0.4 m/s"]
 runs = 4
 duration = "2 ms"
 restitution_factors = [0.4, 0.6]
+[cage]
+model = "full"
 [bearing]
 contact_angle = "20 deg +- 1 deg"
 """
@@ -49,7 +51,7 @@ LEVELS = (Level.BRIEF, Level.FULL, Level.REPORT, Level.SHEET)
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
-    """The shipped wheel with an ensemble of no weight and an uncertain input."""
+    """The shipped wheel, full model, with an ensemble of no weight and an uncertain input."""
     path = tmp_path_factory.mktemp("small") / "small.toml"
     path.write_text(SMALL, encoding="utf-8")
     return path

@@ -129,7 +129,7 @@ def page(answer: Part) -> Page:
         Note(verdict_sentences(rows, own.name), "lead"),
         Heading(_title(own.name)),
         verdicts(own.name, rows, legend=True),
-        *by_paper(known),
+        *by_paper(answer, known),
         *footnotes(rows),
         *over_inputs(answer, rows),
         *pictures(answer),
@@ -182,7 +182,7 @@ def verdicts(name: str, rows: Sequence[Part], *, legend: bool = False, level: Le
     return Table(name, columns, tuple(rows), explained(columns) if legend else "", level)
 
 
-def by_paper(rows: Sequence[Part]) -> list[Block]:
+def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
     """Return the answer of the paper's model beside another one, and where the two differ."""
     if not has_safety(rows):
         return []
@@ -194,12 +194,14 @@ def by_paper(rows: Sequence[Part]) -> list[Block]:
         text_column("verdict", lambda row: row.paper_verdict),
     )
     apart = grouped((row.paper_verdict, row.name) for row in rows if row.paper_verdict != row.verdict)
-    words = "The paper's method: in the plane, balls as dampers summed over both races (Eq. 18)."
+    words = said(
+        answer.chain,
+        "The paper's method: motion in the plane, balls as dampers of {race_damping}, the sum over both "
+        "races (Eq. 18). A ball that may spin yields to a slow push by {race_damping_free_spin}, and takes "
+        "more energy from an impact.",
+    )
     if apart:
-        words += (
-            f" It has {by_verdict(apart)}: the dampings of two races act in series where the ball may spin, "
-            "and the sum is up to twice too stiff."
-        )
+        words += f" So the paper's verdict differs: {by_verdict(apart)}."
     return [Table("The paper's method", columns, tuple(rows), words)]
 
 
