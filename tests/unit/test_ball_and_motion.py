@@ -11,6 +11,7 @@ from commands import document, refused
 from separatrix.cage import MovingCage, RunOutcome, moving_cage, run_ensemble, settings_for
 from separatrix.chain.ball_traction import BallTraction
 from separatrix.chain.solution import solve
+from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
 from separatrix.study.cage_body import cage_inertia, ring_body
 from separatrix.study.reading import read_study
@@ -22,6 +23,7 @@ from separatrix.study.study import (
     StabilitySettings,
     with_models,
 )
+from separatrix.verbs.parts.answer_page import command
 from separatrix.verdict.ledger import Ledger
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.response import cage_at
@@ -187,3 +189,4 @@ def test_the_answer_names_its_models(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = document(capsys, "simulate", "cryogenic-turbopump", "--ball", "traction")
     assert found["study"]["cage"]["ball"] == {"value": "traction", "origin": "--ball traction"}
+    assert "separatrix simulate cryogenic-turbopump --ball traction" in command(part_of(found))

@@ -159,15 +159,15 @@ def friction_words(found: Json | None) -> str:
 def command(answer: Part) -> str:
     """Return the command line that computes an answer again."""
     kept = answer.values.get("provenance") or {}
-    asked, entry = kept.get("command") or {}, str(kept.get("entry") or "")
-    study = answer.name if entry.startswith("shipped:") or not entry else entry
-    options: list[str] = []
-    for key, value in {**(asked.get("question") or {}), **(asked.get("models") or {})}.items():
+    cage = (answer.values.get("study") or {}).get("cage") or {}
+    origins = (str(one.get("origin")) for one in cage.values() if isinstance(one, dict))
+    options = [origin for origin in origins if origin.startswith("--")]  # models that the command chose
+    for key, value in ((kept.get("command") or {}).get("question") or {}).items():
         flag = f"--{key.replace('_', '-')}"
         for one in value if isinstance(value, list) else [value]:
             if one not in (None, False):
                 options += [flag] if one is True else [flag, shlex.quote(str(one))]
-    return " ".join(["separatrix", answer.verb, shlex.quote(str(study)), *options])
+    return " ".join(["separatrix", answer.verb, shlex.quote(str(answer.name)), *options])
 
 
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
