@@ -37,6 +37,7 @@ from separatrix.verdict.ranking_records import (
     measured,
     overall,
     ranks,
+    safety_interval,
     same_rank,
 )
 from separatrix.verdict.reasons import CageMotion
@@ -92,16 +93,35 @@ def test_ties_share_the_lowest_rank(thresholds):
     assert ranks(thresholds) == [1, 1, 3]
 
 
-def test_on_one_curve_frictions_tell_who_issame_rank():
-    """Wide thresholds of one curve do not tie what friction tells apart; those of two curves do."""
+@pytest.mark.parametrize("interval", [margin_interval, safety_interval])
+def test_of_one_cage_frictions_decide_who_is_tied(interval):
+    """Wide intervals of one cage do not tie what friction tells apart; those of two cages do."""
     known = {name: MeanFriction(f, 0.09 * f) for name, f in (("A", 0.08), ("B", 0.09), ("C", 0.11))}
-    a, b, c = (ranked(name, 3e6, 0.3, t, 0.1) for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6)))
-    assert same_rank(b, a, known)
-    assert not same_rank(c, a, known)  # 2.5 standard deviations; the intervals meet
-    assert same_rank(replace(c, ball_cage_stiffness=4e6), a, known)
-    assert same_rank(replace(c, cage_mass=0.05), a, known)
-    assert same_rank(replace(c, pocket_clearance=5e-4), a, known)
-    assert same_rank(replace(c, margin=a.margin), a, known)  # such as 1: stable at any factor
+    a, b, c = (
+        replace(
+            ranked(name, 3e6, 0.3, t, 0.1),
+            safety_factor=2.0 * t,
+            safety_factor_low=2.0 * t - 0.3,
+            safety_factor_high=2.0 * t + 0.3,
+        )
+        for name, t in (("A", 0.74), ("B", 0.7), ("C", 0.6))
+    )
+    assert same_rank(b, a, known, interval)
+    assert not same_rank(c, a, known, interval)  # 2.5 standard deviations; the intervals meet
+    for other in ({"ball_cage_stiffness": 4e6}, {"cage_mass": 0.05}, {"pocket_clearance": 5e-4}):
+        assert same_rank(replace(c, **other), a, known, interval)
+    alike = replace(c, margin=a.margin, safety_factor=a.safety_factor)  # such as 1: stable at any factor
+    assert same_rank(alike, a, known, interval)
+
+
+def test_a_safety_factor_beyond_what_was_searched_ranks_by_its_bound():
+    """No friction up to 1 is enough: the lowest friction is first; a friction of 0 before all."""
+    rows = [ranked(name, 3e6, 0.3, 0.5, 0.1) for name in "ABC"]
+    bounds = [(None, 1.0 / 0.3, None), (None, 1.0 / 0.05, None), (None, None, None)]
+    names = ("safety_factor", "safety_factor_low", "safety_factor_high")
+    rows = [replace(row, **dict(zip(names, one, strict=True))) for row, one in zip(rows, bounds, strict=True)]
+    values = [safety_interval(row)[0] for row in rows]
+    assert values == [1.0 / 0.3, 1.0 / 0.05, math.inf]
 
 
 def test_where_eta_differs_the_margin_ranks():
@@ -110,7 +130,11 @@ def test_where_eta_differs_the_margin_ranks():
     rows = [ranked(name, stiffness, eta, t, 0.02) for name, stiffness, eta, t in given]
     known = {row.name: MeanFriction(0.1, 0.01) for row in rows}
     margins = [margin_interval(row) for row in rows]
-    assert ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known)) == [3, 1, 2]
+    assert ranks(margins, lambda i, leader: same_rank(rows[i], rows[leader], known, margin_interval)) == [
+        3,
+        1,
+        2,
+    ]
 
 
 def test_who_may_have_the_lower_friction_is_told_at_five_per_cent():

@@ -348,13 +348,11 @@ def _ranked(
     chances = lowest_among(known)
     rows = [_row(question, found, Case(n, environment), f, chances.get(n)) for n, f in known.items()]
     judged = [row for row in rows if isinstance(row, Ranked)]
-    if question.is_paper:
-        places = ranks(
-            [margin_interval(row) for row in judged],
-            lambda i, leader: same_rank(judged[i], judged[leader], known),
-        )
-    else:
-        places = ranks([safety_interval(row) for row in judged])
+    interval = margin_interval if question.is_paper else safety_interval
+    places = ranks(
+        [interval(row) for row in judged],
+        lambda i, leader: same_rank(judged[i], judged[leader], known, interval),
+    )
     ranked = [replace(row, rank=place) for row, place in zip(judged, places, strict=True)]
     return (
         *sorted(ranked, key=lambda row: (row.rank, -safety_interval(row)[0], -row.margin, row.friction)),

@@ -264,17 +264,22 @@ def _meet(other: Interval, leader: Interval) -> bool:
 POCKET = ("cage_mass", "ball_cage_stiffness", "pocket_clearance", "land_clearance")  # alike on one curve
 
 
-def same_rank(row: Ranked, leader: Ranked, known: Mapping[str, MeanFriction]) -> bool:
+def same_rank(
+    row: Ranked,
+    leader: Ranked,
+    known: Mapping[str, MeanFriction],
+    interval: Callable[[Ranked], Interval],
+) -> bool:
     """Whether a row and the leader of its group do not differ beyond their scatter.
 
-    On one curve the order of thresholds is the order of frictions whatever the curve, so frictions decide;
-    with another pocket there are another curve and eta, and the intervals of the margins decide.
+    Of one cage the order is that of frictions, whatever its critical friction or curve is, so frictions
+    decide; with another pocket the intervals of safety factors or margins decide.
     """
-    if row.margin == leader.margin:
+    if interval(row)[0] == interval(leader)[0]:
         return True
     if all(getattr(row, name) == getattr(leader, name) for name in POCKET):
         return may_be_lower(known[row.name], known[leader.name])
-    return _meet(margin_interval(row), margin_interval(leader))
+    return _meet(interval(row), interval(leader))
 
 
 def safety_interval(row: Ranked) -> Interval:
