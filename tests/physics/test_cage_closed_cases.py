@@ -110,8 +110,8 @@ def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
     )
     after = followed(one_ball(traction=law, **ring), 5e-4 / kick + contact, kick=kick, refine=8)
     pocket = after.velocity[-1, 1] + R * after.rotation_rate[-1]
-    # 3e-5: begin and end of the impact within an eighth of the usual step
-    assert -pocket / kick == pytest.approx(back, abs=8e-5)
+    # 2.9e-5 measured: begin and end of the impact within an eighth of the usual step
+    assert -pocket / kick == pytest.approx(back, abs=4e-5)
 
 
 def test_a_knocked_ball_comes_to_rest_where_its_traction_leaves_it():

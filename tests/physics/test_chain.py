@@ -81,7 +81,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     share = 1.0 - np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2
-    assert state.orbital_share == pytest.approx(share, abs=1e-9)
+    assert state.orbital_share == pytest.approx(share, abs=1e-9)  # two sums of the same numbers: rounding
 
 
 def test_free_balls_lead_by_the_integral_of_their_speed():
@@ -89,6 +89,7 @@ def test_free_balls_lead_by_the_integral_of_their_speed():
     cage = replace(moving_cage(solve(STUDY), 0.0), orbital_cosines=(0.3, 0.1), orbital_sines=(-0.1, 0.2))
     azimuth, step = np.linspace(0.0, 6.0, 7), 1e-5
     slope = (free_leads(cage, azimuth + step) - free_leads(cage, azimuth - step)) / (2.0 * step)
+    # rounding of a difference of 1e-5 rad: 1e-16 of the lead over the step
     assert cage.cage_speed * slope == pytest.approx(waves_at(cage, azimuth), rel=1e-6, abs=1e-8)
 
 

@@ -11,7 +11,14 @@ from separatrix.cage.moving_cage import moving_cage
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.critical_friction import critical_friction
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.safety_factor import CageLimit, cage_limit, hand_estimate, safety_factor
+from separatrix.verdict.safety_factor import (
+    CageLimit,
+    SafetyFactor,
+    cage_limit,
+    hand_estimate,
+    safety_factor,
+    spread,
+)
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 LIMIT = CageLimit(
@@ -42,20 +49,27 @@ def test_the_safety_factor_is_the_ratio_of_two_frictions():
     assert math.log(wider.safety_factor_low / 2.0) == pytest.approx(-ends)
 
 
-@pytest.mark.parametrize(
-    ("ends", "low", "high"), [((1.0, None), 1.0 / 0.3, None), ((0.0, 0.0), 0.0, 0.0)], ids=["never", "always"]
-)
-def test_beyond_what_was_searched_only_the_ends_are_known(ends, low, high):
-    """Half the runs whirl at no friction up to 1, or even without friction."""
-    beyond = replace(
-        LIMIT,
-        own_critical_friction=None,
-        own_critical_friction_low=ends[0],
-        own_critical_friction_high=ends[1],
-    )
-    found = safety_factor(beyond, 0.2, (0.1, 0.3))
-    assert (found.safety_factor, found.safety_factor_low, found.safety_factor_high) == (None, low, high)
-    assert safety_factor(LIMIT, 0.0, (0.0, 0.0)).safety_factor is None
+def test_beyond_what_was_searched_only_the_lower_end_is_known():
+    """Half the runs whirl at no friction up to 1: at the upper end of the friction S is above 1/0.3."""
+    ends = {"own_critical_friction_low": 1.0, "own_critical_friction_high": None}
+    found = safety_factor(replace(LIMIT, own_critical_friction=None, **ends), 0.2, (0.1, 0.3))
+    assert found == SafetyFactor(safety_factor_low=1.0 / 0.3)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_what_whirls_without_friction_has_no_safety(friction):
+    """At any friction, 0 included; a friction of 0 is infinitely safe against any other limit."""
+    ends = {"own_critical_friction_low": 0.0, "own_critical_friction_high": 0.0}
+    found = safety_factor(replace(LIMIT, own_critical_friction=0.0, **ends), friction, (0.0, friction))
+    assert (found.safety_factor, found.safety_factor_low, found.safety_factor_high) == (0.0, 0.0, 0.0)
+    assert safety_factor(LIMIT, 0.0, (0.0, 0.0)) == SafetyFactor()
+
+
+def test_uncertain_inputs_spread_the_closed_law():
+    """Four times the stiffness is twice the critical friction: two such draws deviate by ln 2/sqrt(2)."""
+    drawn = [solved(ball_cage_stiffness=k) for k in (1e6, 4e6)]
+    assert spread(drawn) == pytest.approx(1.959964 * math.log(2.0) / math.sqrt(2.0), rel=1e-6)  # its digits
+    assert spread(drawn[:1]) == 0.0
 
 
 def test_the_closed_law_has_the_damping_of_a_slow_push():
@@ -75,7 +89,10 @@ def test_the_worst_disturbance_sets_the_critical_friction():
     cage = moving_cage(solution, 0.0)
     for kick in settings_for(settings, cage).kicks:
         alone = replace(settings, reference_kick=kick, kicks=(kick,))
-        assert critical_friction(cage, None, alone, band=False).scatter_high > found.own_critical_friction_low
+        other = critical_friction(cage, None, alone, band=False)
+        assert other.scatter_high > found.own_critical_friction_low
+        if kick == found.critical_kick:
+            assert other.scatter_low < found.own_critical_friction_high
     assert found.critical_kick in settings_for(settings, cage).kicks
 
 

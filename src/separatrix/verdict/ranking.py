@@ -230,13 +230,15 @@ def _question(
         for pocket in cages
     }
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
-    spreads = {name: spread([own[name] for own in drawn.solved]) for name in solved} if drawn else {}
+    spreads = {}
+    if drawn and not is_paper:
+        spreads = {name: spread([own[name] for own in drawn.solved]) for name in solved}
     return _Question(
         settings=settings_for(study.stability, empty[reference]),
         solved=[*solved.values()],
         cages=cages,
         is_paper=is_paper,
-        spreads={} if is_paper else spreads,
+        spreads=spreads,
         paper=paper,
         tracers=tracers,
         pockets=pockets,

@@ -287,9 +287,8 @@ def safety_interval(row: Ranked) -> Interval:
     low, high = row.safety_factor_low, row.safety_factor_high
     if low is None:
         return inf, inf, inf
-    if row.safety_factor is None and high is not None:
-        return low, low, high
-    return row.safety_factor or low, low, inf if high is None else high
+    value = low if row.safety_factor is None else row.safety_factor
+    return value, low, inf if high is None else high
 
 
 def margin_interval(row: Ranked) -> Interval:

@@ -31,7 +31,7 @@ class CageLimit:
     """Critical friction of a cage at its own race damping, among the balls of its model.
 
     Where no searched friction makes half the runs whirl, the value is None and `low` is the highest that was
-    searched; where even none does, value None and `high` 0.
+    searched; it is 0 where they whirl without friction.
     """
 
     own_critical_friction: Ratio | None
@@ -89,7 +89,7 @@ def _limit(cage: MovingCage, settings: StabilitySettings, runner: Runner, guess:
 def _ends(found: Crossing | Side) -> tuple[Ratio | None, Ratio, Ratio | None]:
     if isinstance(found, Crossing):
         return found.value, found.low, found.high
-    return (None, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
+    return (0.0, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
 
 
 def hand_estimate(cage: MovingCage) -> Ratio:
@@ -113,15 +113,17 @@ def safety_factor(
     """Safety factor of a friction in the pocket; without friction the factor has no value.
 
     Deviations of the logarithms add as squares. `spread` is half the 95 % interval of what uncertain inputs
-    do to the logarithm of the critical friction. Without a critical friction there are only the ends.
+    do to the logarithm of the critical friction. Beyond what was searched only the lower end is known.
     """
     value = limit.own_critical_friction
     low, high = limit.own_critical_friction_low, limit.own_critical_friction_high
     least, most = interval
+    if value == 0.0:
+        return SafetyFactor(safety_factor=0.0, safety_factor_low=0.0, safety_factor_high=0.0)
     if friction <= 0.0:
         return SafetyFactor()
     if value is None:
-        return SafetyFactor(safety_factor_low=low / most, safety_factor_high=high and high / friction)
+        return SafetyFactor(safety_factor_low=low / most)
 
     def reach(of_limit: Ratio, of_friction: Ratio) -> float:
         ratios = (max(of_limit, TINY) / value, max(of_friction, TINY) / friction)
