@@ -271,8 +271,8 @@ class CageDesign:
     )
     """About the axis."""
 
-    model: CageModel = key(default=CageModel.PAPER)
-    """The best estimate, "full", or "paper"."""
+    model: CageModel = key(default=CageModel.FULL)
+    """The best estimate, "full", or that of the "paper"."""
 
     ball: BallModel | None = key(default=None, without='"auto" in the model "full", "damper" in "paper"')
     """Of a ball: "damper" as in the paper, "traction" with one state, "free" with three spins, or "auto"."""

@@ -8,6 +8,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
+from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import (
     Block,
     Column,
@@ -42,7 +43,17 @@ from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
 from separatrix.verbs.parts.refused import candidate_cages, refused
-from separatrix.verbs.parts.telling import axis, column, estimate, fact, marks, said, told
+from separatrix.verbs.parts.telling import (
+    axis,
+    begun,
+    column,
+    estimate,
+    fact,
+    marks,
+    quantity,
+    said,
+    told,
+)
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
@@ -67,6 +78,10 @@ if TYPE_CHECKING:
     from separatrix.verdict.ranking_records import Ranking
 
 BRIEF, FULL, REPORT, LONG = Level.BRIEF, Level.FULL, Level.REPORT, Level.LONG
+EVIDENCE = (
+    "stable runs: that settle, or roll in their pockets, from each initial disturbance; the worst one "
+    "decides. Offset and forces: largest of any run; > what the races hold: there none has a meaning."
+)
 SHORT = (
     "largest_offset",
     "largest_tilt",
@@ -97,7 +112,7 @@ def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer: 
     notes = (*solution.notes, *cage.notes, *overdamped_notes(solution.restitution))
 
     def made(found: Ranking) -> RankingAnswer:
-        every = (*notes, *free_balls_decided(found), *found.notes)
+        every = (*found.notes, *notes)
         return RankingAnswer(solution=solution, cage=cage, ranking=found, notes=every)
 
     return made_into(made, lambda: rank(study, runner=runner))
@@ -106,16 +121,6 @@ def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer: 
 def refusals(study: Study) -> Iterator[str]:
     """Yield why there is no ranking: no environment, or no cage of a candidate to move."""
     yield from refused(study, candidate_cages)
-
-
-def free_balls_decided(found: Ranking) -> list[str]:
-    """Return for which candidates free balls decided in the bearing's own environment; empty if for none."""
-    rows = next(one.materials for one in found.environments if one.name == found.environment)
-    judged = ((row.name, getattr(row, "judgement", None)) for row in rows)
-    free = [name for name, one in judged if one is not None and one.ball == "free" and one.ball_reason]
-    if not free:
-        return []
-    return [f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."]
 
 
 def page(answer: Part) -> Page:
@@ -127,18 +132,20 @@ def page(answer: Part) -> Page:
     return page_of(
         answer,
         Note(verdict_sentences(rows, own.name), "lead"),
-        Heading(_title(own.name)),
-        verdicts(own.name, rows, legend=True),
-        *by_paper(answer, known),
+        Heading(_title(own.name), LONG),
+        *verdicts(own.name, rows, legend=LONG),
         *footnotes(rows),
+        *by_paper(answer, known),
         *over_inputs(answer, rows),
         *pictures(answer),
-        Heading(said(answer, f"Evidence: {answer.runs} runs of {{duration}} from each initial disturbance")),
-        evidence(own.name, known, answer.kicks),
+        Heading(said(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {_speeds(answer)}")),
+        evidence(own.name, known),
+        Note(EVIDENCE, "legend", LONG),
         *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
         motion(own.name, known),
         reasons(rows, LONG),
-        elsewhere(others),
+        *free_balls_decided(known),
+        Note("`--full` has all evidence, and the other environments.", level=BRIEF),
         *in_detail(known),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *ensemble_facts(answer), *holds_for(answer), level=LONG),
@@ -164,7 +171,9 @@ def _title(name: str) -> str:
 # Tables.
 
 
-def verdicts(name: str, rows: Sequence[Part], *, legend: bool = False, level: Level = Level.ALWAYS) -> Table:
+def verdicts(
+    name: str, rows: Sequence[Part], *, legend: Level | None = None, level: Level = Level.ALWAYS
+) -> list[Block]:
     """Return rank, friction, what is compared with it, and verdict of each candidate."""
     ranks = dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
     compared, order = ("restitution_threshold", "margin"), "margin"
@@ -179,7 +188,8 @@ def verdicts(name: str, rows: Sequence[Part], *, legend: bool = False, level: Le
         column("probability_stable"),
         text_column("verdict", verdict),
     )
-    return Table(name, columns, tuple(rows), explained(columns) if legend else "", level)
+    table = Table(name, columns, tuple(rows), level=level)
+    return [table, *([Note(explained(columns), "legend", legend)] if legend else [])]
 
 
 def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
@@ -193,29 +203,39 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
         column("paper_probability_stable"),
         text_column("verdict", lambda row: row.paper_verdict),
     )
-    apart = grouped((row.paper_verdict, row.name) for row in rows if row.paper_verdict != row.verdict)
-    words = said(
-        answer.chain,
-        "The paper's method: motion in the plane, balls as dampers of {race_damping}, the sum over both "
-        "races (Eq. 18). A ball that may spin yields to a slow push by {race_damping_free_spin}, and takes "
-        "more energy from an impact.",
-    )
+    model = said(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
+    each = grouped((row.paper_verdict, row) for row in rows)
+    apart = [row.name for row in rows if row.paper_verdict != row.verdict]
+    why = ""
     if apart:
-        words += f" So the paper's verdict differs: {by_verdict(apart)}."
-    return [Table("The paper's method", columns, tuple(rows), words)]
+        why = f" It differs for {', '.join(apart)}: " + said(
+            answer.chain,
+            "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
+            "from an impact.",
+        )
+    numbers = "threshold {restitution_threshold}, margin {margin}", "{restitution_threshold}, {margin}"
+    first = next(iter(each.values()))[0]
+    listed = by_verdict(
+        {
+            word: [f"{row.name} ({said(short(row), numbers[row is not first])})" for row in who]
+            for word, who in each.items()
+        }
+    )
+    heading = Heading("The paper's method", LONG, 3)
+    table = Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG)
+    return [Note(f"The paper's method ({model}): {listed}.{why}", level=BRIEF), heading, table]
 
 
-def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:
+def short(row: Part) -> Part:
+    """Return a row whose threshold is told without its interval."""
+    return Part({name: row.get(name) for name in ("restitution_threshold", "margin")}, row.units)
+
+
+def evidence(name: str, rows: Sequence[Part]) -> Table:
     """Return motion, stable runs from each initial disturbance, largest offset, drift, forces and rubbing."""
     rolls = any(count.rolls for row in rows for count in row.by_kick)
     of_them = [_runs("of them roll", "rolls")] if rolls else []
     known = [one for one in SHORT if any(one in row for row in rows)]
-    speeds = " ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in kicks)
-    caption = (
-        f"stable runs: that settle, or roll in their pockets, from each initial disturbance, {speeds}; the "
-        "worst one decides. Offset and forces: largest of any run; > what the races hold: there none has a "
-        "meaning."
-    )
     columns = (
         _name(),
         motion_column(),
@@ -223,7 +243,7 @@ def evidence(name: str, rows: Sequence[Part], kicks: Sequence[float]) -> Table:
         *of_them,
         *map(evidence_column, known),
     )
-    return Table(f"{name}, evidence", columns, tuple(rows), caption)
+    return Table(f"{name}, evidence", columns, tuple(rows))
 
 
 def _name() -> Column:
@@ -254,13 +274,20 @@ def reasons(rows: Sequence[Part], level: Level) -> Block:
     return facts(*((", ".join(who), reason) for reason, who in each.items()), level=level)
 
 
+def free_balls_decided(rows: Sequence[Part]) -> list[Note]:
+    """Return for which candidates free balls decided; none if for none."""
+    free = [row.name for row in rows if row.ball == "free" and row.ball_reason]
+    words = f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."
+    return [Note(words, level=LONG)] if free else []
+
+
 def environment(name: str, rows: Sequence[Part]) -> list[Block]:
     """Return verdicts, evidence and reasons in another environment."""
     known = [row for row in rows if is_judged(row)]
     notes = [Note(note.text, note.kind, FULL) for note in footnotes(rows)]
     return [
         Heading(_title(name), LONG),
-        verdicts(name, rows, level=LONG),
+        *verdicts(name, rows, level=LONG),
         *notes,
         motion(name, known, FULL),
         reasons(rows, FULL),
@@ -289,7 +316,7 @@ def footnotes(rows: Sequence[Part]) -> list[Note]:
     found = [Note(f"{MARK} extrapolated beyond the tests: {' '.join(each)}", "legend")] if each else []
     if measured:
         lowest = ", ".join(names) or f"none, for only {measured[0].name} was measured here"
-        found.append(Note(f"Probability of the lowest mean friction: {lowest}.", "legend"))
+        found.append(Note(f"Probability of the lowest mean friction: {lowest}.", "legend", LONG))
     return found
 
 
@@ -310,14 +337,6 @@ def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
     ]
 
 
-def elsewhere(others: Sequence[Part]) -> Note:
-    """Return who is first in the other environments, for a screen."""
-    each = ((one.name, [row.name for row in one.materials if row.get("rank") == 1]) for one in others)
-    leads = "; ".join(f"{name}: {', '.join(who) or 'none'}" for name, who in each)
-    first = f"First elsewhere: {leads}. " if leads else ""
-    return Note(f"{first}`--full` prints all evidence, for every environment.", level=BRIEF)
-
-
 def in_detail(rows: Sequence[Part]) -> list[Block]:
     """Return the evidence of the first candidate."""
     return (
@@ -329,11 +348,15 @@ def in_detail(rows: Sequence[Part]) -> list[Block]:
 
 def ensemble_facts(answer: Part) -> list[tuple[str, str]]:
     """Return the ensemble in a few words."""
-    kicks = ", ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in answer.kicks)
     return [
-        ("Initial disturbances", kicks),
+        ("Initial disturbances", _speeds(answer)),
         ("Runs", said(answer, f"{answer.runs} from each, of {{duration}}")),
     ]
+
+
+def _speeds(answer: Part) -> str:
+    """Return the initial disturbances."""
+    return ", ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in answer.kicks)
 
 
 def holds_for(answer: Part) -> list[tuple[str, Any]]:
@@ -388,21 +411,18 @@ def gaps(answer: Part) -> list[Block]:
 
 
 def pictures(answer: Part) -> list[Block]:
-    """Return the overview, and the candidates of each environment on the stability curve."""
+    """Return the overview, and the candidates of each environment on the paper's stability curve."""
     if answer.get("complete") is False or not any("restitution_threshold" in row for row in answer.overall):
         return []
-    found: list[Block] = [
-        Picture(
-            "rank-overview",
-            lambda: overview(answer),
-            "Restitution thresholds of the candidates: larger is better; the upright line is this bearing.",
-        )
-    ]
+    caption = "Restitution thresholds of the candidates: larger is better; the upright line is this bearing."
+    if has_safety(answer.overall):
+        caption = "Safety factors of the candidates, larger is better: at 1 half the runs whirl."
+    found: list[Block] = [Picture("rank-overview", lambda: overview(answer), caption)]
     if "stability" not in answer:
         return found
     order = sorted(answer.environments, key=lambda one: bool(one.name != answer.environment))
     for place, one in enumerate(order):
-        caption = f"The candidates in {one.name} on the stability curve: below it the cage is stable."
+        caption = f"The candidates in {one.name} on the paper's stability curve: below it the cage is stable."
         level = REPORT if place == 0 else FULL
         found.append(Picture(f"rank-{_slug(one.name)}", _on_the_curve(answer, one), caption, level))
     return found
@@ -419,7 +439,7 @@ def _on_the_curve(answer: Part, place: Part) -> Callable[[], Figure]:
 
 
 def on_the_curve(answer: Part, place: Part) -> Figure:
-    """Return the stability curve with the candidates of one environment on it."""
+    """Return the paper's stability curve with the candidates of one environment on it, and its verdicts."""
     rows = [row for row in place.materials if "friction" in row]
     ranks = dict(
         zip(
@@ -430,12 +450,13 @@ def on_the_curve(answer: Part, place: Part) -> Figure:
     )
     found: list[Mark] = []
     for row in rows:
-        colour, eta = _colour(row), row.restitution_factor
+        word, eta = by_the_paper(row), row.restitution_factor
+        colour = VERDICT_COLOURS.get(word, GREY)
         found.append(Trace(x=(0.0, 1.0), y=(row.friction, row.friction), colour=colour, width=0.4))
         if "restitution_threshold" in row:
             look: dict[str, Any] = {"colour": colour, "marker": "o", "is_open": True, "size": 4.5}
             found.append(marks([row], "restitution_threshold", "friction", **look))
-        look = {"colour": colour, "marker": VERDICT_MARKERS.get(verdict(row), "."), "size": 5.0}
+        look = {"colour": colour, "marker": VERDICT_MARKERS.get(word, "."), "size": 5.0}
         found.append(Trace(x=(eta,), y=(row.friction,), line="", hover=(hover(row),), **look))
     labels = tuple(
         Label(
@@ -452,7 +473,7 @@ def on_the_curve(answer: Part, place: Part) -> Figure:
     panel = curve_panel(
         answer,
         answer.stability,
-        title=_title(place.name),
+        title=f"The paper's method, {place.name}",
         more=found,
         frictions=[row.friction for row in rows],
         labels=labels,
@@ -468,6 +489,11 @@ def on_the_curve(answer: Part, place: Part) -> Figure:
     )
 
 
+def by_the_paper(row: Part) -> str:
+    """Return the verdict of a row by the paper's model, or why there is none."""
+    return str(row.get("paper_verdict") or verdict(row))
+
+
 def _colour(row: Part) -> str:
     return VERDICT_COLOURS.get(verdict(row), GREY)
 
@@ -475,53 +501,50 @@ def _colour(row: Part) -> str:
 def hover(row: Part) -> str:
     """Return what a candidate's mark says under the pointer."""
     parts = [f"{row.name}: {verdict(row)}", f"friction {told(row, 'friction')}"]
-    for words, name in (
-        ("threshold", "restitution_threshold"),
-        ("margin", "margin"),
-        ("P(stable)", "probability_stable"),
-    ):
-        parts += [f"{words} {told(row, name)}"] if name in row else []
+    compared = ("safety_factor",) if has_safety([row]) else ("restitution_threshold", "margin")
+    for name in (*compared, "probability_stable"):
+        parts += [f"{quantity(name).label} {told(row, name)}"] if row.get("verdict") else []
     return "; ".join(parts)
 
 
 def overview(answer: Part) -> Figure:
-    """Return the restitution threshold of every candidate, overall and by environment; best at the top."""
+    """Return what candidates are ranked by in each environment and overall; best at the top.
+
+    That is the safety factor, or the restitution threshold in the paper's model; with its interval where the
+    bearing runs.
+    """
     own = next(one for one in answer.environments if one.name == answer.environment)
     names = [row.name for row in own.materials][::-1]
     place = {name: float(at) for at, name in enumerate(names)}
-    found: list[Mark] = [Across(at=answer.restitution_factor, name="this bearing with this film (Eq. 18)")]
-    for at, one, marker, colour in zip(
-        range(99), answer.environments, cycle(MARKERS), cycle(CYCLE), strict=False
-    ):
-        rows = [row for row in one.materials if "restitution_threshold" in row]
-        found.append(
-            Trace(
-                x=[row.restitution_threshold for row in rows],
-                y=[place[row.name] + 0.26 - 0.52 * (at + 0.5) / len(answer.environments) for row in rows],
-                hover=tuple(f"{one.name}; {hover(row)}" for row in rows),
-                name=one.name,
-                line="",
-                marker=marker,
-                colour=colour,
-                size=3.6,
-            )
-        )
-    rows = [row for row in answer.overall if "restitution_threshold" in row]
-    known = [estimate(row, "restitution_threshold") for row in rows]
-    found.append(
-        Trace(
-            x=[row.restitution_threshold for row in rows],
-            y=[place[row.name] for row in rows],
-            low=[getattr(one, "low", None) for one in known],
-            high=[getattr(one, "high", None) for one in known],
-            ends_along="x",
-            hover=tuple(f"overall; {hover(row)}" for row in rows),
-            name="overall, with its 95 % interval",
-            line="",
-            marker="D",
-            size=4.5,
-        )
+    safe, here = has_safety(own.materials), f"{own.name}, with its 95 % interval"
+    name = "safety_factor" if safe else "restitution_threshold"
+    bound = (
+        (1.0, "half the runs whirl") if safe else (answer.restitution_factor, "this bearing with this film")
     )
+
+    def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> Trace:
+        known = [row for row in rows if f"{name}_low" in row]
+        values = [estimate(row, name) for row in known]
+        found: dict[str, Any] = {"line": "", "name": where, "size": 3.6} | look
+        ends = [(one.low, one.high) if isinstance(one, Estimate) else (None, None) for one in values]
+        if where == here:
+            found |= {"ends_along": "x", "low": [low for low, _ in ends], "high": [high for _, high in ends]}
+        return Trace(
+            x=[row.get(name) or row.get(f"{name}_low") for row in known],
+            y=[place[row.name] + shift for row in known],
+            hover=tuple(f"{where}; {hover(row)}" for row in known),
+            **found,
+        )
+
+    others = [(one.name, one.materials) for one in answer.environments if one.name != answer.environment]
+    others += [("overall", answer.overall)] if others else []
+    found: list[Mark] = [Across(at=bound[0], name=bound[1])]
+    found.append(trace(own.materials, 0.0, here, marker="D", size=4.5))
+    looks = zip(range(99), others, cycle(MARKERS), cycle(CYCLE), strict=False)
+    found += [
+        trace(rows, 0.26 - 0.52 * (at + 0.5) / len(others), where, marker=marker, colour=colour)
+        for at, (where, rows), marker, colour in looks
+    ]
     verdicts_here = tuple(
         Label(
             y=place[row.name],
@@ -531,21 +554,16 @@ def overview(answer: Part) -> Figure:
         )
         for row in own.materials
     )
-    ranks = dict(
-        zip(
-            (row.name for row in own.materials),
-            rank_texts(row.get("rank") for row in own.materials),
-            strict=True,
-        )
-    )
-    ticks = tuple(f"{name}  {ranks[name]}" for name in names)
-    x = axis("restitution_threshold", "-", [], low=-0.012, high=1.0)
+    ranks = dict(zip(names[::-1], rank_texts(row.get("rank") for row in own.materials), strict=True))
+    x = axis(name, "-", [], is_log=True) if safe else axis(name, "-", [], low=-0.012, high=1.0)
+    ticks = tuple(f"{one}  {ranks[one]}" for one in names)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=ticks)
-    title = f"Restitution thresholds, larger is better; ranks in {own.name}"
+    what = "Safety factors" if safe else "Restitution thresholds"
+    title = f"{what}, larger is better; ranks in {own.name}"
     return Figure(
         rows=((Panel(title=title, x=x, y=y, marks=tuple(found), labels=verdicts_here, head="verdict"),),),
         heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt="Restitution threshold of each candidate in each environment, and overall with its interval; the "
+        alt=f"{what} of each candidate in each environment, where the bearing runs with their interval; the "
         "table has the numbers.",
         height=0.9 + 0.32 * len(names),
     )

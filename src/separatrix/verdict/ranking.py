@@ -12,7 +12,7 @@ from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.units import Ratio
+from separatrix.ground.units import Metre, Ratio
 from separatrix.study.candidates import (
     other_than_candidates,
     ranking_question,
@@ -53,7 +53,7 @@ from separatrix.verdict.ranking_records import (
     same_rank,
 )
 from separatrix.verdict.response import GrowthCounter
-from separatrix.verdict.safety_factor import CageLimit, cage_limit, safety_factor, spread
+from separatrix.verdict.safety_factor import WIDE, CageLimit, cage_limit, safety_factor, spread
 from separatrix.verdict.stability_curve import (
     OWN_DAMPING,
     Node,
@@ -66,6 +66,8 @@ from separatrix.verdict.stability_curve import (
     threshold_factors,
 )
 from separatrix.verdict.which_ball import judge_solution, transmitted_force
+
+CRITICAL = ("critical_friction", "critical_friction_low", "critical_friction_high")
 
 
 class Asked(NamedTuple):
@@ -84,9 +86,10 @@ class Knot(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """Critical friction of a pocket's cage by the study's model."""
+    """Critical friction of a pocket's cage by the study's model; with another land clearance, if given."""
 
     pocket: Pocket
+    land_clearance: Metre | None = None
 
 
 Piece = Asked | Knot | Limit | Case
@@ -118,7 +121,7 @@ class _Findings:
 
     points: Mapping[Pocket, Sequence[CriticalFriction]]
     here: CriticalFriction | None
-    limits: Mapping[Pocket, CageLimit]
+    limits: Mapping[Limit, CageLimit]
     judgements: Mapping[Asked, Judgement]
     drawn: Mapping[Case, Judgement]
     traced: Mapping[Pocket, bool]
@@ -254,7 +257,7 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
     keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
     nodes = [Knot(pocket, node) for pocket, tracer in question.tracers.items() for node in tracer.first]
     beside = [] if question.is_paper else [key._replace(is_paper=True) for key in keys]
-    limits = [] if question.is_paper else [Limit(pocket) for pocket in question.cages]
+    limits = [] if question.is_paper else [one for pocket in question.cages for one in _limits(pocket)]
     verdicts: list[Asked | Case] = [*keys, *beside, *cases]
 
     def ranked(results: Mapping[Piece, Found]) -> Ranking:
@@ -262,9 +265,7 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
         here = points[question.reference].pop((OWN_DAMPING, None), None)
         judged = {one: found for one, found in results.items() if isinstance(found, Judgement)}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-        known = {
-            one.pocket: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)
-        }
+        known = {one: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)}
         every = (len(judged), len(known)) == (len(verdicts), len(limits))
         return ranking(
             _Findings(
@@ -290,6 +291,12 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
     )
 
 
+def _limits(pocket: Pocket) -> list[Limit]:
+    """Critical frictions that are wanted of a pocket: on a wide land too if its land stops the cage first."""
+    wide = [Limit(pocket, WIDE * pocket.clearance)] if 0.0 < pocket.land < pocket.clearance else []
+    return [Limit(pocket), *wide]
+
+
 def _load(question: _Question, piece: Piece) -> Load:
     """Work of a piece: runs of a verdict, of a limit, or those of a node."""
     if isinstance(piece, Knot):
@@ -309,7 +316,8 @@ def _computed(question: _Question, piece: Piece) -> Found:
     if isinstance(piece, Knot):
         return question.tracers[piece.pocket].point(piece.node)
     if isinstance(piece, Limit):
-        return cage_limit(question.cages[piece.pocket], settings, runner)
+        solution = question.cages[piece.pocket]
+        return cage_limit(solution, settings, runner, land_clearance=piece.land_clearance)
     solved = question.paper if piece.is_paper else question.cages
     run = partial(runner.whole_ensemble, settings=settings)
     return judge_solution(solved[piece.pocket], piece.friction, run)
@@ -391,14 +399,14 @@ def _row(
         return replace(row, reason=broken)
     row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case))
     threshold = _threshold(found, pocket, friction)
-    limit = found.limits.get(pocket)
+    limit, *wide = (found.limits.get(one) for one in _limits(pocket))
     papers = judgement if question.is_paper else found.judgements.get(Asked(pocket, friction.mean, True))
     if threshold is None or papers is None or (limit is None and not question.is_paper):
         missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
         return replace(row, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
     return Ranked(
         **{f.name: getattr(row, f.name) for f in fields(row) if f.name != "reason"},
-        reason=reason(threshold, judgement),
+        reason=reason(threshold, judgement) if question.is_paper else judgement.reason,
         restitution_threshold=threshold.value,
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
@@ -407,6 +415,7 @@ def _row(
         paper_verdict=papers.verdict,
         paper_probability_stable=papers.probability_stable,
         **_safety(limit, friction, question.spreads.get(row.name, 0.0)),
+        **(_on_a_wide_land(pocket, *wide) if wide else {}),
     )
 
 
@@ -416,6 +425,17 @@ def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> d
         return {}
     own = {f.name: getattr(limit, f.name) for f in fields(limit) if f.name != "notes"}
     return own | asdict(safety_factor(limit, friction.mean, friction.interval(), spread))
+
+
+def _on_a_wide_land(pocket: Pocket, limit: CageLimit | None) -> dict[str, Any]:
+    """Critical friction on a land that leaves the cage to its pockets, as fields of a row."""
+    if limit is None:
+        return {}
+    ends = ("", "_low", "_high")
+    found = {
+        f"wide_land_critical_friction{end}": getattr(limit, f"own_critical_friction{end}") for end in ends
+    }
+    return {"wide_land_clearance": WIDE * pocket.clearance, **found}
 
 
 def _threshold(found: _Findings, pocket: Pocket, friction: MeanFriction) -> RestitutionThreshold | None:

@@ -83,6 +83,11 @@ class Ranked(MeasuredCandidate):
     safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
     safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
     safety_factor_high: Ratio | None = None  # upper end of it
+    wide_land_clearance: Metre | None = None
+    """Land clearance at which the pockets stop the cage; null where they do at its own."""
+    wide_land_critical_friction: Ratio | None = None  # the critical friction there; null beyond the search
+    wide_land_critical_friction_low: Ratio | None = None  # of its 95 % interval
+    wide_land_critical_friction_high: Ratio | None = None  # upper end of it
     rank: int = 0  # by safety factor, in the paper's model by margin; a tie within the scatter of the best
     within_reach: bool  # whether the threshold reaches what the paper grants solid lubrication
     judgement: Judgement  # verdict and evidence at the central values of the study

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
-from separatrix.ground.units import MetrePerSecond, Ratio
+from separatrix.ground.units import Metre, MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict.critical_friction import lowest_crossing
 from separatrix.verdict.judgement import NORMAL_95
@@ -21,6 +21,9 @@ from separatrix.verdict.which_ball import ENOUGH, transmitted_force, whirl_share
 
 HAND: Ratio = 0.42
 """Critical friction over sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings, docs/theory/ranking.md)."""
+
+WIDE: Ratio = 1.6
+"""Clearance of a wide land over that of the pocket: there the pockets stop the cage, not the land."""
 
 TINY: Ratio = 1e-12
 """Least friction whose logarithm is taken."""
@@ -54,21 +57,30 @@ class SafetyFactor:
 
 
 def cage_limit(
-    solution: Solution, settings: StabilitySettings, runner: Runner, guess: Ratio | None = None
+    solution: Solution,
+    settings: StabilitySettings,
+    runner: Runner,
+    *,
+    guess: Ratio | None = None,
+    land_clearance: Metre | None = None,
 ) -> CageLimit:
     """Critical friction of a solved study's cage, by the ball that its model asks for.
 
     With the ball "auto", by balls of one state; by free balls where the friction of a whirl at that critical
-    friction exceeds a quarter of what the races hold.
+    friction exceeds a quarter of what the races hold. `land_clearance` replaces that of the cage.
     """
-    first = moving_cage(solution, 0.0)
-    found = _limit(first, settings, runner, guess)
+
+    def cage(friction: Ratio, ball: BallModel | None = None) -> MovingCage:
+        found = moving_cage(solution, friction, ball)
+        return found if land_clearance is None else replace(found, land_clearance=land_clearance)
+
+    found = _limit(cage(0.0), settings, runner, guess)
     if solution.design.ball_model is not BallModel.AUTO:
         return found
     at = found.own_critical_friction
-    if at is None or whirl_share(moving_cage(solution, at), transmitted_force(solution)) <= ENOUGH:
+    if at is None or whirl_share(cage(at), transmitted_force(solution)) <= ENOUGH:
         return found
-    return _limit(moving_cage(solution, 0.0, BallModel.FREE), settings, runner, at)
+    return _limit(cage(0.0, BallModel.FREE), settings, runner, at)
 
 
 def _limit(cage: MovingCage, settings: StabilitySettings, runner: Runner, guess: Ratio | None) -> CageLimit:

@@ -15,6 +15,9 @@ from separatrix.present.figure import Figure, Panel
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
 
+MOST_NOTES = 3
+"""Notes that are shown on a screen; they come with the gravest first."""
+
 INTERRUPTED = "Interrupted: only what was finished is here."
 
 PROPERTIES = {
@@ -41,7 +44,11 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level =
     missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED)]
     uncertain = [one["name"] for one in answer.values["study"]["uncertain_inputs"]]
     notes = [] if draws or not uncertain else [at_their_means(uncertain)]
-    caveats = [Note(text, "caveat") for text in [*notes, *answer.warnings]]
+    texts = [*notes, *answer.warnings]
+    first, others = texts[:MOST_NOTES], texts[MOST_NOTES:]
+    more = [Note(f"`--full` has {len(others)} more.", "caveat", Level.BRIEF)] if others else []
+    caveats = [*(Note(text, "caveat") for text in first), *more]
+    caveats += [Note(text, "caveat", Level.LONG) for text in others]
     return Page(
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",

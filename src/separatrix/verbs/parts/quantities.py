@@ -200,6 +200,8 @@ QUANTITIES: dict[str, Quantity] = {
     "safety_factor": Q(
         label="safety factor", head="S", symbol="S", form=".2f", meaning="critical friction over friction"
     ),
+    "wide_land_clearance": Q(label="land clearance at which the pockets stop the cage"),
+    "wide_land_critical_friction": Q(label="critical friction on that wider land", form=".3f"),
     "critical_kick": Q(label="disturbance of the critical friction"),
     "margin": Q(label="margin", form="+.2f", meaning="threshold less the bearing's own eta"),
     "probability_stable": Q(
@@ -236,12 +238,12 @@ QUANTITIES: dict[str, Quantity] = {
     "growth_rate": Q(
         label="growth rate", meaning="of the amplitude, mean over all runs from the worst disturbance"
     ),
-    "largest_contact_force": Q(label="largest force at a pocket", head="force at a pocket"),
-    "largest_land_force": Q(label="largest force on the land", head="force on the land"),
+    "largest_contact_force": Q(label="largest force at a pocket", head="pocket force"),
+    "largest_land_force": Q(label="largest force on the land", head="land force"),
     "force_limit": Q(label="force beyond which the ball slides"),
     "rubbing_force": Q(label="force of rubbing on the land"),
     "rubbing_speed": Q(label="speed of rubbing on the land"),
-    "rubbing_power": Q(label="power of rubbing on the land", head="rubs with", digits=2),
+    "rubbing_power": Q(label="power of rubbing on the land", head="rubbing", digits=2),
     "whirl_frequency": Q(
         label="whirl frequency", head="whirl", meaning="median of the runs that end so, seen from the balls"
     ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import inf
 from typing import Any
 
@@ -186,7 +186,7 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     others = grouped((verdict(row), row.name) for row in rows if row not in first)
     rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
     if has_safety(first):
-        return f"{lead} {_safety(first)} {rest}"
+        return " ".join([lead, _safety(first), rest, *deciding(rows)])
     limits = (
         told(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
     )
@@ -213,6 +213,29 @@ def _safety(first: Sequence[Part]) -> str:
         f"Safety factor {at}{factor}: half the runs whirl at a friction of {criticals}, the pockets have "
         f"{frictions}."
     )
+
+
+def deciding(rows: Sequence[Part]) -> Iterator[str]:
+    """Yield what decides a ranking besides frictions: land or pockets, a weak whirl, extrapolation."""
+    judged = [row for row in rows if is_judged(row)]
+    best = judged[0]
+    both = "land clearance {land_clearance}, pocket clearance {pocket_clearance}"
+    if best.get("wide_land_clearance") is not None:
+        words = f"The land stops the cage before its pockets can drive it ({both}). "
+        words += "At a land clearance of {wide_land_clearance} the critical friction would be "
+        critical = best.wide_land_critical_friction_low if "wide_land_critical_friction" not in best else None
+        words += "{wide_land_critical_friction}"
+        limit = critical or best.wide_land_critical_friction
+        above = [row.name for row in judged if row.friction > limit]
+        yield said(best, words) + (f", below the friction of {', '.join(above)}." if above else ".")
+    elif best.get("land_clearance") is not None and all(row.verdict == "STABLE" for row in judged) is False:
+        yield said(best, f"The pockets decide, not the land ({both}).")
+    weak = [row for row in judged if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
+    if weak:
+        words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
+        yield f"{weak[0].name} rolls in its pockets: {said(weak[0], words)}."
+    if any(row.extrapolation for row in judged):
+        yield f"Frictions with {MARK} are extrapolated."
 
 
 def span(rows: Sequence[Part], name: str) -> str:
