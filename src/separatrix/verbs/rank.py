@@ -11,6 +11,7 @@ from separatrix.ground.document import Part
 from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import (
     Block,
+    Cell,
     Column,
     Equation,
     Heading,
@@ -58,11 +59,14 @@ from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
     candidate_numbers,
+    deciding,
     evidence_column,
     has_safety,
+    is_any,
     is_judged,
     motion_column,
     rank_texts,
+    threshold_alone,
     verdict,
     verdict_facts,
     verdict_sentences,
@@ -131,7 +135,7 @@ def page(answer: Part) -> Page:
     known = [row for row in rows if is_judged(row)]
     return page_of(
         answer,
-        Note(verdict_sentences(rows, own.name), "lead"),
+        Note(" ".join([verdict_sentences(rows, own.name), *deciding(answer, rows)]), "lead"),
         Heading(_title(own.name), LONG),
         *verdicts(own.name, rows, legend=LONG),
         *footnotes(rows),
@@ -145,7 +149,7 @@ def page(answer: Part) -> Page:
         motion(own.name, known),
         reasons(rows, LONG),
         *free_balls_decided(known),
-        Note("`--full` has all evidence, and the other environments.", level=BRIEF),
+        Note(f"`--full` has all evidence{', and the other environments' * bool(others)}.", level=BRIEF),
         *in_detail(known),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *ensemble_facts(answer), *holds_for(answer), level=LONG),
@@ -183,7 +187,7 @@ def verdicts(
         text_column("rank", lambda row: ranks[row.name], f"by {order}, = a tie within the scatter"),
         text_column("material", lambda row: row.name),
         column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
-        column(compared[0], is_short=has_safety(rows)),
+        column(compared[0], is_short=True) if has_safety(rows) else threshold_column(),
         column(compared[1]),
         column("probability_stable"),
         text_column("verdict", verdict),
@@ -198,7 +202,7 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
         return []
     columns = (
         _name(),
-        column("restitution_threshold"),
+        threshold_column(),
         column("margin"),
         column("paper_probability_stable"),
         text_column("verdict", lambda row: row.paper_verdict),
@@ -213,22 +217,26 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
             "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
             "from an impact.",
         )
-    numbers = "threshold {restitution_threshold}, margin {margin}", "{restitution_threshold}, {margin}"
     first = next(iter(each.values()))[0]
-    listed = by_verdict(
-        {
-            word: [f"{row.name} ({said(short(row), numbers[row is not first])})" for row in who]
-            for word, who in each.items()
-        }
-    )
+
+    def numbers(row: Part) -> str:
+        words = ("threshold ", "margin ") if row is first else ("", "")
+        return f"{words[0]}{threshold_alone(row)}, {words[1]}{told(row, 'margin')}"
+
+    listed = by_verdict({word: [f"{row.name} ({numbers(row)})" for row in who] for word, who in each.items()})
     heading = Heading("The paper's method", LONG, 3)
     table = Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG)
     return [Note(f"The paper's method ({model}): {listed}.{why}", level=BRIEF), heading, table]
 
 
-def short(row: Part) -> Part:
-    """Return a row whose threshold is told without its interval."""
-    return Part({name: row.get(name) for name in ("restitution_threshold", "margin")}, row.units)
+def threshold_column() -> Column:
+    """Return the column of restitution thresholds."""
+    one = column("restitution_threshold")
+
+    def found(row: Part) -> Cell:
+        return Cell("any") if "restitution_threshold" in row and is_any(row) else one.cell(row)
+
+    return Column(one.head, found, meaning=one.meaning)
 
 
 def evidence(name: str, rows: Sequence[Part]) -> Table:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 from itertools import chain
+from math import log
 from typing import Any, NamedTuple
 
 from separatrix.cage.disturbance import settings_for
@@ -53,7 +54,15 @@ from separatrix.verdict.ranking_records import (
     same_rank,
 )
 from separatrix.verdict.response import GrowthCounter
-from separatrix.verdict.safety_factor import WIDE, CageLimit, cage_limit, safety_factor, spread
+from separatrix.verdict.safety_factor import (
+    WIDE,
+    CageLimit,
+    between,
+    cage_limit,
+    ends_of_each,
+    safety_factor,
+    spread,
+)
 from separatrix.verdict.stability_curve import (
     OWN_DAMPING,
     Node,
@@ -110,6 +119,8 @@ class _Question:
     tracers: Mapping[Pocket, Tracer]
     pockets: Mapping[str, Pocket]
     reference: Pocket
+    ends: Sequence[tuple[Pocket, ...]]  # of the pockets that differ in stiffness alone
+    wide: Limit | None  # on a land that leaves the reference cage to its pockets, if its own does not
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
     runner: Runner
@@ -176,6 +187,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             duration=question.settings.duration,
             ball_model=reference.design.ball_model,
             motion_model=reference.design.motion_model,
+            **_on_a_wide_land(question, found),
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
             complete=found.complete,
@@ -232,6 +244,7 @@ def _question(
         )
         for pocket in cages
     }
+    is_by_land = 0.0 < reference.land < reference.clearance
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
     spreads = {}
     if drawn and not is_paper:
@@ -246,6 +259,8 @@ def _question(
         tracers=tracers,
         pockets=pockets,
         reference=reference,
+        ends=ends_of_each(cages),
+        wide=Limit(reference, WIDE * reference.clearance) if is_by_land and not is_paper else None,
         drawn=drawn,
         keys=keys,
         runner=runner,
@@ -257,7 +272,7 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
     keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
     nodes = [Knot(pocket, node) for pocket, tracer in question.tracers.items() for node in tracer.first]
     beside = [] if question.is_paper else [key._replace(is_paper=True) for key in keys]
-    limits = [] if question.is_paper else [one for pocket in question.cages for one in _limits(pocket)]
+    limits = _limits(question, {})
     verdicts: list[Asked | Case] = [*keys, *beside, *cases]
 
     def ranked(results: Mapping[Piece, Found]) -> Ranking:
@@ -266,7 +281,7 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
         judged = {one: found for one, found in results.items() if isinstance(found, Judgement)}
         traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
         known = {one: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)}
-        every = (len(judged), len(known)) == (len(verdicts), len(limits))
+        every = len(judged) == len(verdicts) and {*_limits(question, known)} <= {*known}
         return ranking(
             _Findings(
                 points={k: rising(found.values()) for k, found in points.items()},
@@ -291,10 +306,38 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
     )
 
 
-def _limits(pocket: Pocket) -> list[Limit]:
-    """Critical frictions that are wanted of a pocket: on a wide land too if its land stops the cage first."""
-    wide = [Limit(pocket, WIDE * pocket.clearance)] if 0.0 < pocket.land < pocket.clearance else []
-    return [Limit(pocket), *wide]
+def _limits(question: _Question, known: Mapping[Limit, CageLimit]) -> list[Limit]:
+    """Critical frictions that are wanted: of pockets that differ in stiffness alone those of the ends.
+
+    If the ends say nothing of those between them, all. The reference cage's on a wide land too, if its land
+    stops it before its pockets do.
+    """
+    if question.is_paper:
+        return []
+    wanted = []
+    for ends in question.ends:
+        limits = [Limit(one) for one in ends]
+        soft, stiff = known.get(limits[0]), known.get(limits[-1])
+        is_open = soft is not None and stiff is not None and between(soft, stiff, 0.5) is None
+        alike = {one for one in question.cages if one._replace(stiffness=ends[0].stiffness) == ends[0]}
+        wanted += [Limit(one) for one in sorted(alike)] if is_open else limits
+    return [*wanted, *([question.wide] if question.wide else [])]
+
+
+def _limit_of(question: _Question, found: _Findings, pocket: Pocket) -> CageLimit | None:
+    """Critical friction of a pocket, its own or that between those of the ends; None if not finished."""
+    if own := found.limits.get(Limit(pocket)):
+        return own
+    first, last = next(
+        (ends[0], ends[-1])
+        for ends in question.ends
+        if pocket._replace(stiffness=ends[0].stiffness) == ends[0]
+    )
+    soft, stiff = found.limits.get(Limit(first)), found.limits.get(Limit(last))
+    if soft is None or stiff is None or first == last:
+        return None
+    share = log(pocket.stiffness / first.stiffness) / log(last.stiffness / first.stiffness)
+    return between(soft, stiff, share)
 
 
 def _load(question: _Question, piece: Piece) -> Load:
@@ -317,14 +360,18 @@ def _computed(question: _Question, piece: Piece) -> Found:
         return question.tracers[piece.pocket].point(piece.node)
     if isinstance(piece, Limit):
         solution = question.cages[piece.pocket]
-        return cage_limit(solution, settings, runner, land_clearance=piece.land_clearance)
+        highest = max(key.friction for key in question.keys)
+        return cage_limit(solution, settings, runner, highest=highest, land_clearance=piece.land_clearance)
     solved = question.paper if piece.is_paper else question.cages
     run = partial(runner.whole_ensemble, settings=settings)
     return judge_solution(solved[piece.pocket], piece.friction, run)
 
 
 def _more(question: _Question, piece: Piece, results: Mapping[Piece, Found]) -> list[Piece]:
-    """Nodes of the same curve that are wanted once this one is known."""
+    """Nodes of the same curve, and limits between two, that are wanted once this one is known."""
+    if isinstance(piece, Limit):
+        known = {one: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)}
+        return [one for one in _limits(question, known) if one not in known]
     if not isinstance(piece, Knot):
         return []
     wanted = question.tracers[piece.pocket].more(piece.node, _points_of(results, piece.pocket))
@@ -399,7 +446,7 @@ def _row(
         return replace(row, reason=broken)
     row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case))
     threshold = _threshold(found, pocket, friction)
-    limit, *wide = (found.limits.get(one) for one in _limits(pocket))
+    limit = _limit_of(question, found, pocket)
     papers = judgement if question.is_paper else found.judgements.get(Asked(pocket, friction.mean, True))
     if threshold is None or papers is None or (limit is None and not question.is_paper):
         missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
@@ -415,7 +462,6 @@ def _row(
         paper_verdict=papers.verdict,
         paper_probability_stable=papers.probability_stable,
         **_safety(limit, friction, question.spreads.get(row.name, 0.0)),
-        **(_on_a_wide_land(pocket, *wide) if wide else {}),
     )
 
 
@@ -427,15 +473,13 @@ def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> d
     return own | asdict(safety_factor(limit, friction.mean, friction.interval(), spread))
 
 
-def _on_a_wide_land(pocket: Pocket, limit: CageLimit | None) -> dict[str, Any]:
-    """Critical friction on a land that leaves the cage to its pockets, as fields of a row."""
-    if limit is None:
+def _on_a_wide_land(question: _Question, found: _Findings) -> dict[str, Any]:
+    """Critical friction on a land that leaves the cage to its pockets, as fields; none if not asked."""
+    if question.wide is None or question.wide not in found.limits:
         return {}
-    ends = ("", "_low", "_high")
-    found = {
-        f"wide_land_critical_friction{end}": getattr(limit, f"own_critical_friction{end}") for end in ends
-    }
-    return {"wide_land_clearance": WIDE * pocket.clearance, **found}
+    limit = found.limits[question.wide]
+    values = {f"wide_land_{end}": getattr(limit, f"own_{end}") for end in CRITICAL}
+    return {"wide_land_clearance": question.wide.land_clearance, **values}
 
 
 def _threshold(found: _Findings, pocket: Pocket, friction: MeanFriction) -> RestitutionThreshold | None:

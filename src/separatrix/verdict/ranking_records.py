@@ -83,11 +83,6 @@ class Ranked(MeasuredCandidate):
     safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
     safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
     safety_factor_high: Ratio | None = None  # upper end of it
-    wide_land_clearance: Metre | None = None
-    """Land clearance at which the pockets stop the cage; null where they do at its own."""
-    wide_land_critical_friction: Ratio | None = None  # the critical friction there; null beyond the search
-    wide_land_critical_friction_low: Ratio | None = None  # of its 95 % interval
-    wide_land_critical_friction_high: Ratio | None = None  # upper end of it
     rank: int = 0  # by safety factor, in the paper's model by margin; a tie within the scatter of the best
     within_reach: bool  # whether the threshold reaches what the paper grants solid lubrication
     judgement: Judgement  # verdict and evidence at the central values of the study
@@ -135,6 +130,12 @@ class Ranking:
     duration: Second  # of a run
     ball_model: BallModel  # that the study asks for; a verdict states the one that decided
     motion_model: MotionModel  # plane or space
+    wide_land_clearance: Metre | None = None
+    """Land clearance at which the pockets of `candidate` stop its cage; null where they do at its own, and in
+    the paper's model."""
+    wide_land_critical_friction: Ratio | None = None  # of that cage there; null beyond the search
+    wide_land_critical_friction_low: Ratio | None = None  # of its 95 % interval
+    wide_land_critical_friction_high: Ratio | None = None  # upper end of it
     capacity: Newton  # most that the races can transmit to the most loaded ball
     notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each
     complete: bool  # false if an interrupt left something out

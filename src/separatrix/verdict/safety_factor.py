@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Metre, MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
+from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.critical_friction import lowest_crossing
 from separatrix.verdict.judgement import NORMAL_95
 from separatrix.verdict.long_jobs import Runner
@@ -22,8 +24,19 @@ from separatrix.verdict.which_ball import ENOUGH, transmitted_force, whirl_share
 HAND: Ratio = 0.42
 """Critical friction over sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings, docs/theory/ranking.md)."""
 
+AMPLE: Ratio = 2.0
+"""Safety factor by balls of one state from which free balls are not asked."""
+
 WIDE: Ratio = 1.6
 """Clearance of a wide land over that of the pocket: there the pockets stop the cage, not the land."""
+
+POWERS = (
+    "own_critical_friction",
+    "own_critical_friction_low",
+    "own_critical_friction_high",
+    "estimated_critical_friction",
+)
+"""What a power of stiffness gives between two."""
 
 TINY: Ratio = 1e-12
 """Least friction whose logarithm is taken."""
@@ -61,29 +74,33 @@ def cage_limit(
     settings: StabilitySettings,
     runner: Runner,
     *,
-    guess: Ratio | None = None,
+    highest: Ratio = inf,
     land_clearance: Metre | None = None,
 ) -> CageLimit:
     """Critical friction of a solved study's cage, by the ball that its model asks for.
 
-    With the ball "auto", by balls of one state; by free balls where the friction of a whirl at that critical
-    friction exceeds a quarter of what the races hold. `land_clearance` replaces that of the cage.
+    With the ball "auto", by balls of one state, which may be up to a quarter too low but not too high; by
+    free balls where the friction of a whirl there exceeds a quarter of what the races hold, unless the
+    critical friction is `AMPLE` times the `highest` friction that it will be compared with.
+    `land_clearance` replaces that of the cage.
     """
 
     def cage(friction: Ratio, ball: BallModel | None = None) -> MovingCage:
         found = moving_cage(solution, friction, ball)
         return found if land_clearance is None else replace(found, land_clearance=land_clearance)
 
-    found = _limit(cage(0.0), settings, runner, guess)
+    found = _limit(cage(0.0), settings, runner)
     if solution.design.ball_model is not BallModel.AUTO:
         return found
     at = found.own_critical_friction
-    if at is None or whirl_share(cage(at), transmitted_force(solution)) <= ENOUGH:
+    if at is None or at >= AMPLE * highest or whirl_share(cage(at), transmitted_force(solution)) <= ENOUGH:
         return found
     return _limit(cage(0.0, BallModel.FREE), settings, runner, at)
 
 
-def _limit(cage: MovingCage, settings: StabilitySettings, runner: Runner, guess: Ratio | None) -> CageLimit:
+def _limit(
+    cage: MovingCage, settings: StabilitySettings, runner: Runner, guess: Ratio | None = None
+) -> CageLimit:
     counter = GrowthCounter(cage, settings, runner)
     found, kick, notes = lowest_crossing(counter, hand_estimate(cage) if guess is None else guess)
     value, low, high = _ends(found)
@@ -108,6 +125,32 @@ def hand_estimate(cage: MovingCage) -> Ratio:
     """Critical friction by the closed law, 0.42 sqrt(2 k M/Z)/C with C of a slow push [-]."""
     stiff = 2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count
     return HAND * math.sqrt(stiff) / cage.slow_damping
+
+
+def ends_of_each(pockets: Iterable[Pocket]) -> list[tuple[Pocket, ...]]:
+    """Of pockets that differ in stiffness alone the softest and the stiffest; one that has none like it."""
+    alike: dict[Pocket, list[Pocket]] = {}
+    for one in sorted(pockets):
+        alike.setdefault(one._replace(stiffness=0.0), []).append(one)
+    return [tuple(dict.fromkeys((group[0], group[-1]))) for group in alike.values()]
+
+
+def between(soft: CageLimit, stiff: CageLimit, share: Ratio) -> CageLimit | None:
+    """Critical friction between two pocket stiffnesses, a power of stiffness; None if an end has no value.
+
+    `share` of the way between the logarithms of stiffness.
+    """
+    ends = {name: (getattr(soft, name), getattr(stiff, name)) for name in POWERS}
+    if not all(low and high for low, high in ends.values()):
+        return None
+    balls = dict.fromkeys((soft.critical_ball, stiff.critical_ball))
+    nearer = stiff if share > 0.5 else soft
+    return replace(
+        nearer,
+        critical_ball=" and ".join(balls),
+        notes=(),
+        **{name: low ** (1.0 - share) * high**share for name, (low, high) in ends.items()},
+    )
 
 
 def spread(drawn: Sequence[Solution]) -> float:

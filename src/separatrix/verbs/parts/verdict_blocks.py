@@ -186,12 +186,14 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     others = grouped((verdict(row), row.name) for row in rows if row not in first)
     rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
     if has_safety(first):
-        return " ".join([lead, _safety(first), rest, *deciding(rows)])
+        return f"{lead} {_safety(first)} {rest}"
     limits = (
         told(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
     )
     whose = "The cage" if len(first) == 1 else "Their cages"
     up_to = f"{whose} remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
+    if all(map(is_any, first)):
+        up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at any restitution factor"
     if not any(row.restitution_threshold for row in first):
         up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
     elif [*each] != ["STABLE"]:
@@ -215,21 +217,34 @@ def _safety(first: Sequence[Part]) -> str:
     )
 
 
-def deciding(rows: Sequence[Part]) -> Iterator[str]:
+def is_any(row: Part) -> bool:
+    """Whether the cage is stable at any restitution factor, within the whole interval."""
+    return bool(row.restitution_threshold >= row.restitution_threshold_low >= 1.0)
+
+
+def threshold_alone(row: Part) -> str:
+    """Return the restitution threshold of a row without its interval."""
+    name = "restitution_threshold"
+    return "any" if is_any(row) else told(Part({name: row.restitution_threshold}, {}), name)
+
+
+def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     """Yield what decides a ranking besides frictions: land or pockets, a weak whirl, extrapolation."""
     judged = [row for row in rows if is_judged(row)]
+    if not judged or not has_safety(judged):
+        return
     best = judged[0]
-    both = "land clearance {land_clearance}, pocket clearance {pocket_clearance}"
-    if best.get("wide_land_clearance") is not None:
-        words = f"The land stops the cage before its pockets can drive it ({both}). "
-        words += "At a land clearance of {wide_land_clearance} the critical friction would be "
-        critical = best.wide_land_critical_friction_low if "wide_land_critical_friction" not in best else None
-        words += "{wide_land_critical_friction}"
-        limit = critical or best.wide_land_critical_friction
-        above = [row.name for row in judged if row.friction > limit]
-        yield said(best, words) + (f", below the friction of {', '.join(above)}." if above else ".")
-    elif best.get("land_clearance") is not None and all(row.verdict == "STABLE" for row in judged) is False:
-        yield said(best, f"The pockets decide, not the land ({both}).")
+    both = said(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
+    if answer.get("wide_land_clearance") is not None:
+        least = answer.wide_land_critical_friction_low
+        critical = answer.get("wide_land_critical_friction")
+        above = [row.name for row in judged if row.friction > (least if critical is None else critical)]
+        words = f"The land stops the cage before its pockets can drive it ({both}): at a land clearance of "
+        words += f"{{wide_land_clearance}} the critical friction of {answer.candidate} would be "
+        whose = f", less than the friction of {', '.join(above)}" if above else ""
+        yield said(answer, words + "{wide_land_critical_friction}") + f"{whose}."
+    elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in judged):
+        yield f"The pockets decide, not the land ({both})."
     weak = [row for row in judged if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
     if weak:
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
