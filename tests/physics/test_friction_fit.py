@@ -1,6 +1,6 @@
 """The friction fit against closed forms, other roads, and simulated tests with known scatter."""
 
-from math import erf, exp, log, pi, sqrt
+from math import exp, log, pi, sqrt
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from separatrix.friction.friction_fit import TestedFriction, fit_friction
 from separatrix.friction.friction_law import StatedFriction
 from separatrix.friction.scatter import LinearModel, conditional, variance_components
 from separatrix.study.reading import read_study
-from separatrix.verdict.ranking_records import lowest_among, lowest_of, may_be_lower
+from separatrix.verdict.ranking_records import may_be_lower
 from separatrix.verdict.ranking_records import measured as measured_mean
 
 ENVIRONMENT = "liquid nitrogen, 440C"
@@ -303,40 +303,22 @@ def test_repeats_on_one_sample_do_not_tell_how_samples_scatter():
     assert not two.at().assumed_scatter
 
 
-PAPER = {"gaseous nitrogen, Chromex 40": 0.667, "gaseous nitrogen, 440C": 0.99999,
-         "liquid nitrogen, Chromex 40": 1.0, "liquid nitrogen, 440C": 0.9938}  # fmt: skip
-"""Armalon's probability of lowest friction with 9 % scatter, by a trapezoid rule of 4001 points."""
+FIRST_IN_GAS = {"Armalon", "Meldin 7211", "PEEK WG 101", "PEEK 450 CA 30"}
+TIED = {
+    "gaseous nitrogen, Chromex 40": FIRST_IN_GAS,
+    "gaseous nitrogen, 440C": {"Armalon"},
+    "liquid nitrogen, Chromex 40": {"Armalon"},
+    "liquid nitrogen, 440C": {"Armalon"},
+}
 
 
-@pytest.mark.parametrize("environment", PAPER)
+@pytest.mark.parametrize("environment", TIED)
 def test_armalon_has_the_lowest_friction_of_the_papers_table(environment):
-    """About 0.67 in gaseous nitrogen on Chromex 40, at least 0.99 in the other three."""
+    """With 9 % scatter: on Chromex 40 in gas it is tied with three others."""
     candidates = read_study("cryogenic-turbopump").ranking.candidates
     frictions = {c.name: c.friction[environment] for c in candidates}
     known = {name: measured_mean(with_scatter(f, 0.09)) for name, f in frictions.items() if f is not None}
-    found = lowest_among(known)
-    assert found["Armalon"] == pytest.approx(PAPER[environment], abs=2e-4)  # digits above
-    assert sum(found.values()) == pytest.approx(1.0, abs=1e-9)
-    others = {"Meldin 7211", "PEEK WG 101", "PEEK 450 CA 30"} if PAPER[environment] < 0.9 else set()
-    tied = {"Armalon", *others}
-    assert {name for name, one in known.items() if may_be_lower(one, known["Armalon"])} == tied
-
-
-def test_probabilities_of_being_lowest_meet_a_monte_carlo_count():
-    """Five normal numbers of different scatter, 400 000 draws."""
-    means, deviations = [0.0, 0.1, 0.15, 0.3, 0.05], [0.1, 0.02, 0.3, 0.05, 0.09]
-    rng = np.random.default_rng(10)
-    draws = np.array(means) + np.array(deviations) * rng.standard_normal((400_000, 5))
-    counted = np.bincount(draws.argmin(axis=1), minlength=5) / len(draws)
-    # four standard errors of a share near one half
-    assert lowest_of(means, deviations) == pytest.approx(counted, abs=4.0 * 0.5 / sqrt(len(draws)))
-
-
-def test_of_two_the_probability_is_the_normal_integral_of_their_distance():
-    """Closed form for two: Phi(d / sqrt(s1^2 + s2^2)); also where one of them is known exactly."""
-    for s1, s2 in ((0.1, 0.2), (0.1, 1e-9), (0.3, 0.003)):
-        closed = 0.5 * (1.0 + erf(0.15 / sqrt(s1**2 + s2**2) / sqrt(2.0)))
-        assert lowest_of([0.0, 0.15], [s1, s2])[0] == pytest.approx(closed, abs=1e-8)  # of the quadrature
+    assert {name for name, one in known.items() if may_be_lower(one, known["Armalon"])} == TIED[environment]
 
 
 @pytest.mark.parametrize("zeta", [0.05, 0.385, 0.9999999, 1.0, 2.5])

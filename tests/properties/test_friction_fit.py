@@ -1,12 +1,11 @@
 """What must hold of friction files and fits, whatever the tests."""
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
 from separatrix.friction.friction_fit import fit_friction
-from separatrix.verdict.ranking_records import lowest_of
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)
@@ -85,14 +84,3 @@ def test_farther_from_the_tests_the_scatter_only_grows(tests, factor):
     assert edge.standard_deviation <= beyond.standard_deviation * (1 + 1e-12)
     assert beyond.standard_deviation <= far.standard_deviation * (1 + 1e-12)
     assert far.extrapolation
-
-
-@given(st.lists(st.tuples(st.floats(-3.0, 0.0), st.floats(1e-3, 0.5)), min_size=1, max_size=7))
-@example([(0.0, 0.5), (0.0, 0.001), (0.0, 0.001)])
-@settings(max_examples=40, deadline=None)
-def test_probabilities_of_being_lowest_sum_to_one(known):
-    """One of them is the lowest."""
-    means, deviations = zip(*known, strict=True)
-    found = lowest_of(means, deviations)
-    assert sum(found) == pytest.approx(1.0, abs=1e-10)  # of the quadrature: 1e-12 a part
-    assert min(found) >= 0.0

@@ -104,10 +104,10 @@ def test_an_answer_says_that_its_study_has_changed(page, root):
 
 def test_a_chosen_model_is_no_change_of_the_study(page):
     """The answer was asked with it, beside the study."""
-    page.post("/run/small.toml", data={"verb": "simulate", "motion": "space"})
+    page.post("/run/small.toml", data={"verb": "simulate", "model": "paper"})
     until(page, lambda jobs: jobs[0].startswith("finished"))
     text = page.get("/answer/simulate/small.toml").text
-    assert "--motion space" in text
+    assert "--model paper" in text
     assert "Changed after" not in text
 
 

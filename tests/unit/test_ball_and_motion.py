@@ -17,11 +17,12 @@ from separatrix.study.cage_body import cage_inertia, ring_body
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
     BallModel,
+    CageModel,
     MotionModel,
     PocketContact,
     PocketShape,
     StabilitySettings,
-    with_models,
+    with_model,
 )
 from separatrix.verbs.parts.answer_page import command
 from separatrix.verdict.ledger import Ledger
@@ -124,27 +125,27 @@ def test_every_option_is_there_in_plane_and_space(motion, keys):
     assert (cage.hertz_coefficient is not None) == ("pocket_contact" in keys)
 
 
-def test_models_are_asked_for_on_the_command_line():
-    """--motion and --ball set the keys of the cage, with themselves as the origin."""
-    study = with_models(shipped(), {"motion": "space", "ball": "traction"})
-    assert (study.cage.motion, study.cage.ball) == (MotionModel.SPACE, BallModel.TRACTION)
-    assert study.origins["cage.motion"] == "--motion space"
+@pytest.mark.parametrize("model", list(CageModel))
+def test_a_model_is_asked_for_on_the_command_line(model):
+    """--model sets the key of the cage, with itself as the origin."""
+    study = with_model(shipped(), model)
+    assert study.cage.model is model
+    assert study.origins["cage.model"] == f"--model {model.value}"
     cage = moving_cage(solve(study), 0.1)
-    assert cage.is_in_space
-    assert cage.traction == solve(study).mobility.traction
+    is_full = model is CageModel.FULL
+    assert (cage.is_in_space, cage.traction == solve(study).mobility.traction) == (is_full, is_full)
 
 
 ASKED = [
-    (("simulate", "le7", "--motion", "space"), "[cage] is missing; `--motion` needs it"),
-    (("sweep", "le7", "--motion", "space"), "[cage] is missing; `--motion` needs it"),
-    (("rank", "cryogenic-turbopump", "--motion", "cube"), "plane, space"),
-    (("rank", "cryogenic-turbopump", "--ball", "cube"), "damper, traction, free, auto"),
+    (("simulate", "le7", "--model", "full"), "[cage] is missing; `--model` needs it"),
+    (("sweep", "le7", "--model", "paper"), "[cage] is missing; `--model` needs it"),
+    (("rank", "cryogenic-turbopump", "--model", "cube"), "full, paper"),
 ]
 
 
 @pytest.mark.parametrize(("arguments", "said"), ASKED)
 def test_a_model_that_cannot_be_is_refused(arguments, said, capsys, tmp_path, monkeypatch):
-    """A study without a cage has no motion of it; one line names the models there are."""
+    """A study without a cage has no model of it; one line names the models there are."""
     monkeypatch.chdir(tmp_path)
     assert said in refused(capsys, *arguments)
 
@@ -187,6 +188,6 @@ def test_runs_in_space_are_kept_and_joined(tmp_path):
 def test_the_answer_names_its_models(capsys, tmp_path, monkeypatch):
     """The origin of a model that is asked for on the command line is the option."""
     monkeypatch.chdir(tmp_path)
-    found = document(capsys, "simulate", "cryogenic-turbopump", "--ball", "traction")
-    assert found["study"]["cage"]["ball"] == {"value": "traction", "origin": "--ball traction"}
-    assert "separatrix simulate cryogenic-turbopump --ball traction" in command(part_of(found))
+    found = document(capsys, "simulate", "cryogenic-turbopump", "--model", "paper")
+    assert found["study"]["cage"]["model"] == {"value": "paper", "origin": "--model paper"}
+    assert "separatrix simulate cryogenic-turbopump --model paper" in command(part_of(found))

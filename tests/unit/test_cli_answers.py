@@ -194,7 +194,7 @@ def test_every_dimensional_variable_has_a_unit(folder):
     """Whatever is a plain number without a unit is in this list of counts and names."""
     counts = (
         *("most_loaded", "iterations", "whirling", "ball", "run", "runs", "nodes", "sweeps", "slip", "rank"),
-        *("whirl_direction", "within_reach", "friction_scatter_assumed", "settles", "rolls", "whirls"),
+        *("whirl_direction", "friction_scatter_assumed", "settles", "rolls", "whirls"),
         *("drifts", "unresolved", "kept_by_land", "left_pocket", "force_exceeds_races"),
         *("input_mean", "input_standard_deviation"),  # each in the unit beside it, in input_unit
     )

@@ -216,8 +216,9 @@ def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize(("ball", "said"), [("free", "free"), ("auto", "one state"), ("damper", "damper")])
 def test_the_text_says_which_ball_it_has(ball, said, folder, capsys):
-    """`--ball` forces one; auto is one state."""
-    assert main(["simulate", str(folder / "small.toml"), "--ball", ball, "--out", "one", "--quiet"]) == 0
+    """`[cage] ball` forces one; auto is one state."""
+    (folder / "ball.toml").write_text(SMALL.replace("[cage]", f'[cage]\nball = "{ball}"'))
+    assert main(["simulate", str(folder / "ball.toml"), "--out", "one", "--quiet"]) == 0
     cage = json.loads(Path("one/simulate.json").read_text())["cage"]
     has = {"free": ["free_ball", "traction"], "one state": ["traction"]}.get(said, [])
     assert [name for name in ("free_ball", "traction") if cage[name]] == has
@@ -243,7 +244,8 @@ def test_wrong_options_are_refused_in_one_line(options, said, capsys):
 @pytest.mark.parametrize("motion", ["plane", "space"])
 def test_balls_that_their_races_grip_have_an_infinite_damping(folder, capsys, motion):
     """A restitution factor of 1, the end of a map's axis: null in the document."""
-    asked = ["simulate", str(folder / "small.toml"), "--restitution-factor", "1", "--motion", motion]
+    (folder / "moved.toml").write_text(SMALL.replace("[cage]", f'[cage]\nmotion = "{motion}"'))
+    asked = ["simulate", str(folder / "moved.toml"), "--restitution-factor", "1"]
     assert main([*asked, "--out", "gripped", "--quiet"]) == 0
     found = json.loads(Path("gripped/simulate.json").read_text())
     assert found["cage"]["race_damping"] is None

@@ -14,7 +14,7 @@ from separatrix.verdict import counting
 from separatrix.verdict.counting import is_plain, settles_more
 from separatrix.verdict.drawn_frictions import Case
 from separatrix.verdict.draws import UncertainInput
-from separatrix.verdict.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares, sobol_shares
+from separatrix.verdict.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares
 from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval
 
 CASE = Case("A", "air")
@@ -45,15 +45,6 @@ def test_shares_are_squares_of_coefficients_beside_chance():
         assert shares[name].share == pytest.approx(true / total, abs=0.06)
         assert shares[name].share_low <= shares[name].share <= shares[name].share_high
     assert sum(one.share for one in found.shares) == pytest.approx(1.0, abs=1e-12)
-
-
-def test_predictions_for_bearings_left_out_are_calibrated():
-    """Five bins of 819 bearings: the counted share within 4 standard errors of the predicted."""
-    found = drivers(CASE, NAMES, *simulated((0.3, 1.2, -0.8, 0.4), 4096, seed=3))
-    error = np.sqrt(found.predicted * (1.0 - found.predicted) / found.bearings)
-    assert np.all(np.abs(found.counted - found.predicted) < 4.0 * error)
-    assert np.all(np.diff(found.predicted) > 0.0)
-    assert found.skill > 0.15
 
 
 def test_an_interval_holds_the_true_share_about_as_often_as_it_says():
@@ -120,24 +111,6 @@ def test_of_a_friction_only_the_error_of_its_mean_can_be_learned():
     law = Normal(mean=0.1, standard_deviation=0.022)
     one = UncertainInput(key="ranking.A.air", unit="-", distribution=law, central=0.1, source="measured")
     assert reducible_shares(asked, [one]) == {"ranking.A.air": pytest.approx(1.0 / 5.0)}
-
-
-def test_sobol_indices_of_a_product_are_the_closed_form():
-    """F = (1 + a(x - 1/2)) (1 + b(y - 1/2)): variances a^2/12, b^2/12 and their product; z enters nothing."""
-    a, b = 2.0, 1.0
-
-    def model(points):
-        return ((1.0 + a * (points[:, 0] - 0.5)) * (1.0 + b * (points[:, 1] - 0.5)))[:, None]
-
-    ((first, total),) = sobol_shares(model, NAMES, seed=5)
-    va, vb = a * a / 12.0, b * b / 12.0
-    variance = va + vb + va * vb
-    for found, x, y in ((first, va, vb), (total, va + va * vb, vb + va * vb)):
-        known = {one.name: one for one in found}
-        assert known["x"].share == pytest.approx(x / variance, abs=0.05)  # 256 draws: 0.02 seen
-        assert known["y"].share == pytest.approx(y / variance, abs=0.05)
-        assert known["z"].share == pytest.approx(0.0, abs=0.02)
-        assert all(one.share_low <= one.share <= one.share_high for one in found)
 
 
 def judged(verdict, *settles, runs=64):

@@ -184,31 +184,6 @@ def test_the_pockets_bound_the_path_by_a_polygon():
     assert AROUND.size == found.size
 
 
-MICRON = "\N{MICRO SIGN}m"
-FILM = {
-    "restitution_factor": 0.5,
-    "is_any_allowed": False,
-    "reason": "",
-    "film_thickness": [1e-7, 1e-6, 1e-5],
-    "film_restitution_factor": [[0.6, 0.5, 0.4], [0.4, 0.6, 0.4], [0.1, 0.2, 0.3], [0.6, 0.6, 0.6]],
-}
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({}, [f"1 {MICRON} to 10 {MICRON}", f"100 nm, 10 {MICRON}", "any", "none"]),
-        ({"restitution_factor": None, "is_any_allowed": True}, ["any"] * 4),
-        ({"restitution_factor": None, "reason": "more or less in words"}, ["none"] * 4),
-    ],
-)
-def test_allowed_films_are_told_from_the_flag(changes, words):
-    """Not from the sentence of the reason."""
-    answer = Part({}, {"film_thickness_here": "m"})
-    film = Part(FILM | changes, {})
-    assert [sensitivity.thicknesses(answer, place)(film) for place in range(4)] == words
-
-
 @pytest.mark.parametrize(("complete", "said"), [(True, "No case is undecided"), (False, "No finished case")])
 def test_an_interrupted_answer_does_not_say_that_nothing_is_undecided(complete, said):
     """Cases that are not finished may be."""

@@ -31,7 +31,6 @@ from separatrix.verdict.ranking_records import (
     NotFinished,
     NotMeasured,
     Ranked,
-    lowest_among,
     margin_interval,
     may_be_lower,
     measured,
@@ -298,7 +297,7 @@ def test_each_candidate_has_the_stiffness_of_its_own_pocket():
     for row, candidate in ((soft_one, candidates[0]), (stiff_one, candidates[1])):
         lonely = replace(question, candidates=(candidate,))
         (alone,) = rank(replace(study, cage=cage, ranking=lonely)).overall
-        assert repr(replace(row, rank=1, probability_lowest_friction=None)) == repr(alone)
+        assert repr(replace(row, rank=1)) == repr(alone)
 
 
 def test_a_cage_by_its_shape_has_the_mass_of_each_candidate():
@@ -319,15 +318,6 @@ def test_a_cage_by_its_shape_has_the_mass_of_each_candidate():
     assert found["heavy"].restitution_factor != found["light"].restitution_factor
     given = rank(replace(study, cage=replace(cage, mass=0.02), ranking=question)).overall
     assert {row.cage_mass for row in given} == {0.02}
-
-
-def test_one_measured_friction_alone_has_no_probability_of_being_the_lowest():
-    """There is nothing to compare it with; with another, the two add up to 1, however small the means."""
-    one = Friction(mean=0.2, standard_deviation=0.05)
-    assert lowest_among({"A": measured(one)}) == lowest_among({}) == {}
-    small = Friction(mean=1e-200, standard_deviation=0.1)
-    found = lowest_among({"A": measured(one), "B": measured(small)})
-    assert sum(found.values()) == pytest.approx(1.0, abs=1e-9)  # of the quadrature
 
 
 def test_a_study_without_candidates_is_refused():

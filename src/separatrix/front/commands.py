@@ -43,8 +43,6 @@ Full = Annotated[bool, typer.Option("--full", help="The whole answer, not only w
 OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
 CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
 MODEL_HELP = "The best estimate or the paper's method [default: that of the study]."
-MOTION_HELP = "Where the cage moves [default: as in the study, or in the plane]."
-BALL_HELP = "Model of the ball that a pocket pushes [default: that of the study]."
 STUDY_HELP = "A study file or workbook, or the name of a shipped study."
 
 
@@ -67,8 +65,6 @@ Jobs = Annotated[int | None, whole_number("Threads [default: one for each proces
 BESIDE: dict[str, tuple[Any, Any]] = {
     "study": (Annotated[str, typer.Argument(metavar="STUDY", help=STUDY_HELP)], inspect.Parameter.empty),
     "model": (Annotated[str | None, typer.Option(metavar="full|paper", help=MODEL_HELP)], None),
-    "motion": (Annotated[str | None, typer.Option(metavar="plane|space", help=MOTION_HELP)], None),
-    "ball": (Annotated[str | None, typer.Option(metavar="damper|traction|free|auto", help=BALL_HELP)], None),
     "full": (Full, False),
     "json": (Json, False),
     "out": (Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)], None),
@@ -175,7 +171,7 @@ def options_of(asked: Verb | Tool, given: Mapping[str, Any]) -> Any:
 
 def verb_command(verb: Verb) -> Callable[..., int]:
     """Return the function behind the command of a verb."""
-    beside = ["study", *("model", "motion", "ball") * verb.moves_a_cage, *("full",) * verb.has_full]
+    beside = ["study", *("model",) * verb.moves_a_cage, *("full",) * verb.has_full]
     return command(run, verb, *beside, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs)
 
 
@@ -184,14 +180,13 @@ def run(verb: Verb, given: Mapping[str, Any]) -> int:
     json, cluster = given["json"], given.get("cluster")
     named(cluster, "--cluster", "a scheduler, or local:N")
     place, jobs = folder(given["out"]), threads(given["jobs"])
-    models = {name: given[name] for name in ("model", "motion", "ball") if given.get(name) is not None}
     is_kept = verb.keeps_runs and not (json and place is None)
     if given.get("animate") is not None and json and place is None:
         raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
     ended = "runs that were finished are kept." if is_kept else "no file was written."
     with interruptible(ended), contextlib.ExitStack() as stack:
         options = options_of(verb, given)
-        study = asked_study(verb, given["study"], models)
+        study = asked_study(verb, given["study"], given.get("model"))
         to = Path(study.name) if place is None and verb.writes_data and not json else place
         if to is not None:
             stack.enter_context(writable_folder(to))

@@ -23,7 +23,7 @@ from separatrix.study.helper import StudyHelper
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
 from separatrix.study.library import Library, beside, joined, library_files, library_of_text
 from separatrix.study.library.records import Content
-from separatrix.study.study import Study, chosen_models, shipped_studies, stiffness_is_known, with_models
+from separatrix.study.study import Study, chosen_model, shipped_studies, stiffness_is_known, with_model
 from separatrix.study.uncertain import written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
@@ -39,33 +39,34 @@ DERIVED = (
 """A key, its name, and what follows from it where it is given."""
 
 
-def read_study(study: str | Path, models: Mapping[str, str] | None = None) -> Study:
+def read_study(study: str | Path, model: str | None = None) -> Study:
     """Study of a file, or of the shipped example of that name.
 
     Parameters
     ----------
     study : str or Path
         Path of the file, or name of the example.
-    models : mapping, optional
-        `motion` and `ball` of the cage in place of those of the file. The study is checked with them.
+    model : str, optional
+        "full" or "paper", in place of that of the file. The study is checked with it.
 
     Raises
     ------
     InputError
-        Everything that is wrong with the file, a line each: place, rule, value, cure. Or a model is not
+        Everything that is wrong with the file, a line each: place, rule, value, cure. Or the model is not
         known, or there is no cage to have it.
     """
     path = find(study)
     document = document_of(Study, path)
     cage = document.data.get("cage")
-    if models and isinstance(cage, dict):
-        cage |= {name: model.value for name, model in chosen_models(models).items()}
+    chosen = None if model is None else chosen_model(model)
+    if chosen and isinstance(cage, dict):
+        cage["model"] = chosen.value
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
     built_study, notes = _study_of(document, name, library_of(document))
-    if models:
-        require(built_study, f"--{next(iter(models))}", "cage")
-        built_study = with_models(built_study, models)
+    if chosen:
+        require(built_study, "--model", "cage")
+        built_study = with_model(built_study, chosen)
     return built_with(built_study, notes=(*notes, *cautions(built_study)))
 
 

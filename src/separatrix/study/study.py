@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, replace
-from enum import Enum
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -344,47 +343,36 @@ check(Study, after=_SIZES)(cage_in_bearing.body_that_can_be)
 check(Study)(cage_in_bearing.pockets_for_balls)
 
 
-MODELS: dict[str, type[Spelled]] = {"model": CageModel, "motion": MotionModel, "ball": BallModel}
-"""Keys of [cage] that choose a model."""
-
-
-def chosen_models(models: Mapping[str, str]) -> dict[str, Enum]:
-    """Models of a cage by the keys of a study file (`MODELS`), as the command line names them.
+def chosen_model(model: str) -> CageModel:
+    """Model of a name that the command line has.
 
     Raises
     ------
     InputError
-        A model is not known.
+        The model is not known.
     """
-    chosen: dict[str, Enum] = {}
-    for name, kind in MODELS.items():
-        known = {str(one.value): one for one in kind}
-        if name in models and models[name] not in known:
-            raise InputError(f"--{name}", f"must be one of {', '.join(known)}", shown(models[name]))
-        if name in models:
-            chosen[name] = known[models[name]]
-    return chosen
+    known = {str(one.value): one for one in CageModel}
+    if model not in known:
+        raise InputError("--model", f"must be one of {', '.join(known)}", shown(model))
+    return known[model]
 
 
-def with_models(study: Study, models: Mapping[str, str]) -> Study:
-    """Return the study with other models of its cage.
+def with_model(study: Study, model: CageModel) -> Study:
+    """Return the study with another model of its cage.
 
     Raises
     ------
     InputError
-        A model is not known, or the cage cannot have it.
+        The cage cannot have it.
     """
-    chosen = chosen_models(models)
     if study.cage is None:
         raise InputError(study.name, "lacks the section [cage]")
-    origins = {f"cage.{name}": f"--{name} {value.value}" for name, value in chosen.items()}
-    cage = replace(study.cage, **chosen)  # type: ignore[arg-type]  # the enums of these fields
+    origins = {**study.origins, "cage.model": f"--model {model.value}"}
     content = study.content
     if content is not None:
-        given = {**content["data"].get("cage", {}), **{name: one.value for name, one in chosen.items()}}
-        known = {"data": {**content["data"], "cage": given}, "origins": {**study.origins, **origins}}
-        content = {**content, **known}
-    return replace(study, cage=cage, origins={**study.origins, **origins}, content=content)
+        given = {**content["data"].get("cage", {}), "model": model.value}
+        content = {**content, "data": {**content["data"], "cage": given}, "origins": origins}
+    return replace(study, cage=replace(study.cage, model=model), origins=origins, content=content)
 
 
 ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")

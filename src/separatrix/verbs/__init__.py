@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,17 +69,17 @@ def refusals(study: Study) -> Iterator[tuple[str, str]]:
             yield name, sentence
 
 
-def asked_study(verb: Verb, study: str | Path, models: Mapping[str, str]) -> Study:
-    """Return the study of a file or a shipped name, with other models of its cage if there are any.
+def asked_study(verb: Verb, study: str | Path, model: str | None = None) -> Study:
+    """Return the study of a file or a shipped name, with another model of its cage if one is named.
 
     Raises
     ------
     InputError
-        The file is wrong, lacks a section that the verb needs, or cannot have these models.
+        The file is wrong, lacks a section that the verb needs, or cannot have this model.
     """
     from separatrix.study.reading import read_study, require
 
-    found = read_study(study, models)
+    found = read_study(study, model)
     require(found, verb.name, *verb.needs)
     return found
 

@@ -172,5 +172,3 @@ class SensitivityAnswer(OfCage):
     """The uncertain study, and the cage of its reference candidate."""
 
     uncertain: UncertainStudy  # verdicts over the uncertain inputs, and what decides them
-    film_thickness_here: Metre | None  # of the study's own film; null if the races are bare
-    race_friction_here: Ratio  # of the study's own races

@@ -13,7 +13,7 @@ from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
 from separatrix.present.blocks import Column, Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.refused import cage_motion, refused
@@ -135,18 +135,16 @@ def _with_units(answer: Part, point: Part) -> Part:
 def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str, dict[str, object]]:
     """Return the point of a map next to a place: in words, as a study that extends `base`, as options.
 
-    Restitution factor and disturbance are not keys of a study: they are options of `simulate`, as the models
-    of the cage are.
+    Restitution factor and disturbance are not keys of a study: they are options of `simulate`, as the model
+    is that the command chose.
     """
-    from separatrix.study.study import MODELS
-
     axes = ((answer["x"], x), (answer["y"], y))
     point = {axis["parameter"]: _nearest(axis["values"], at) for axis, at in axes}
     units = {axis["parameter"]: axis["unit"] for axis, _ in axes}
     plain = {name: name.rpartition(".")[2].replace("_", " ") for name in point}
     words = ", ".join(f"{plain[name]} {format_number(value)}" for name, value in point.items())
-    stated = ((one, answer["study"]["cage"].get(one, {}).get("value")) for one in MODELS)
-    options: dict[str, object] = {one: value for one, value in stated if value is not None}
+    model = answer["study"]["cage"].get("model", {})
+    options: dict[str, object] = {"model": model["value"]} if is_chosen(model) else {}
     options[KICK] = f"{point.pop(KICK, answer['kick']):.9g} m/s"
     if RESTITUTION in point:
         options[RESTITUTION] = f"{point.pop(RESTITUTION):.9g}"

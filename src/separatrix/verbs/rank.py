@@ -306,7 +306,7 @@ def environment(name: str, rows: Sequence[Part]) -> list[Block]:
 
 
 def footnotes(rows: Sequence[Part]) -> list[Note]:
-    """Return in what respect frictions are extrapolated, and which is most likely the lowest."""
+    """Return in what respect frictions are extrapolated."""
     measured = [row for row in rows if "friction" in row]
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
     alike = grouped((tuple(names), sentence) for sentence, names in who.items())
@@ -315,17 +315,7 @@ def footnotes(rows: Sequence[Part]) -> list[Note]:
         + ("" if len(names) == len(measured) else f" ({', '.join(names)})")
         for names, sentences in alike.items()
     ]
-    likely = sorted(
-        ((row.probability_lowest_friction or 0.0, row) for row in measured), key=lambda one: -one[0]
-    )
-    names = [
-        f"{row.name} {told(row, 'probability_lowest_friction')}" for share, row in likely if share >= 0.005
-    ]
-    found = [Note(f"{MARK} extrapolated beyond the tests: {' '.join(each)}", "legend")] if each else []
-    if measured:
-        lowest = ", ".join(names) or f"none, for only {measured[0].name} was measured here"
-        found.append(Note(f"Probability of the lowest mean friction: {lowest}.", "legend", LONG))
-    return found
+    return [Note(f"{MARK} extrapolated beyond the tests: {' '.join(each)}", "legend")] if each else []
 
 
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:

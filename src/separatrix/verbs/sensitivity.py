@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import (
     Block,
-    Cell,
-    Column,
     Heading,
     Level,
     Note,
@@ -41,12 +38,9 @@ from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.telling import (
     all_numbers,
-    cell,
     column,
-    each_of,
     marks,
     number_of,
-    quantity,
     said,
     told,
 )
@@ -115,8 +109,6 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
             solution=solution,
             cage=cage,
             uncertain=found,
-            film_thickness_here=study.film.thickness,
-            race_friction_here=study.film.race_friction,
             notes=(*solution.notes, *cage.notes, *found.notes),
         ),
         lambda: uncertain_study(study, samples, runner=runner),
@@ -158,8 +150,6 @@ def page(answer: Part) -> Page:
         *sources(answer),
         Heading("Which friction a new material may have"),
         *allowed_frictions(answer),
-        Heading(f"Which film keeps the cage stable in {answer.environment}", LONG),
-        *allowed_films(answer),
         *(block for name, rows in others.items() for block in environment(name, rows, LONG)),
         Heading("Basis of this answer", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
@@ -266,7 +256,7 @@ def next_tests(answer: Part) -> Iterator[Block]:
 
 
 def sources(answer: Part) -> Iterator[Block]:
-    """Yield the sources of the cases that have any, the others, and the shares in eta and C_mu."""
+    """Yield the sources of the cases that have any, and the others."""
     known = least_decided(answer)
     shares = [(case, one) for case in known for one in largest_first(case.shares)]
     columns = (
@@ -286,10 +276,6 @@ def sources(answer: Part) -> Iterator[Block]:
     for is_few, count in reasons.items():
         reason = "too few bearings end otherwise" if is_few else "the inputs explain almost no variance"
         yield Note(f"No sources of {count} cases: {reason}.", level=LONG if known else Level.ALWAYS)
-    for smooth in answer.shares:
-        parts = ", ".join(f"{one.name} {told(one, 'share')}" for one in largest_first(smooth.total))
-        words = f"{quantity(smooth.quantity).label} of {smooth.name}, total Sobol indices"
-        yield Note(f"{_title(words)}: {parts}.", level=LONG)
 
 
 def least_decided(answer: Part) -> list[Part]:
@@ -325,62 +311,14 @@ def allowed_frictions(answer: Part) -> Iterator[Note]:
             yield Note(said(one, f"{most}, to be stable {wanted}."))
 
 
-def allowed_films(answer: Part) -> Iterator[Block]:
-    """Yield the largest restitution factor of each candidate, and the films that keep to it."""
-    films = answer.allowed_films
-    if not films:
-        return
-
-    def limit(film: Part) -> Cell:
-        if "restitution_factor" in film:
-            return cell(film, "restitution_factor")
-        return Cell("any" if film.is_any_allowed else "none")
-
-    columns = [text_column("material", lambda film: film.name), Column("largest $eta$", limit)]
-    for place, friction in enumerate(films[0].race_friction):
-        head = f"film at $f_BT$ {number_of(films[0], 'race_friction', friction)}"
-        columns.append(text_column(head, thicknesses(answer, place)))
-    most = number_of(answer, "film_thickness_here", max(films[0].film_thickness, default=None))
-    caption = (
-        f"Largest restitution factor $eta$ at which {told(films[0], 'probability')} of the bearings settle "
-        "(95 %), and the thicknesses of film that keep to it, by the friction $f_BT$ of ball on race; any: "
-        f"of those up to {most}. All else is as it is, with its uncertainty."
-    )
-    yield Table("allowed films", tuple(columns), tuple(films), caption, LONG)
-
-
-def thicknesses(answer: Part, place: int) -> Callable[[Part], str]:
-    """Return from a case the thicknesses that are allowed at one friction of ball on race."""
-
-    def words(film: Part) -> str:
-        most = 1.0 if film.is_any_allowed else -1.0
-        limit = film.restitution_factor if "restitution_factor" in film else most
-        etas = zip(film.film_thickness, film.film_restitution_factor[place], strict=True)
-        runs = [[one for one, _ in run] for is_in, run in groupby(etas, lambda one: one[1] <= limit) if is_in]
-        if runs and len(runs[0]) == len(film.film_thickness):
-            return "any"
-        ends = (dict.fromkeys((run[0], run[-1])) for run in runs)
-        each = (" to ".join(number_of(answer, "film_thickness_here", one) for one in run) for run in ends)
-        return ", ".join(each) or "none"
-
-    return words
-
-
 # The workbook.
 
 
 def sheets(answer: Part) -> Iterator[Table]:
-    """Yield every number: of candidates, shares of inputs, looks at P(stable), and bearings."""
+    """Yield every number of the candidates, and all shares of inputs."""
     yield candidate_numbers(answer)
-    logit = [(one, "variance of the logit", each) for one in answer.drivers for each in one.shares]
-    indices = ((one, kind) for one in answer.shares for kind in ("first", "total"))
-    sobol = [(one, f"{kind}, {one.quantity}", each) for one, kind in indices for each in one.get(kind)]
-    looks = [(one, "", each) for one in answer.convergence for each in each_of(one)]
-    bearings = [(one, "", each) for one in answer.clouds for each in each_of(one)]
-    tables = {"all shares": logit + sobol, "convergence": looks, "bearings": bearings}
-    for name, rows in tables.items():
-        named = ((one.get("environment") or OVERALL, one.name, of, each) for one, of, each in rows)
-        yield all_numbers(name, ("environment", "material", "of"), named)
+    shares = ((one.environment, one.name, each) for one in answer.drivers for each in one.shares)
+    yield all_numbers("all shares", ("environment", "material"), shares)
 
 
 # The picture.

@@ -227,7 +227,7 @@ def force_facts(answer: Part) -> Facts:
     pocket = "{largest_contact_force}"
     if answer.force_exceeds_races:
         pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
-        pocket += "(`--ball free` has)"
+        pocket += "(`[cage] ball = 'free'` has)"
     shares = [f"{told(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
     power = "pocket_rubbing_power"
     heat = alone(sum(answer.get(power)), quantity(power), answer.unit(power))

@@ -41,7 +41,7 @@ class Verb:
     page of its document. `needs` are sections of a study that may be left out but not here. `keeps_runs` is
     for an answer whose finished runs are kept in its folder, and that may be made on a cluster.
     `files` yields name and content of what it writes besides, of its answer, options and who is told of
-    progress. `moves_a_cage` is for one whose models of motion and ball may be chosen. `refusals` yields, in a
+    progress. `moves_a_cage` is for one whose model may be chosen. `refusals` yields, in a
     second, what the verb would refuse of a study or take long for, a sentence each.
     """
 

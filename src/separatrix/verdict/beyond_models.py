@@ -49,7 +49,7 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
             f"The largest pocket force, {format_quantity(most, 'N', 3)}, exceeds f_BT (Q_i + Q_o) = "
             f"{format_quantity(limit, 'N', 3)}, the most that the races can transmit to a ball: beyond it "
             "the ball slides, and the linear race damping is outside its range. It then returns too much "
-            "speed to the cage: `--ball auto` gives the answer with the ball's inertia and traction."
+            "speed to the cage: `--model full` gives the answer with the ball's inertia and traction."
         )
     if design.motion_model is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
         yield from _tilts(solution)
@@ -83,7 +83,7 @@ def _tilts(solution: Solution) -> Iterator[str]:
             f"The pockets are round, and the strongest disturbance, {kick:.3g} m/s, exceeds {speed:.3g} "
             "m/s, the "
             "speed of a cage half a pocket clearance off the axis. So disturbed a cage tilts, and may "
-            "whirl in space at up to half less friction: `--motion space`."
+            "whirl in space at up to half less friction: `--model full`."
         )
 
 

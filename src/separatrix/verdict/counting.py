@@ -1,6 +1,6 @@
-"""Counting the drawn bearings that settle: for a verdict, and for the friction or film that they can have.
+"""Counting the drawn bearings that settle: for a verdict, and for the friction that they can have.
 
-A case is counted no longer than its verdict is open. For a friction or a restitution factor, P(settles) is
+A case is counted no longer than its verdict is open. For a friction, P(settles) is
 followed with the same counts and the same search as the critical friction of one cage (`limits.response`), at
 the share of bearings that may fail.
 """
@@ -14,7 +14,6 @@ import numpy as np
 
 from separatrix.cage.ensemble import Ensemble
 from separatrix.cage.moving_cage import MovingCage
-from separatrix.chain.lubrication import LubricationCurve
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.distribution import LogNormal
 from separatrix.study.study import BallModel
@@ -29,10 +28,8 @@ from separatrix.verdict.response import (
     Response,
     Side,
     ends_of,
-    race_damping_at,
-    with_damping,
 )
-from separatrix.verdict.uncertain_records import AllowedFilm, AllowedFriction
+from separatrix.verdict.uncertain_records import AllowedFriction
 
 BLOCK = 64  # bearings after which a case is judged
 RISK: Ratio = 1e-3
@@ -140,42 +137,6 @@ def allowed_friction(
         friction_low=low,
         friction_high=high,
         reason=reasons[found] if isinstance(found, Side) else "",
-    )
-
-
-def allowed_film(
-    bearings: DrawnBearings, case: Case, films: LubricationCurve | None, runner: Runner
-) -> AllowedFilm:
-    """Largest restitution factor of the central bearing, the dampings of all bearings scaled with its own.
-
-    A film acts on the cage by the race damping alone, so the films that keep below it are read off the
-    central bearing's curve over film thickness and race friction.
-    """
-    central = bearings.cage(case)
-    own = bearings.central[case.candidate].restitution.restitution_factor
-
-    def at(eta: Ratio, _place: int, cage: MovingCage) -> MovingCage:
-        ratio = race_damping_at(central, eta) / central.race_damping  # infinite at eta = 1
-        return with_damping(cage, cage.race_damping * ratio)
-
-    found = _worst_crossing(bearings, case, at, max(own, 0.05), runner)
-    value, low, high = ends_of(found)
-    reasons = {
-        Side.ABOVE: "fewer settle at any restitution factor",
-        Side.BELOW: "more settle at every restitution factor",
-    }
-    empty = np.zeros(0)
-    return AllowedFilm(
-        name=case.candidate,
-        probability=PROBABILITY,
-        restitution_factor=value,
-        restitution_factor_low=low,
-        restitution_factor_high=high,
-        reason=reasons[found] if isinstance(found, Side) else "",
-        is_any_allowed=found is Side.BELOW,
-        film_thickness=empty if films is None else films.film_thickness,
-        race_friction=empty if films is None else films.race_friction,
-        film_restitution_factor=np.zeros((0, 0)) if films is None else films.restitution_factor,
     )
 
 

@@ -1,4 +1,4 @@
-r"""What decides whether a bearing settles, which input to measure next, what the chain depends on.
+r"""What decides whether a bearing settles, and which input to measure next.
 
 The runs of a case are described by a regression
 
@@ -12,71 +12,52 @@ that it was not fitted to.
 A measurement reduces the lack of knowledge of an input, a share of its variance: all of a thickness, but of
 the friction of a new cage only the error of its mean. Its result is not known beforehand, so P(settles) of
 each case is predicted by the regression for equally likely results.
-
-Restitution factor and race damping are smooth in the inputs: Sobol indices, with matrices A and B of n draws
-each, and A with column i of B (Saltelli et al. 2010, Computer Physics Communications 181, 259-270, table 2,
-rows b and f; the second is Jansen's, 1999):
-
-.. math:: S_i \approx \frac{\overline{f(B)\,(f(A_B^{(i)}) - f(A))}}{\operatorname{Var} f}, \qquad
-          T_i \approx \frac{\overline{(f(A) - f(A_B^{(i)}))^2}}{2 \operatorname{Var} f}
-
-The draws are independent scramblings of Sobol' points; what changes when one of them is left out is the
-scatter of an index.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.special import expit, ndtri, stdtrit, xlogy
 
 from separatrix.ground.units import Array, Ratio
 from separatrix.study.study import Friction, Study
-from separatrix.verdict.draws import Case, UncertainInput, sobol_points
+from separatrix.verdict.draws import Case, UncertainInput
 from separatrix.verdict.uncertain_records import Drivers, Share, TestGain
 
 PRIOR = 3.0  # standard deviation of the coefficients beforehand: a separation by one input alone stays finite
 FOLDS = 8  # parts of the bearings, each left out of one fit
 FEWEST = 30  # bearings of the rarer outcome below which the inputs are not compared
 LEAST_SKILL: Ratio = 0.02  # part of the deviance below which the inputs explain nothing that counts
-BINS = 5
 CHANCE = "chance of the single run"
 CHANCE_VARIANCE = math.pi**2 / 3.0
 
 
 def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> Drivers:
-    """Shares of the inputs in the variance of a case's logit, with calibration on bearings left out.
+    """Shares of the inputs in the variance of a case's logit, with the skill on bearings left out.
 
     `names` are the inputs, `scores` their draws as standard normal numbers, shape (bearing, input); `settled`
     is 1 where the bearing settles, shape (bearing,).
     """
     rare = int(min(settled.sum(), settled.size - settled.sum()))
     if rare < FEWEST or not names:
-        none = np.zeros(0)
         return Drivers(
             name=case.candidate,
             environment=case.environment,
             shares=(),
             reason=f"{rare} of {settled.size} bearings end otherwise: too few to compare",
-            predicted=none,
-            counted=none,
-            bearings=none,
             skill=None,
         )
     unseen = _left_out(scores, settled)
     skill = 1.0 - _deviance(unseen, settled) / _deviance(np.full(settled.size, settled.mean()), settled)
-    predicted, counted, bearings = _bins(unseen, settled)
     shares = _shares(names, scores, settled) if skill >= LEAST_SKILL else ()
     return Drivers(
         name=case.candidate,
         environment=case.environment,
         shares=shares,
         reason="" if shares else f"the inputs explain {max(0.0, 100.0 * skill):.1f} % of the deviance only",
-        predicted=predicted,
-        counted=counted,
-        bearings=bearings,
         skill=float(skill),
     )
 
@@ -115,14 +96,6 @@ def _left_out(scores: Array, settled: Array) -> Array:
 
 def _deviance(predicted: Array, settled: Array) -> float:
     return float(-2.0 * np.sum(xlogy(settled, predicted) + xlogy(1.0 - settled, 1.0 - predicted)))
-
-
-def _bins(predicted: Array, settled: Array) -> tuple[Array, Array, Array]:
-    """Mean prediction, counted share and number of bearings of each bin, as many bearings in each."""
-    parts = np.array_split(np.argsort(predicted, kind="stable"), BINS)
-    rows = [(predicted[one].mean(), settled[one].mean(), float(one.size)) for one in parts]
-    first, second, third = np.array(rows).T
-    return first, second, third
 
 
 def _shares(names: Sequence[str], scores: Array, settled: Array) -> tuple[Share, ...]:
@@ -220,51 +193,3 @@ def _reducible(friction: Friction, known: UncertainInput, scatter: Ratio) -> Rat
     if error is None:
         return 1.0 / (friction.count + 1) if friction.count else 0.0
     return (error**2 + friction.widening**2) / (error**2 + deviation**2)
-
-
-BLOCKS, EACH = 8, 32  # independent scramblings, and draws in each
-
-Model = Callable[[Array], Array]  # from points in the unit cube, (draw, input), to (draw, quantity)
-
-
-def sobol_shares(
-    model: Model, names: Sequence[str], *, seed: int
-) -> list[tuple[tuple[Share, ...], tuple[Share, ...]]]:
-    """First-order and total indices of each quantity of a model, by its inputs, largest total first."""
-    count = len(names)
-    points = np.concatenate([sobol_points(EACH, 2 * count, seed, block) for block in range(BLOCKS)])
-    a, b = points[:, :count], points[:, count:]
-    mixed = [np.where(np.arange(count) == i, b, a) for i in range(count)]
-    answers = np.array([model(rows) for rows in (a, b, *mixed)])  # shape (matrix, draw, quantity)
-    return [_indices(names, answers[:, :, q]) for q in range(answers.shape[2])]
-
-
-def _indices(names: Sequence[str], values: Array) -> tuple[tuple[Share, ...], tuple[Share, ...]]:
-    """Indices of one quantity from its values, shape (matrix, draw)."""
-    block = np.arange(values.shape[1]) // EACH
-    whole = _estimates(values)
-    others = np.array([_estimates(values[:, block != k]) for k in range(BLOCKS)])
-    scatter = np.sqrt((BLOCKS - 1.0) / BLOCKS * np.sum((others - others.mean(axis=0)) ** 2, axis=0))
-    half = float(stdtrit(BLOCKS - 1, 0.975)) * scatter
-    order = np.argsort(-whole[1], kind="stable")
-
-    def shares(kind: int) -> tuple[Share, ...]:
-        values = [(names[i], float(np.clip(whole[kind, i], 0.0, 1.0)), float(half[kind, i])) for i in order]
-        return tuple(
-            Share(name=name, share=x, share_low=max(0.0, x - h), share_high=min(1.0, x + h))
-            for name, x, h in values
-        )
-
-    return shares(0), shares(1)
-
-
-def _estimates(values: Array) -> Array:
-    """First-order and total indices, shape (2, input); 0 where nothing varies."""
-    centred = values - values[:2].mean()
-    a, b, mixed = centred[0], centred[1], centred[2:]
-    variance = float(np.mean(centred[:2] ** 2))
-    if variance == 0.0:
-        return np.zeros((2, len(mixed)))
-    first = np.mean(b * (mixed - a), axis=1)
-    total = 0.5 * np.mean((mixed - a) ** 2, axis=1)
-    return np.array([first, total]) / variance

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
@@ -11,12 +10,10 @@ import numpy as np
 
 from separatrix.cage.ensemble import Ensemble
 from separatrix.chain.pocket_friction import with_scatter
-from separatrix.chain.solution import solve
-from separatrix.ground.errors import InputError, SeparatrixError
-from separatrix.ground.units import Array, Ratio
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array
 from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
 from separatrix.study.distribution import described
-from separatrix.study.keys import setter, study_numbers
 from separatrix.study.study import Study
 from separatrix.verdict.beyond_models import (
     NOT_FINISHED,
@@ -27,22 +24,18 @@ from separatrix.verdict.beyond_models import (
     not_measured,
     pocket_of,
 )
-from separatrix.verdict.counting import BLOCK, RISK, RUNS, allowed_film, allowed_friction, counted, settles
+from separatrix.verdict.counting import RISK, RUNS, allowed_friction, counted, settles
 from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
 from separatrix.verdict.draws import Case, UncertainInput
-from separatrix.verdict.drivers import drivers, fitted, next_tests, reducible_shares, sobol_shares
-from separatrix.verdict.judgement import Judgement, Verdict, wilson_interval
-from separatrix.verdict.long_jobs import Interrupted, Load, Runner
-from separatrix.verdict.ranking_records import MeanFriction, lowest_among, overall
+from separatrix.verdict.drivers import drivers, fitted, next_tests, reducible_shares
+from separatrix.verdict.judgement import Judgement, Verdict
+from separatrix.verdict.long_jobs import Load, Runner
+from separatrix.verdict.ranking_records import MeanFriction, overall
 from separatrix.verdict.uncertain_records import (
-    AllowedFilm,
     AllowedFriction,
-    Cloud,
-    ConvergenceRow,
     Drivers,
     InputRow,
     NotDrawn,
-    SmoothShares,
     TestGain,
     UncertainEnvironment,
     UncertainMaterial,
@@ -51,7 +44,6 @@ from separatrix.verdict.uncertain_records import (
 )
 
 FEWEST = 64  # bearings below which no probability is worth a table
-CLOUD = 256  # bearings of a case that are kept for the pictures
 Counted = tuple[Judgement, Ensemble]
 
 
@@ -74,17 +66,16 @@ def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None
         raise InputError("--samples", f"must be at least {FEWEST}", got=str(bearings), cure=cure)
     drawn, runner = drawn_bearings(study, bearings), runner or Runner()
     inverse = _inverse(drawn, runner)
-    pieces: dict[Case | str, Callable[[], object]] = {SHARES: partial(_smooth, study, drawn, runner)}
-    pieces |= {case: partial(counted, drawn, case, runner) for case in drawn.friction}
+    pieces: dict[Case | str, Callable[[], object]] = {
+        case: partial(counted, drawn, case, runner) for case in drawn.friction
+    }
     pieces.update(inverse)
 
     def answer(found: Mapping[Case | str, object]) -> UncertainStudy:
         judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
         answered = [found[key] for key in inverse if key in found]
         complete = len(found) == len(pieces)
-        shares = found.get(SHARES, ())
-        whole = _answer(study, drawn, judged, answered, bearings)
-        return replace(whole, shares=shares if isinstance(shares, tuple) else (), complete=complete)
+        return replace(_answer(study, drawn, judged, answered, bearings), complete=complete)
 
     def load(key: Case | str) -> Load:
         """Work of a piece, in runs: an inverse question is a search from each kick."""
@@ -126,14 +117,10 @@ def _answer(
             for place in ranking.environments
         ),
         overall=_rows(drawn, "", judged),
-        convergence=tuple(_convergence(case, *one) for case, one in judged.items()),
-        clouds=tuple(_cloud(drawn, case, *one) for case, one in judged.items() if case.environment),
         drivers=tuple(decided.values()),
-        shares=(),
         undecided=tuple(map(_words, undecided)),
         next_tests=_next_tests(drawn, open_cases),
         allowed_friction=tuple(one for one in inverse if isinstance(one, AllowedFriction)),
-        allowed_films=tuple(one for one in inverse if isinstance(one, AllowedFilm)),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
         notes=(*chain, *notes, *beyond_motion(central, moved)),
@@ -142,7 +129,7 @@ def _answer(
 
 
 def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], object]]:
-    """Inverse questions: a friction for each pocket, a film for each candidate."""
+    """Inverse questions: a friction for each pocket."""
     ranking = ranking_question(drawn.study)
     alike: dict[Pocket, list[str]] = {}
     for name in dict.fromkeys(case.candidate for case in drawn.friction):
@@ -151,13 +138,6 @@ def _inverse(drawn: DrawnBearings, runner: Runner) -> dict[str, Callable[[], obj
         f"friction {names[0]}": partial(allowed_friction, drawn, names, ranking.friction_scatter, runner)
         for names in alike.values()
     }
-    environment = required_environment(drawn.study, ranking)
-    for names in alike.values():
-        films = drawn.central[names[0]].lubrication
-        for name in names:
-            case = Case(name, environment)
-            if case in drawn.friction:
-                pieces[f"film {name}"] = partial(allowed_film, drawn, case, films, runner)
     return pieces
 
 
@@ -171,8 +151,7 @@ def _rows(drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]
         known = [drawn.stated[case] for case in cases if case in drawn.stated]
         means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
     measured = {name: one for name, one in means.items() if one is not None}
-    lowest = lowest_among(measured)
-    rows = [_row(drawn, Case(n, environment), f, lowest.get(n), judged) for n, f in measured.items()]
+    rows = [_row(drawn, Case(n, environment), f, judged) for n, f in measured.items()]
     others = (NotDrawn(name=n, reason=not_measured(environment)) for n in means if n not in measured)
     return (*sorted(rows, key=_best_first), *others)
 
@@ -181,7 +160,6 @@ def _row(
     drawn: DrawnBearings,
     case: Case,
     mean: MeanFriction,
-    lowest: Ratio | None,
     judged: Mapping[Case, Counted],
 ) -> UncertainMaterial:
     """One candidate in one environment."""
@@ -194,7 +172,6 @@ def _row(
         friction_deviation=float(np.std(drawn.friction[case])),
         friction_scatter_assumed=mean.assumed,
         extrapolation=mean.extrapolation,
-        probability_lowest_friction=lowest,
         restitution_factor=float(eta[0]),
         restitution_factor_low=float(eta[1]),
         restitution_factor_high=float(eta[2]),
@@ -224,33 +201,6 @@ def _input_row(one: UncertainInput) -> InputRow:
         source=one.source,
         mean=law.mean,
         standard_deviation=law.standard_deviation,
-    )
-
-
-def _convergence(case: Case, judged: Judgement, found: Ensemble) -> ConvergenceRow:
-    """P(stable) with the first bearings, by doubling."""
-    settled = settles(found, judged)
-    sizes = [BLOCK << k for k in range(20) if BLOCK << k < settled.size] + [settled.size]
-    counts = [int(settled[:size].sum()) for size in sizes]
-    ends = [wilson_interval(count, size) for count, size in zip(counts, sizes, strict=True)]
-    return ConvergenceRow(
-        name=case.candidate,
-        environment=case.environment,
-        size=tuple(sizes),
-        probability_stable=np.array(counts) / np.array(sizes),
-        probability_low=np.array([low for low, _ in ends]),
-        probability_high=np.array([high for _, high in ends]),
-    )
-
-
-def _cloud(drawn: DrawnBearings, case: Case, judged: Judgement, found: Ensemble) -> Cloud:
-    settled = settles(found, judged)[:CLOUD]
-    return Cloud(
-        name=case.candidate,
-        environment=case.environment,
-        restitution_factor=_factors(drawn, case)[: settled.size],
-        friction=drawn.friction[case][: settled.size],
-        settles=settled,
     )
 
 
@@ -285,41 +235,3 @@ def _next_tests(drawn: DrawnBearings, cases: Mapping[Case, Counted]) -> tuple[Te
 
 def _words(case: Case) -> str:
     return f"{case.candidate} in {case.environment}"
-
-
-SHARES = "shares"  # names the piece of work behind what the chain computes smoothly
-
-
-def _smooth(study: Study, drawn: DrawnBearings, runner: Runner) -> tuple[SmoothShares, ...]:
-    """Sobol indices of restitution factor and race damping of the cage's own candidate."""
-    own, numbers = reference_candidate(study, ranking_question(study)), study_numbers(drawn.study)
-    inputs = [
-        one
-        for one in drawn.inputs
-        if not numbers[one.key].is_friction
-        and (not one.key.startswith("ranking.") or one.key.startswith(f"ranking.{own.name}."))
-    ]
-    if not inputs:
-        return ()
-    put = setter(drawn.study, [one.key for one in inputs])
-    central = drawn.central[own.name].restitution
-
-    def model(points: Array) -> Array:
-        values = np.column_stack([one.distribution.quantile(points[:, i]) for i, one in enumerate(inputs)])
-        rows = []
-        for row in values.tolist():
-            if runner.stop.is_set:
-                raise Interrupted
-            found = central
-            with suppress(SeparatrixError):  # a draw that makes no bearing counts as the central one
-                changed = put(row)
-                every = {one.name: one for one in ranking_question(changed).candidates}
-                found = solve(changed, every[own.name]).restitution
-            rows.append((found.restitution_factor, found.race_damping))
-        return np.array(rows)
-
-    found = sobol_shares(model, [one.key for one in inputs], seed=study.stability.seed)
-    return tuple(
-        SmoothShares(quantity=quantity, name=own.name, first=first, total=total)
-        for quantity, (first, total) in zip(("restitution_factor", "race_damping"), found, strict=True)
-    )

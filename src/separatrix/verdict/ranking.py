@@ -45,7 +45,6 @@ from separatrix.verdict.ranking_records import (
     RankedEnvironment,
     Ranking,
     Row,
-    lowest_among,
     margin_interval,
     measured,
     overall,
@@ -402,8 +401,7 @@ def _ranked(
 ) -> tuple[Row, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
     known = {name: friction for name, friction in table.items() if friction is not None}
-    chances = lowest_among(known)
-    rows = [_row(question, found, Case(n, environment), f, chances.get(n)) for n, f in known.items()]
+    rows = [_row(question, found, Case(n, environment), f) for n, f in known.items()]
     judged = [row for row in rows if isinstance(row, Ranked)]
     interval = margin_interval if question.is_paper else safety_interval
     places = ranks(
@@ -418,9 +416,7 @@ def _ranked(
     )
 
 
-def _row(
-    question: _Question, found: _Findings, case: Case, friction: MeanFriction, chance: Ratio | None
-) -> Ranked | NotFinished:
+def _row(question: _Question, found: _Findings, case: Case, friction: MeanFriction) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
     pocket = question.pockets[case.candidate]
     eta = question.cages[pocket].restitution.restitution_factor
@@ -429,7 +425,6 @@ def _row(
         friction=friction.mean,
         friction_error=friction.error,
         friction_deviation=friction.deviation,
-        probability_lowest_friction=chance,
         friction_scatter_assumed=friction.assumed,
         extrapolation=friction.extrapolation,
         cage_mass=pocket.mass,
@@ -458,7 +453,6 @@ def _row(
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
-        within_reach=threshold.value >= SOLID_LUBRICATION_LIMIT,
         paper_verdict=papers.verdict,
         paper_probability_stable=papers.probability_stable,
         **_safety(limit, friction, question.spreads.get(row.name, 0.0)),

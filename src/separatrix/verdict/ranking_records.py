@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from math import hypot, inf, log, sqrt
 from typing import Annotated
 
-import numpy as np
-
 from separatrix.chain.pocket_friction import PocketConditions, standard_error
 from separatrix.ground.units import (
     Kilogram,
@@ -42,8 +40,6 @@ class MeasuredCandidate:
     friction_error: Ratio | None  # standard error of the mean
     friction_deviation: Ratio | None
     """Of a new sample about the mean, larger where extrapolated; null overall."""
-    probability_lowest_friction: Ratio | None = None
-    """That no other candidate's mean friction is lower; null without another."""
     friction_scatter_assumed: bool  # whether the scatter is that assumed for an unrepeated test
     extrapolation: tuple[str, ...]  # in what respect friction is extrapolated, in words
     cage_mass: Kilogram  # of a shape that of its material
@@ -84,7 +80,6 @@ class Ranked(MeasuredCandidate):
     safety_factor_low: Ratio | None = None  # of its 95 % interval, with the scatter of friction and inputs
     safety_factor_high: Ratio | None = None  # upper end of it
     rank: int = 0  # by safety factor, in the paper's model by margin; a tie within the scatter of the best
-    within_reach: bool  # whether the threshold reaches what the paper grants solid lubrication
     judgement: Judgement  # verdict and evidence at the central values of the study
     over_inputs: Judgement | None = None
     """Each run with its own bearing drawn from the uncertain inputs; null without them."""
@@ -186,44 +181,6 @@ def overall(frictions: Iterable[Friction | None]) -> MeanFriction | None:
 
 TIED_FROM: Ratio = 0.05  # probability of being below the leader from which a candidate is tied with it
 _LEAST_ERROR = 1e-9
-NODES = 32  # of Gauss's rule, between two of the places where a factor falls: the error is rounding
-_REACH = 9.0
-_STEPS = (-_REACH, -3.0, 0.0, 3.0, _REACH)
-"""Where a factor begins to fall, falls, and has fallen, in its own standard deviations."""
-
-
-def lowest_among(known: Mapping[str, MeanFriction]) -> dict[str, Ratio]:
-    """Probability that each mean friction is the lowest of all; none of a single one, which is not compared.
-
-    Each is log-normal about its mean with its standard error, 0 where there is none.
-    """
-    if len(known) < 2:
-        return {}
-    logs, errors = zip(*map(_log, known.values()), strict=True)
-    return dict(zip(known, lowest_of(logs, errors), strict=True))
-
-
-def lowest_of(means: Sequence[float], deviations: Sequence[float]) -> list[Ratio]:
-    r"""Probability that each of several independent normal numbers is the smallest.
-
-    :math:`P_i = \int \varphi(x) \prod_{j \ne i} \Phi((\mu_j - \mu_i - \sigma_i x) / \sigma_j) dx`, by
-    Gauss's rule between the places where a factor begins to fall, falls, and has fallen.
-    """
-    from scipy.special import ndtr
-
-    mu, sigma = np.array(means, dtype=float), np.array(deviations, dtype=float)
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    found = []
-    for i in range(mu.size):
-        others, widths = np.delete(mu, i), np.delete(sigma, i)
-        edges = (others - mu[i] + np.outer(_STEPS, widths)) / sigma[i]
-        ends = np.unique(np.clip(np.append(edges.ravel(), [-_REACH, 0.0, _REACH]), -_REACH, _REACH))
-        half = 0.5 * np.diff(ends)[:, None]
-        x = ends[:-1, None] + half * (1.0 + nodes)
-        beyond = ndtr((others - mu[i] - sigma[i] * x[..., None]) / widths).prod(axis=-1)
-        share = float((half * weights * np.exp(-0.5 * x * x) * beyond).sum() / sqrt(2.0 * np.pi))
-        found.append(min(share, 1.0))  # rounding may leave 2e-15 more
-    return found
 
 
 def may_be_lower(one: MeanFriction, leader: MeanFriction) -> bool:

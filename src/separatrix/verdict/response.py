@@ -21,7 +21,7 @@ from separatrix.cage.outcome import Cause, RunOutcome
 from separatrix.cage.rows import LANES
 from separatrix.chain.ball_traction import FreeBall, SlipField
 from separatrix.chain.impact_restitution import damping_for
-from separatrix.ground.units import Array, MetrePerSecond, NewtonSecondPerMetre, Ratio
+from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.study import StabilitySettings
 from separatrix.verdict.judgement import wilson_interval
 from separatrix.verdict.long_jobs import Runner
@@ -62,19 +62,15 @@ class Count:
 
 
 def cage_at(cage: MovingCage, restitution_factor: Ratio, friction: Ratio) -> MovingCage:
-    """Return the same cage with the race damping of this restitution factor, and this pocket friction."""
-    changed = with_damping(cage, race_damping_at(cage, restitution_factor))
-    return replace(changed, ball_cage_friction=friction)
+    """Return the same cage with the race damping of this restitution factor, and this pocket friction.
 
-
-def with_damping(cage: MovingCage, damping: NewtonSecondPerMetre) -> MovingCage:
-    """Return the same cage with another race damping [N s/m].
-
-    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at an
-    infinite damping the races grip them.
+    Balls with traction yield faster or slower by the same ratio, with the capacity of their own races; at 1
+    the races grip them.
     """
-    if damping == inf:
+    cage = replace(cage, ball_cage_friction=friction)
+    if restitution_factor >= 1.0:
         return replace(cage, race_damping=inf, traction=None, free_ball=None)
+    damping = damping_for(restitution_factor, cage.ball_cage_stiffness, cage.mass)
     ratio = damping / cage.race_damping
     law, ball = cage.traction, cage.free_ball
     return replace(
@@ -94,13 +90,6 @@ def _stiffened(ball: FreeBall, ratio: Ratio) -> FreeBall:
 
     rate = ball.fastest_rate * ratio
     return replace(ball, inner=race(ball.inner), outer=race(ball.outer), fastest_rate=rate)
-
-
-def race_damping_at(cage: MovingCage, restitution_factor: Ratio) -> NewtonSecondPerMetre:
-    """C_mu of a nominal restitution factor; infinite for 1: the races grip the balls."""
-    if restitution_factor >= 1.0:
-        return inf
-    return damping_for(restitution_factor, cage.ball_cage_stiffness, cage.mass)
 
 
 class GrowthCounter:

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
+from separatrix.ground.units import MetrePerSecond, Ratio, Rows
 from separatrix.verdict.judgement import Judgement
-
-Shares = Annotated[Array, "-"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +30,6 @@ class UncertainMaterial:
     friction_deviation: Ratio  # standard deviation of the friction of a new cage
     friction_scatter_assumed: bool  # whether that is the default, a guess
     extrapolation: tuple[str, ...]  # in what respect the friction is extrapolated beyond its tests
-    probability_lowest_friction: Ratio | None  # that no other mean friction is lower; null without another
     restitution_factor: Ratio  # median over the bearings
     restitution_factor_low: Ratio  # 5 % quantile of the bearings
     restitution_factor_high: Ratio  # 95 % quantile of the bearings
@@ -61,29 +58,6 @@ class UncertainEnvironment:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ConvergenceRow:
-    """P(stable) of one case against the number of bearings, from its worst disturbance; shape (size,)."""
-
-    name: str  # of the candidate
-    environment: str  # empty: overall
-    size: tuple[int, ...]  # numbers of bearings
-    probability_stable: Array  # of the first `size` bearings
-    probability_low: Array  # lower end of the 95 % interval
-    probability_high: Array  # upper end of the 95 % interval
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cloud:
-    """Bearings of one case: restitution factor, friction [-], and whether it settles; shape (run,) each."""
-
-    name: str  # of the candidate
-    environment: str  # empty: overall
-    restitution_factor: Array  # of each bearing
-    friction: Array  # of each bearing's cage
-    settles: Array  # 1 where the cage settles, else 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Share:
     """Part of a variance that one input brings, and its 95 % interval [-]."""
 
@@ -103,20 +77,7 @@ class Drivers:
     """Of the variance of the logit of P(settles), largest first, chance last; empty where `reason` states
     why."""
     reason: str  # why there are no shares; empty otherwise
-    predicted: Shares  # mean prediction in each bin of bearings left out of the fit, shape (bin,)
-    counted: Shares  # share that settles, in the same bins, shape (bin,)
-    bearings: Array  # number in each bin, shape (bin,)
     skill: Ratio | None  # part of the deviance that the fit removes, on bearings left out
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SmoothShares:
-    """First-order and total Sobol indices of a number that the chain computes."""
-
-    quantity: str  # restitution_factor or race_damping
-    name: str  # of the candidate
-    first: tuple[Share, ...]  # by each input alone
-    total: tuple[Share, ...]  # by each input with its interactions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,23 +104,6 @@ class AllowedFriction:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AllowedFilm:
-    """Largest restitution factor at which a case settles with a probability, and the films below it."""
-
-    name: str  # of the candidate, in the bearing's own environment
-    probability: Ratio  # wanted, to settle
-    restitution_factor: Ratio | None  # of the central bearing; null where `reason` states why
-    restitution_factor_low: Ratio | None  # lower end of the 95 % interval
-    restitution_factor_high: Ratio | None  # upper end of the 95 % interval
-    reason: str  # why there is no limit; empty if there is
-    is_any_allowed: bool  # whether every restitution factor keeps to the probability; then there is no limit
-    film_thickness: Array  # shape (thickness,) [m]
-    race_friction: Array  # shape (friction,) [-]
-    film_restitution_factor: Array
-    """Of the central bearing with each film, shape (friction, thickness); empty without a film."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainStudy:
     """Answer of `sensitivity`; a case whose verdict is decided early has fewer runs."""
 
@@ -174,14 +118,10 @@ class UncertainStudy:
     """The candidates in each."""
     overall: Annotated[tuple[UncertainRow, ...], Rows("material", "overall_", label="name")]
     """With the mean friction over all environments."""
-    convergence: tuple[ConvergenceRow, ...]  # P(stable) against the number of bearings
-    clouds: tuple[Cloud, ...]  # the bearings of each case
     drivers: tuple[Drivers, ...]  # inputs that decide each case
-    shares: tuple[SmoothShares, ...]  # Sobol indices of what the chain computes
     undecided: tuple[str, ...]  # cases without a verdict
     next_tests: tuple[TestGain, ...]  # best first
     allowed_friction: tuple[AllowedFriction, ...]  # of a new material
-    allowed_films: tuple[AllowedFilm, ...]  # that keep each case stable
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int  # of each bearing, from each disturbance
     notes: tuple[str, ...]  # what was left out and why, a sentence each

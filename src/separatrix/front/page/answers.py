@@ -24,6 +24,7 @@ from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
 from separatrix.verbs import tool_named, verb_named
 from separatrix.verbs.map import at_point
+from separatrix.verbs.parts.answer_page import is_chosen
 from separatrix.verbs.report import asked_by, differing
 from separatrix.verbs.saved_answers import AGAIN, refusing_damage
 from separatrix.verbs.verb import Tool, Verb
@@ -174,9 +175,9 @@ def changed(page: Page, name: str, found: dict[str, Any]) -> str:
     """Return in a sentence how the study differs from that of an answer; empty if it does not."""
     try:
         with reading_only_in(page.folder.root), refusing_damage(name):
-            cage = {key: one for key, one in (found["study"]["cage"] or {}).items() if isinstance(one, dict)}
-            models = {key: one["value"] for key, one in cage.items() if one["origin"][:2] == "--"}
-            names = differing(found, asked_by(read_study(page.folder.study(name), models)))
+            known = (found["study"]["cage"] or {}).get("model", {})
+            model = known["value"] if is_chosen(known) else None
+            names = differing(found, asked_by(read_study(page.folder.study(name), model)))
     except InputError as error:
         return f"The study or this answer cannot be read: {(error.problems or (error,))[0]}"
     return f"Changed after this answer: {names}. Run it again." if names else ""

@@ -14,7 +14,7 @@ from separatrix.front.page import drafts as draft
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import shown
-from separatrix.study.study import MODELS, shipped_studies
+from separatrix.study.study import CageModel, shipped_studies
 from separatrix.study.template import template
 from separatrix.verbs import VERBS, verb_named
 
@@ -66,7 +66,7 @@ def routes(page: Page) -> APIRouter:
             title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
             kind_of=kind_of,
-            models={name: [one.value for one in kind] for name, kind in MODELS.items()},
+            models=[one.value for one in CageModel],
             tables=page.folder.tables(name),
             answers=page.answered(name),
         )
@@ -134,10 +134,10 @@ def kind_of(hint: Any) -> str:
 
 
 def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[str, object]:
-    """Return the options of a verb, and models, as a form gives them; empty ones have their defaults."""
+    """Return the options of a verb, and the model, as a form gives them; empty ones have their defaults."""
     known = verb_named(verb)
     kinds = {name: kind_of(hint) for name, (hint, *_) in known.shown_options().items()}
-    kinds |= dict.fromkeys(MODELS, "text") if known.moves_a_cage else {}
+    kinds |= {"model": "text"} if known.moves_a_cage else {}
     question: dict[str, object] = {}
     for name, text in ((name, sent.get(name, "").strip()) for name in kinds):
         match text and kinds[name]:

@@ -50,7 +50,7 @@ class Job:
     verb: str
     name: str
     question: Mapping[str, object] = field(default_factory=dict)
-    """Options of the verb, with the models of motion."""
+    """Options of the verb, with the model of the cage."""
 
     state: str = WAITING
     share: float | None = None  # of the work that is done; None before that is known
@@ -241,13 +241,12 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
 
 def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
     """Compute and write one answer, or a report; return how it ended, and a message."""
-    from separatrix.study.study import MODELS
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
 
     source, place = folder.asked(job.name, job.verb), folder.answers(job.name, job.verb)
     question = dict(job.question)
-    models = {name: str(question.pop(name)) for name in MODELS if question.get(name)}
+    model = question.pop("model", None)
     with reading_only_in(folder.root):
         for path in (place, *(place.iterdir() if place.is_dir() else ())):
             folder.refuse_link_out(path)
@@ -257,7 +256,7 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
         if job.verb == REPORT:
             return _reported(source, place, send)
         verb = verb_named(job.verb)
-        study, options = asked_study(verb, source, models), verb.options(**question)
+        study, options = asked_study(verb, source, str(model) if model else None), verb.options(**question)
         found = computed(verb, study, options, folder=place, progress=reporting(send))
         send(message="Drawing the figures and writing the files.")
         save_answer(place, verb, document(verb, found), options=options)

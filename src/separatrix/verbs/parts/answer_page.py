@@ -166,15 +166,19 @@ def friction_words(found: Json | None) -> str:
 def command(answer: Part) -> str:
     """Return the command line that computes an answer again."""
     kept = answer.values.get("provenance") or {}
-    cage = (answer.values.get("study") or {}).get("cage") or {}
-    origins = (str(one.get("origin")) for one in cage.values() if isinstance(one, dict))
-    options = [origin for origin in origins if origin.startswith("--")]  # models that the command chose
+    model = ((answer.values.get("study") or {}).get("cage") or {}).get("model") or {}
+    options = [str(model["origin"])] if is_chosen(model) else []
     for key, value in ((kept.get("command") or {}).get("question") or {}).items():
         flag = f"--{key.replace('_', '-')}"
         for one in value if isinstance(value, list) else [value]:
             if one not in (None, False):
                 options += [flag] if one is True else [flag, shlex.quote(str(one))]
     return " ".join(["separatrix", answer.verb, shlex.quote(str(answer.name)), *options])
+
+
+def is_chosen(model: Json) -> bool:
+    """Whether the command chose the model of an answer, not its study."""
+    return str(model.get("origin", "")).startswith("--")
 
 
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:

@@ -216,7 +216,6 @@ QUANTITIES: dict[str, Quantity] = {
         form=".2f",
         ends=("uncertain_probability_low", "uncertain_probability_high"),
     ),
-    "probability_lowest_friction": Q(label="probability of the lowest mean friction", form=".2f"),
     "solid_lubrication_limit": Q(label="the paper's limit of solid lubrication"),
     "friction_scatter": Q(label="assumed scatter of friction", unit="%"),
     "friction_error": Q(label="standard error of the mean friction", digits=2),
