@@ -2,7 +2,7 @@
 
 It shares no code with the engine but the damper of the land, which test_cage_closed_cases judges. Of the
 engine's model it has that a pocket acts in the plane of orbit and axis of its ball, and that friction acts
-along the true sliding and is in proportion to it below the pivoting speed.
+along the true sliding and, in a pocket, is in proportion to it below the pivoting speed.
 """
 
 import math
@@ -15,6 +15,9 @@ from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import rebound_damping
 from separatrix.ground.units import Array
 from separatrix.study.study import Guidance, PocketShape
+
+SMOOTH = 1e-4
+"""Sliding on the land below which its friction is in proportion to it, for the integrator [m/s]."""
 
 
 class Course(NamedTuple):
@@ -101,7 +104,7 @@ class Plane:
         closing = away - steep * (around / off - rate)
         push = max(0.0, self.land * depth + self.land_damping * closing) if depth > 0.0 else 0.0
         slide = around + self.side * self.reach * (rate - s * self.ring)
-        rub = -cage.land_friction * push * slide / math.hypot(slide, cage.pivot_speed)
+        rub = -cage.land_friction * push * slide / math.hypot(slide, SMOOTH)
         moment = self.side * self.reach * rub - push * steep
         return (-push + 1j * (rub + push * steep / off)) * n, moment
 

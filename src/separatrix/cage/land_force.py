@@ -3,8 +3,8 @@ r"""The force of a land on the cage: strips at their heights, one-sided springs 
 At the height :math:`\zeta` of a strip the centre of the cage is at :math:`e = r + \zeta(\tau_y, -\tau_x)`.
 With :math:`\delta = |e| - c_g + a \cos m\beta` (lobes of the cage's land, which turn with it) the strip
 presses by :math:`P = K\delta + c\dot\delta` while both are positive, and rubs along the sliding of the cage's
-surface on the ring's. Friction is in proportion to the sliding below the pivoting speed, and below the speed
-that it would stop within a step, where it would turn round otherwise.
+surface on the ring's. Friction is in proportion to the sliding only below the speed that it would stop within
+a step, where it would turn round otherwise.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def land_forces(s, a, p, strips, lobe_number, space):
             slide_t = around + lever * s[VS + l] - p[RING_SLIDE + l] * s[RAMP + l]
             slide_z = vz - lever * p[RADIUS + l] * (nx * wb - ny * wa)
             stopped = p[LAND_STOPS + l] * push
-            slide = math.sqrt(slide_t * slide_t + slide_z * slide_z + stopped * stopped + p[PIVOT + l])
+            slide = math.sqrt(slide_t * slide_t + slide_z * slide_z + stopped * stopped + TINY)
             share = -p[LAND_FRICTION + l] * push / slide
             ft, fz, side = share * slide_t, share * slide_z, push * tilted * per
             fx, fy = -push * nx - (ft + side) * ny, (ft + side) * nx - push * ny

@@ -50,11 +50,11 @@ if TYPE_CHECKING:
     from separatrix.verdict.swept_cases import Sweep
 
 ETA = "restitution_factor"
-WORST = {"margin": "lowest", "probability_stable": "lowest", ETA: "highest"}
+WORST = {ETA: "highest", **dict.fromkeys(("safety_factor", "margin", "probability_stable"), "lowest")}
 TIMES = ("below_margin", "stable", "unstable", "undecided", "refused")
 SOLVED = ("time_share", ETA, "race_damping", "load_inner", "contact_angle_inner", "max_pressure_inner")
 JUDGED = (
-    *("time_share", ETA, "restitution_threshold", "margin"),
+    *("time_share", ETA, "restitution_threshold", "margin", "own_critical_friction", "safety_factor"),
     *("probability_stable", "largest_offset", "largest_contact_force"),
 )
 """Columns of a table of cases: of the chain alone, and with verdicts or margins."""
@@ -73,7 +73,7 @@ class Options:
         Option("CSV: parameters in its first row, then a case a row; with time_share a duty cycle.", "FILE"),
     ] = None
     verdicts: Annotated[bool, Option("Run the ensemble of every case, too.")] = False
-    margins: Annotated[bool, Option("Compute threshold and margin of every case, too.")] = False
+    margins: Annotated[bool, Option("Compute safety factor or margin of every case, too.")] = False
 
     def __post_init__(self) -> None:
         """Read a table of cases: an answer has the cases themselves."""
@@ -300,6 +300,11 @@ def _panels(answer: Part, way: Way) -> Iterator[Panel]:
             chances += [_over(answer, those, way, "probability_stable", **look)] if those else []
         y = axis("probability_stable", "-", [], low=-0.06, high=1.06)
         yield panel("Probability that the cage is stable", y, chances)
+    safe = [one for one in answer.cases if "safety_factor" in one]
+    if safe:
+        found = _over(answer, safe, way, "safety_factor", size=3.0)
+        line = Across(at=1.0, axis="y", line=":")
+        yield panel("Safety factor", axis("safety_factor", "-", [], is_log=True), (found, line))
     whirling = [one for one in answer.cases if one.get("orbit_frequency")]
     if whirling:
         x, speed = [one.get(way.name) for one in whirling], [abs(one.orbit_frequency) for one in whirling]

@@ -75,8 +75,6 @@ from separatrix.verdict.stability_curve import (
 )
 from separatrix.verdict.which_ball import judge_solution, transmitted_force
 
-CRITICAL = ("critical_friction", "critical_friction_low", "critical_friction_high")
-
 
 class Asked(NamedTuple):
     """A verdict: on a pocket with a friction, by the study's model or by the paper's."""
@@ -471,8 +469,8 @@ def _on_a_wide_land(question: _Question, found: _Findings) -> dict[str, Any]:
     """Critical friction on a land that leaves the cage to its pockets, as fields; none if not asked."""
     if question.wide is None or question.wide not in found.limits:
         return {}
-    limit = found.limits[question.wide]
-    values = {f"wide_land_{end}": getattr(limit, f"own_{end}") for end in CRITICAL}
+    limit = found.limits[question.wide].own
+    values = {name.replace("own", "wide_land"): value for name, value in limit.items()}
     return {"wide_land_clearance": question.wide.land_clearance, **values}
 
 

@@ -51,6 +51,8 @@ def outcome_sentence(history: History, *, limit: Newton | None, rubbing_power: W
     """
     outcome, cause = history.outcome, CAUSES.get(history.cause, "")
     said = OUTCOME_SENTENCES[outcome] + (f" Cause: {cause}." if cause else "")
+    if outcome is RunOutcome.SETTLES and history.rubbing_force > 0.0:
+        said = "Friction in the pockets does not sustain the motion; the cage moves on its land."
     if history.cause is Cause.LAND_FRICTION:
         said = "The motion lasts: friction on the land, not in the pockets, keeps the cage moving."
         if outcome is RunOutcome.WHIRLS:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -58,6 +59,11 @@ class CageLimit:
     critical_ball: str  # that decided the critical friction
     estimated_critical_friction: Ratio  # by the closed law, to check the order
     notes: tuple[str, ...] = ()  # on runs that do not show where they end
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """Critical friction with the ends of its interval, by their names."""
+        return {name: getattr(self, name) for name in POWERS[:3]}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 
 from separatrix.cage.closed_forms import linear_whirl_frequency
+from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError, SeparatrixError
@@ -29,7 +30,9 @@ from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.long_jobs import Runner, scattered
 from separatrix.verdict.map_records import KICK, RESTITUTION, Parameter, parameters, varied
 from separatrix.verdict.parameter_axes import MOST_CASES, TIME_SHARE, Case
+from separatrix.verdict.ranking_records import measured
 from separatrix.verdict.reasons import CageMotion
+from separatrix.verdict.safety_factor import cage_limit, safety_factor
 from separatrix.verdict.stability_curve import own_threshold
 from separatrix.verdict.which_ball import judge_solution
 
@@ -42,7 +45,7 @@ class WorstCase:
 
     case: int  # its number
     quantity: str
-    """Which decides: margin (lowest), probability_stable (lowest) or restitution_factor (highest)."""
+    """Which decides: safety_factor, margin, probability_stable (lowest) or restitution_factor (highest)."""
     value: Ratio  # of that quantity
     compared: int  # cases that have it; the others were refused
     alike: int  # cases that are as bad, this one included
@@ -52,7 +55,7 @@ class WorstCase:
 class Duty:
     """Shares of the time of a duty cycle [-]; None where the quantity was not computed."""
 
-    below_margin: Ratio | None  # with a margin below zero
+    below_margin: Ratio | None  # with a safety factor below 1, or a margin below zero
     stable: Ratio | None  # with this verdict
     unstable: Ratio | None  # with this verdict
     undecided: Ratio | None  # with this verdict
@@ -88,10 +91,14 @@ def time_shares(cases: Sequence[Mapping[str, float]]) -> list[Ratio]:
     return [one / total for one in given]
 
 
+LOWEST = ("safety_factor", "margin", "probability_stable")
+"""What the worst case has the least of, the first that is known."""
+
+
 def worst_case(cases: Iterable[SweptCase]) -> WorstCase | None:
     """Return the worst case, the first of those that are alike; None where no case has an answer."""
     known = list(cases)
-    for quantity, sign in (("margin", 1.0), ("probability_stable", 1.0), ("restitution_factor", -1.0)):
+    for quantity, sign in (*((name, 1.0) for name in LOWEST), ("restitution_factor", -1.0)):
         found = [(sign * value, one.case) for one in known if (value := getattr(one, quantity)) is not None]
         if found:
             value, case = min(found)
@@ -106,14 +113,14 @@ def duty(cases: Iterable[SweptCase]) -> Duty | None:
     known = [(one, one.time_share) for one in cases if one.time_share is not None]
     if not known:
         return None
-    has_margins = any(one.margin is not None for one, _ in known)
+    has_margins = any(one.is_below_margin is not None for one, _ in known)
     has_verdicts = any(one.verdict is not None for one, _ in known)
-    decides = "margin" if has_margins else "verdict" if has_verdicts else "restitution_factor"
+    decides = "is_below_margin" if has_margins else "verdict" if has_verdicts else "restitution_factor"
 
     def in_verdict(name: str) -> Ratio | None:
         return math.fsum(share for one, share in known if one.verdict == name) if has_verdicts else None
 
-    below = math.fsum(share for one, share in known if one.margin is not None and one.margin < 0.0)
+    below = math.fsum(share for one, share in known if one.is_below_margin)
     return Duty(
         below_margin=below if has_margins else None,
         stable=in_verdict("STABLE"),
@@ -162,6 +169,12 @@ class SweptCase:
     restitution_threshold_low: Ratio | None = None  # lower end of its 95 % interval
     restitution_threshold_high: Ratio | None = None  # upper end of it
     margin: Ratio | None = None
+    own_critical_friction: Ratio | None = None  # in the full model, in place of a threshold
+    own_critical_friction_low: Ratio | None = None  # of its 95 % interval
+    own_critical_friction_high: Ratio | None = None  # upper end of it
+    safety_factor: Ratio | None = None  # critical friction over friction; null as the critical friction is
+    safety_factor_low: Ratio | None = None  # of its 95 % interval
+    safety_factor_high: Ratio | None = None  # upper end of it
     verdict: str | None = None  # STABLE, UNSTABLE or UNDECIDED
     probability_stable: Ratio | None = None  # from the worst disturbance
     probability_low: Ratio | None = None  # lower end of its 95 % interval
@@ -174,6 +187,14 @@ class SweptCase:
     runs: int | None = None  # of the verdict
     time_share: Ratio | None = None  # of a duty cycle; null without one
     reason: str = ""  # why the case was refused; empty if it was not
+
+    @property
+    def is_below_margin(self) -> bool | None:
+        """Whether safety factor or margin say that the cage whirls; None where neither was computed."""
+        if self.margin is not None:
+            return self.margin < 0.0
+        least = self.safety_factor_low if self.safety_factor is None else self.safety_factor
+        return None if least is None else least < 1.0
 
 
 # what a case takes from its judgement as it is
@@ -310,8 +331,13 @@ def _swept(
 
 
 def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
-    """The case with the threshold at the pocket's friction, and the distance to it."""
+    """The case with its safety factor; in the paper's model with its threshold, and the distance to it."""
     friction, eta = found.ball_cage_friction or 0.0, solution.restitution.restitution_factor
+    if not solution.design.is_of_paper:
+        settings = settings_for(solution.study.stability, moving_cage(solution, 0.0))
+        limit = cage_limit(solution, settings, runner, highest=friction)
+        interval = measured(solution.friction).interval() if solution.friction else (friction, friction)
+        return replace(found, **limit.own, **asdict(safety_factor(limit, friction, interval)))
     threshold = own_threshold(moving_cage(solution, 0.0), solution.study.stability, friction, runner)
     return replace(
         found,
