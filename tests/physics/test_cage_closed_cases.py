@@ -16,8 +16,9 @@ from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
 from separatrix.cage import MovingCage
-from separatrix.cage.closed_forms import rebound, rebound_damping
+from separatrix.cage.closed_forms import rebound, rebound_damping, returned_share
 from separatrix.chain.ball_traction import BallTraction
+from separatrix.chain.impact_restitution import damping_for
 from separatrix.study.study import Guidance
 
 M, R = AT_REST.mass, AT_REST.pitch_radius
@@ -112,6 +113,16 @@ def test_a_ring_that_may_turn_rebounds_by_the_law(law, mass, stiffness, kick):
     pocket = after.velocity[-1, 1] + R * after.rotation_rate[-1]
     # 2.9e-5 measured: begin and end of the impact within an eighth of the usual step
     assert -pocket / kick == pytest.approx(back, abs=4e-5)
+    assert returned_share(law, mass / 2, stiffness, kick) == pytest.approx(back, abs=1e-6)  # 1e-8 a step
+
+
+@pytest.mark.parametrize("eta", [0.0, 0.07, 0.6, 0.95])
+def test_a_ball_without_inertia_that_cannot_slide_returns_eta(eta):
+    """Eq. 17: the restitution factor of the damper; 0 where it is overdamped."""
+    mass, stiffness = 0.025, 3e6
+    slope = damping_for(eta, stiffness, mass) * (0.5 if eta == 0.0 else 1.0)
+    law = BallTraction(mass=1e-9, slope=slope, speed=math.inf)
+    assert returned_share(law, mass, stiffness, 0.5) == pytest.approx(eta, abs=1e-5)  # of a ball of 1 ug
 
 
 def test_a_knocked_ball_comes_to_rest_where_its_traction_leaves_it():

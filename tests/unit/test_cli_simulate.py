@@ -200,6 +200,7 @@ def test_a_cage_on_its_land_is_told_to_rub_there(folder):
     assert found.history.outcome.name == "SETTLES"
     said = r"Its centre is \d+ um from the axis on average, and it rubs on its land with \S+ \S*N, \S+ \S*W\."
     assert re.search(said, words(found.summary()))
+    assert "comes to rest" not in words(found.summary())
 
 
 def test_a_ball_that_leaves_its_pocket_is_named_with_its_time(folder):

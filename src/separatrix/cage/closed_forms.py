@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.ground.units import Hertz, Joule, Kilogram, Metre, Ratio, Second
+from separatrix.ground.units import Array, Hertz, Joule, Kilogram, Metre, NewtonPerMetre, Ratio, Second
 from separatrix.study.pocket_shape import PocketShape, end_half_play
 
 if TYPE_CHECKING:
@@ -121,6 +121,40 @@ def felt_mass(cage: MovingCage, *, may_turn: bool = True) -> float:
     """Mass that an impact feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
     turning = cage.pitch_radius**2 / cage.moment_of_inertia if may_turn else 0.0
     return 1.0 / (1.0 / cage.mass + turning)
+
+
+LONG = 50.0
+"""Half periods of the pocket's spring for which an impact is followed."""
+
+
+def returned_share(law: BallTraction, mass: Kilogram, stiffness: NewtonPerMetre, speed: float) -> Ratio:
+    r"""Speed that a cage gets back from an impact on a ball of one state, over that before [-].
+
+    With the depth d of the pocket in the ball: :math:`\dot d = v - u`, :math:`m \dot v = -kd`,
+    :math:`m_e \dot u = kd - F(u)`, until d is 0 again; 0 where cage and ball move on together.
+
+    Parameters
+    ----------
+    law : BallTraction
+        Of the ball.
+    mass, stiffness, speed : float
+        Mass that the impact feels (`felt_mass`) [kg], k_BC [N/m], and speed of the pocket before [m/s].
+    """
+    from scipy.integrate import solve_ivp
+
+    period = math.pi * math.sqrt(mass / stiffness)
+
+    def rates(_: float, y: Array) -> list[float]:
+        force = stiffness * y[0]
+        return [y[1] - y[2], -force / mass, (force - float(law.force(y[2]))) / law.mass]
+
+    def depth(_: float, y: Array) -> float:
+        return float(y[0])
+
+    depth.terminal, depth.direction = True, -1.0  # type: ignore[attr-defined]
+    start = [0.0, speed, 0.0]
+    course = solve_ivp(rates, (0.0, LONG * period), start, "LSODA", events=depth, rtol=1e-8, atol=1e-12)
+    return max(0.0, -float(course.y[1, -1]) / speed)
 
 
 def rebound(damping_ratio: Ratio) -> Ratio:

@@ -98,6 +98,9 @@ class RestitutionAnswer:
     """Restitution factor, and what it would be with other films; None without a film material."""
 
     solution: Solution  # the chain
+    impact_speed: MetrePerSecond  # of the reference disturbance
+    effective_restitution_factor: Ratio
+    """What an impact at that speed returns, with a ball of one state and the mass that it feels."""
     film_thickness_here: Metre  # of the study's own film
     lubrication: LubricationCurve | None  # restitution factor against the thickness of other films
     notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
+    from separatrix.cage.closed_forms import returned_share
     from separatrix.chain.solution import solve
     from separatrix.verbs.answer_records import RestitutionAnswer
     from separatrix.verbs.parts.cage_of_study import overdamped_notes
@@ -32,8 +33,13 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     solution = solve(study)
     overdamped = overdamped_notes(solution.restitution)
     _ = solution.clearances  # refused, and noted
+    body, stiffness = solution.inertia, solution.restitution.ball_cage_stiffness
+    turning = (study.bearing.pitch_diameter / 2.0) ** 2 / body.moment_of_inertia
+    felt, speed = 1.0 / (1.0 / body.mass + turning), solution.impact_speed
     return RestitutionAnswer(
         solution=solution,
+        impact_speed=speed,
+        effective_restitution_factor=returned_share(solution.mobility.traction, felt, stiffness, speed),
         film_thickness_here=study.film.thickness or 0.0,
         lubrication=solution.lubrication,
         notes=(*solution.notes, *overdamped),
@@ -47,8 +53,12 @@ def refusals(study: Study) -> Iterator[str]:
 
 def page(answer: Part) -> Page:
     """Return the page of `restitution`."""
-    lead = "This bearing and film have a restitution factor $eta$ of {restitution_factor}"
-    lead += " with race dampings summed, and {restitution_factor_free_spin} if the ball may spin."
+    lead = (
+        "An impact at {impact_speed} returns {effective_restitution_factor} of its speed to the cage, with "
+        "the inertia of the ball and traction that saturates. The paper's restitution factor $eta$ is "
+        "{restitution_factor}, with race dampings summed (Eq. 18); with a ball that may spin in the impact "
+        "it is {restitution_factor_free_spin}."
+    )
     return page_of(
         answer,
         Note(said(answer, lead), "lead"),

@@ -110,9 +110,12 @@ def _chain(found: Solution) -> Node:
     return shape(found.restitution) | more
 
 
+RETURNED = ("impact_speed", "effective_restitution_factor")
+
+
 @shape.register
 def _(found: RestitutionAnswer) -> Node:
-    node = _chain(found.solution) | fields_of(found, "film_thickness_here", "lubrication")
+    node = _chain(found.solution) | fields_of(found, *RETURNED, "film_thickness_here", "lubrication")
     reason = Leaf("The study names no film material.")
     return node if found.lubrication else node | {"lubrication_reason": reason}
 

@@ -303,8 +303,8 @@ def _panels(answer: Part, way: Way) -> Iterator[Panel]:
     safe = [one for one in answer.cases if "safety_factor" in one]
     if safe:
         found = _over(answer, safe, way, "safety_factor", size=3.0)
-        line = Across(at=1.0, axis="y", line=":")
-        yield panel("Safety factor", axis("safety_factor", "-", [], is_log=True), (found, line))
+        bound = Across(at=1.0, axis="y", line=":")
+        yield panel("Safety factor", axis("safety_factor", "-", [], is_log=True), (found, bound))
     whirling = [one for one in answer.cases if one.get("orbit_frequency")]
     if whirling:
         x, speed = [one.get(way.name) for one in whirling], [abs(one.orbit_frequency) for one in whirling]

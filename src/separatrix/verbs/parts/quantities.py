@@ -190,6 +190,7 @@ QUANTITIES: dict[str, Quantity] = {
         form=".2f",
         meaning="largest restitution factor eta at which the cage is stable from the reference disturbance",
     ),
+    "effective_restitution_factor": Q(label="effective restitution factor", form=".2f"),
     "own_critical_friction": Q(
         label="critical friction",
         head="critical",
