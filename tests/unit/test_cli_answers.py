@@ -15,7 +15,7 @@ from matplotlib import image
 import separatrix
 from separatrix.front import main
 from separatrix.verbs import VERBS as NAMES
-from separatrix.verbs import verb_named
+from separatrix.verbs import answer_files, verb_named
 from separatrix.verdict.ledger import NAME
 
 ENVIRONMENTS = [
@@ -272,3 +272,13 @@ def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(ca
     still = json.loads(capsys.readouterr().out)["contacts"]
     for race in ("inner", "outer"):
         assert checked["static"][race]["max_pressure"] == still[race]["max_pressure"]
+
+
+def test_the_page_of_an_answer_is_made_once(tmp_path, monkeypatch, capsys):
+    """For the terminal and for the files: that of a large map takes long, and an interrupt waits for it."""
+    made, usual = [], answer_files.page_of_document
+    monkeypatch.setattr(answer_files, "page_of_document", lambda *given: made.append(1) or usual(*given))
+    assert main(["restitution", "cryogenic-turbopump", "--out", str(tmp_path)]) == 0
+    assert "restitution" in capsys.readouterr().out
+    assert (tmp_path / "restitution.txt").exists()
+    assert made == [1]

@@ -5,7 +5,7 @@ import io
 
 import pytest
 
-from separatrix.ground.document import part_of
+from separatrix.ground.document import Part, part_of
 from separatrix.verbs.map import map_figure, nearest_words, rows
 from separatrix.verbs.parts.curve_blocks import band_words, linear_law, pocket_friction
 from separatrix.verbs.parts.telling import quantity
@@ -94,6 +94,18 @@ def test_a_map_says_where_it_changes_next_to_the_study():
     )
     assert "between race friction 0.1 and 0.3." in words
     assert [row.kind for row in rows(mapped(), [1e-6, 2e-6])] == ["whirls above", "was not finished"]
+
+
+@pytest.mark.parametrize("count", [10, 40])
+def test_the_rows_of_a_map_look_at_each_point_once(count, monkeypatch):
+    """However many columns: an interrupted map of ten thousand points has two seconds for its page."""
+    made, usual = [], Part.__init__
+    monkeypatch.setattr(Part, "__init__", lambda self, *given: made.append(usual(self, *given)))
+    places = range(count)
+    points = [{"x": x, "y": y, "state": "NOT_RUN", "runs": 0} for x in places for y in places]
+    found = rows(part_of({"points": points}), places)
+    assert [row.kind for row in found] == ["was not finished"] * count
+    assert len(made) == 1 + count**2
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():

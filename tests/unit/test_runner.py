@@ -95,10 +95,18 @@ def test_places_of_one_size_are_expected_to_take_the_same_time():
     work = work_of(a=Load(100), b=Load(100), c=Load(100))
     assert work.so_far(1) == (0.0, math.inf)
     work.spend("a", 3.0, 70)
-    work.finish("a", 9.0)
+    work.finish("a")
     assert work.so_far(1) == (3.0, 9.0)
+
+
+def test_places_under_way_count_for_the_time_of_those_alike():
+    """The short ones finish first: one in 3 s, and 5 s in two others so far, make 8 s each expected."""
+    work = work_of(a=Load(100), b=Load(100), c=Load(100), d=Load(100))
+    work.spend("a", 3.0, 70)
+    work.finish("a")
     work.spend("b", 1.0, 90)
-    assert work.so_far(1) == (4.0, 9.0)
+    work.spend("c", 4.0, 10)
+    assert work.so_far(1) == (8.0, 3.0 + 3 * 8.0)
 
 
 def test_before_one_is_finished_all_go_on_as_they_began():
@@ -122,7 +130,7 @@ def test_places_that_will_follow_are_expected():
     work = work_of(node=Load(100, follow=0.5))
     work.spend("node", 5.0, 50)
     assert work.so_far(1) == (5.0, 15.0)
-    work.finish("node", 5.0)
+    work.finish("node")
     assert work.so_far(1) == (5.0, 5.0)
 
 
@@ -130,7 +138,8 @@ def test_kept_runs_say_nothing_of_the_others():
     """They took no time; a place that takes longer than expected takes a little longer still."""
     work = work_of(kept=Load(100), new=Load(100), next=Load(100))
     work.keep("kept")
-    work.finish("kept", 0.001)
+    work.end("kept", 0.001)
+    work.finish("kept")
     assert work.so_far(1)[1] == math.inf
     work.spend("new", 6.0, 300)
     assert work.so_far(1)[1] == pytest.approx(0.001 + MORE * 6.0 + 2.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import inspect
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
@@ -226,10 +226,11 @@ def _deliver(found: Computed, verb: Verb, folder: Path | None, given: Mapping[st
     from separatrix.verbs.answer_files import document, page_of_document, save_answer
 
     made, quiet = document(verb, found), given["quiet"]
-    deliver(made, partial(page_of_document, verb, made), given)
+    page = cache(partial(page_of_document, verb, made))
+    deliver(made, page, given)
     if folder is not None:
         with progress_bar("files", quiet=quiet) as progress:
-            save_answer(folder, verb, made, options=found.options, progress=progress)
+            save_answer(folder, verb, made, page=page(), options=found.options, progress=progress)
         tell_place("Text, figures and data", folder, given)
 
 

@@ -167,13 +167,14 @@ def answer_json(document: dict[str, object]) -> None:
 
 
 class Pace:
-    """Time that is left of a work, from what was done of it; called with (done, total) by the work.
+    """Share done and time left of a work; called with (done, total) by the work. Compiling is not work.
 
-    Compiling is not work.
+    The share is done / total while the total stays. Work that is found later, or expected no more, changes
+    how much of the rest the next step is, not what was done: the share never falls.
     """
 
     def __init__(self) -> None:
-        self.share = 0.0
+        self.share = self._done = 0.0
         self.left: Second | None = None
         self._begun: Second | None = None
 
@@ -184,9 +185,13 @@ class Pace:
         now = COMPILING.clock()
         if self._begun is None:
             self._begun = now
-        self.share = done / total if total else 0.0
-        if self.share >= FIRST_PART and now - self._begun > ENOUGH:
-            self.left = (now - self._begun) * (1.0 / self.share - 1.0)
+        made, rest = max(done - self._done, 0.0), total - done
+        if not 0.0 < total < math.inf:
+            return
+        self._done = max(done, self._done)
+        self.share = 1.0 - (1.0 - self.share) * (rest / (made + rest) if rest > 0.0 else 0.0)
+        if done >= FIRST_PART * total and now - self._begun > ENOUGH:
+            self.left = (now - self._begun) * rest / done
 
 
 class Life(Pace):

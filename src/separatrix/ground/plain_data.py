@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from math import isfinite
+from types import NoneType
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
@@ -131,7 +132,13 @@ class _Kind(NamedTuple):
     rows: Rows | None = None
 
 
+SCALARS = frozenset({bool, int, float, str, NoneType})
+"""Types of most fields, for which nothing else is looked at: a map has ten thousand points."""
+
+
 def _item(value: object, kind: _Kind) -> Item:
+    if kind.rows is None and type(value) in SCALARS:
+        return Leaf(value, kind.unit, kind.axes)
     if is_dataclass(value) and not isinstance(value, type):
         return Group(shape(value), None if kind.rows is None else kind.rows.prefix)
     if isinstance(value, Mapping):
@@ -184,7 +191,9 @@ def plain(value: object, path: str = "result", left_out: list[str] | None = None
         A number is NaN or infinite, and there is no such list.
     """
     if isinstance(value, Leaf):
-        return plain(value.value, path, left_out)
+        value = value.value
+    if type(value) in SCALARS and (not isinstance(value, float) or isfinite(value)):
+        return value
     if isinstance(value, Table):
         records = value.records
         return None if records is None else [plain(Group(one), path, left_out) for one in records]
@@ -198,11 +207,10 @@ def plain(value: object, path: str = "result", left_out: list[str] | None = None
         is_plain = value.dtype.kind in "biu" or (value.dtype.kind == "f" and np.isfinite(value).all())
         return value.tolist() if is_plain else plain(value.tolist(), path, left_out)
     if isinstance(value, Mapping):
-        return {_key(key): plain(one, f"{path}.{_key(key)}", left_out) for key, one in value.items()}
+        named = ((_key(key), one) for key, one in value.items())
+        return {key: plain(one, f"{path}.{key}", left_out) for key, one in named}
     if isinstance(value, Sequence) and not isinstance(value, str | bytes):
         return [plain(one, f"{path}[{i}]", left_out) for i, one in enumerate(value)]
-    if value is None or isinstance(value, bool | int | str):
-        return value
     if not isinstance(value, float):
         raise TypeError(f"{path}: a {type(value).__name__} has no plain form")
     if isfinite(value):

@@ -129,13 +129,13 @@ def computed(
     Interrupted
         Before anything was finished.
     """
+    asked = verb.options() if options is None else options
+    if not verb.keeps_runs:
+        return Computed(record=verb.compute(study, asked), study=study, options=asked, is_complete=True)
     from separatrix.verdict.cluster import cluster as connected
     from separatrix.verdict.ledger import NAME, Ledger
     from separatrix.verdict.long_jobs import Interrupted, Runner
 
-    asked = verb.options() if options is None else options
-    if not verb.keeps_runs:
-        return Computed(record=verb.compute(study, asked), study=study, options=asked, is_complete=True)
     threads, is_complete = jobs or processors(), True
     ledger: Ledger | None = None
     executor: Executor | None = None

@@ -75,6 +75,7 @@ def save_answer(
     verb: Verb,
     found: Document,
     *,
+    page: Page | None = None,
     options: Any = None,
     pictures: bool = True,
     progress: Progress | None = None,
@@ -87,6 +88,8 @@ def save_answer(
         It exists.
     verb, found : Verb, dict
         The verb, and the answer as `document` makes it.
+    page : Page, optional
+        The page of that document, if it has been made already.
     options : optional
         With which the verb was asked: its own files may depend on them.
     pictures : bool
@@ -99,7 +102,7 @@ def save_answer(
     InputError
         The folder cannot be written.
     """
-    page = page_of_document(verb, found)
+    page = page or page_of_document(verb, found)
     with staged(folder) as stage:
         is_whole = verb.writes_data and found.get("complete") is not False
         _write(stage, verb.name, page, found, with_pictures=pictures and is_whole, is_whole=is_whole)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -114,8 +114,8 @@ def page(answer: Part) -> Page:
         *bands(answer),
         Heading("Basis of this answer", Level.LONG),
         facts(*basis_facts(answer), *friction, scatter, level=Level.LONG),
-        all_numbers("points", (), ((_with_units(answer, one),) for one in answer.points)),
-        all_numbers("changes", (), ((_with_units(answer, one),) for one in answer.get("changes") or ())),
+        all_numbers("points", (), _with_units(answer, answer.points)),
+        all_numbers("changes", (), _with_units(answer, answer.get("changes") or ())),
     )
 
 
@@ -123,13 +123,15 @@ def _names(answer: Part) -> tuple[str, str]:
     return answer.x.parameter, answer.y.parameter
 
 
-def _with_units(answer: Part, point: Part) -> Part:
-    """Return a point, or a change, with its place under the names of the parameters, and in their units."""
-    x, y = (one.get("unit") or "-" for one in (answer.x, answer.y))
-    place = {answer.x.parameter: point.x, answer.y.parameter: point.get("y")}
-    rest = {key: value for key, value in point.values.items() if key not in ("x", "y", *place)}
-    units = dict(zip(place, (x, y), strict=True)) | dict.fromkeys(("y_low", "y_high", "margin"), y)
-    return Part(place | rest, {**point.units, **units})
+def _with_units(answer: Part, points: Iterable[Part]) -> Iterator[tuple[Part]]:
+    """Yield points, or changes, with their places under the names of the parameters, and in their units."""
+    names, (x, y) = _names(answer), (one.get("unit") or "-" for one in (answer.x, answer.y))
+    units = dict(zip(names, (x, y), strict=True)) | dict.fromkeys(("y_low", "y_high", "margin"), y)
+    own = {"x", "y", *names}
+    for point in points:
+        place = dict(zip(names, (point.x, point.get("y")), strict=True))
+        rest = {key: value for key, value in point.values.items() if key not in own}
+        yield (Part(place | rest, {**point.units, **units}),)
 
 
 def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str, dict[str, object]]:
@@ -240,13 +242,20 @@ class Row(NamedTuple):
 
 def rows(answer: Part, columns: Sequence[float]) -> list[Row]:
     """Return the changes in some columns of the map."""
-    found = []
+    found, points, changes = [], _by_column(answer.points), _by_column(answer.get("changes") or ())
     for x in columns:
-        changes = [one for one in answer.get("changes") or () if one.x == x]
-        found += [Row(x, one, "whirls above" if one.whirls_above else "whirls below") for one in changes]
-        if not changes:
-            found.append(Row(x, None, _kind([one for one in answer.points if one.x == x])))
+        along = changes.get(x, ())
+        found += [Row(x, one, "whirls above" if one.whirls_above else "whirls below") for one in along]
+        if not along:
+            found.append(Row(x, None, _kind(points.get(x, ()))))
     return found
+
+
+def _by_column(parts: Iterable[Part]) -> dict[float, list[Part]]:
+    columns: dict[float, list[Part]] = {}
+    for one in parts:
+        columns.setdefault(one.x, []).append(one)
+    return columns
 
 
 def _kind(column: Sequence[Part]) -> str:

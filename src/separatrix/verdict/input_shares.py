@@ -29,7 +29,7 @@ from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
 from separatrix.verdict.draws import Case, UncertainInput
 from separatrix.verdict.drivers import drivers, fitted, next_tests, reducible_shares
 from separatrix.verdict.judgement import Judgement, Verdict
-from separatrix.verdict.long_jobs import Load, Runner
+from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.ranking_records import MeanFriction, overall
 from separatrix.verdict.uncertain_records import (
     AllowedFriction,
@@ -81,7 +81,7 @@ def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None
         """Work of a piece, in runs: an inverse question is a search from each kick."""
         return Load(len(drawn.kicks) * (len(drawn.runs) if isinstance(key, Case) else 2 * RUNS))
 
-    return runner.work_out(lambda key: pieces[key](), pieces, into=answer, load=load)
+    return runner.work_out(lambda key: pieces[key](), scattered(pieces), into=answer, load=load)
 
 
 def _answer(

@@ -76,8 +76,10 @@ class Load(NamedTuple):
 class Work:
     """How far a job is, by the time that its places took and the runs that they made for it.
 
-    A place is expected to take the mean time of the finished ones of as many runs; without any, it goes on as
-    it began, or as all did. Places whose runs were kept by an earlier job say nothing of the others.
+    A place is expected to take the time spent in all places of as many runs, over the number of those that
+    are finished: short ones finish first, so that their own mean is too low (for exponentially distributed
+    times this is the likeliest mean). Before one is finished it goes on as it began, or as all did. Places
+    whose runs were kept by an earlier job say nothing of the others.
     """
 
     def __init__(self) -> None:
@@ -96,10 +98,14 @@ class Work:
         with self._lock:
             self._kept.add(place)
 
-    def finish(self, place: Hashable, whole: Second) -> None:
-        """Note that a place is finished; the `whole` time counts if it made no runs."""
+    def end(self, place: Hashable, whole: Second) -> None:
+        """Note that a place took that time in all, which counts if it made no runs."""
         with self._lock:
             self._spent.setdefault(place, (whole, self.loads[place].runs))
+
+    def finish(self, place: Hashable) -> None:
+        """Note that a place is finished, and all that follow from it are known."""
+        with self._lock:
             self._finished.add(place)
 
     def so_far(self, threads: int) -> tuple[Second, Second]:
@@ -111,16 +117,17 @@ class Work:
             }
             units = sum(made * self.loads[place].dear for place, (_, made) in known.items())
             rate = sum(spent for spent, _ in known.values()) / units if units else 0.0
-            alike: dict[float, list[Second]] = {}
-            for place in known.keys() & self._finished:
-                alike.setdefault(self.loads[place].runs, []).append(known[place][0])
+            alike: dict[float, tuple[Second, int]] = {}
+            for place, (spent, _) in known.items():
+                whole, count = alike.get(self.loads[place].runs, (0.0, 0))
+                alike[self.loads[place].runs] = whole + spent, count + (place in self._finished)
             left = longest = 0.0
             for place in self.loads.keys() - self._finished:
                 load, (spent, made) = self.loads[place], self._spent.get(place, (0.0, 0.0))
-                times = alike.get(load.runs)
                 expected = rate * load.runs * load.dear
-                if times:
-                    expected = sum(times) / len(times)
+                whole, count = alike.get(load.runs, (0.0, 0))
+                if count:
+                    expected = whole / count
                 elif made > BEGUN * load.runs:
                     expected = spent * load.runs / made
                 rest = max(expected, MORE * spent) - spent
@@ -307,7 +314,7 @@ class Runner:
                     raise Interrupted
                 self._here.place, begun = place, COMPILING.clock()
                 found = compute(place)
-                work.finish(place, COMPILING.clock() - begun)
+                work.end(place, COMPILING.clock() - begun)
                 return found
 
         def submit(new: Iterable[Place]) -> None:
@@ -332,6 +339,7 @@ class Runner:
                         place, future = done.get(timeout=LOOK)
                         results[place] = future.result()
                         submit(more(place, results) if more is not None else ())
+                        work.finish(place)
                     report()
             except KeyboardInterrupt:
                 self.stop.set()

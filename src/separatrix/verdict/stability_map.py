@@ -193,7 +193,7 @@ def _assembled(question: MapQuestion, filled: Filled) -> StabilityMap:
         column = [filled.found.get((i, j)) or _not_run(filled, (i, j), x, y) for j, y in enumerate(heights)]
         sides = [point.side for point in column]
         along = zip(column, margins(heights, sides), strict=True)
-        points += [replace(point, margin=margin if point.runs else None) for point, margin in along]
+        points += [one if m is None or not one.runs else replace(one, margin=m) for one, m in along]
         found = (
             MapChange(x=x, y_low=heights[a], y_high=heights[b], whirls_above=sides[b] > 0)
             for a, b in changes(sides)

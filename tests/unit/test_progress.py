@@ -1,0 +1,105 @@
+"""How far a long job is: the told share never falls, and the time left is about right from a tenth on.
+
+The files in `recorded_work` are events of real runs of `separatrix VERB cryogenic-turbopump --jobs 1`: what
+the job announced to `Work` (load, spend, keep, end, finish), and when it reported, by the processor time of
+the process, which no neighbour on the machine changes: ``report`` [s], or for a map, which counts its points,
+``pace`` [s] with done and total.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from separatrix.front.console import FIRST_PART, Pace
+from separatrix.ground.compiling import COMPILING
+from separatrix.verdict.long_jobs import Load, Work
+
+RECORDED = sorted((Path(__file__).parent / "recorded_work").glob("*.json"))
+SOME_WORK = st.floats(0.0, 1e3)
+
+
+@given(st.lists(st.tuples(SOME_WORK, SOME_WORK), min_size=1))
+def test_the_share_never_falls_however_much_work_is_found(steps):
+    """Any amounts done, any rest expected after each: the share rises within 0 and 1, and ends at 1."""
+    pace, done, before = Pace(), 0.0, 0.0
+    for made, rest in [*steps, (1.0, 0.0)]:
+        done += made
+        pace(done, done + rest)
+        assert before <= pace.share <= 1.0
+        before = pace.share
+    assert pace.share == 1.0
+
+
+@given(st.lists(SOME_WORK, min_size=1))
+def test_the_share_is_done_by_total_while_the_total_stays(parts):
+    """Whatever the steps; 1e-9 is the rounding of a hundred products."""
+    pace, done, total = Pace(), 0.0, sum(parts) + 1.0
+    for part in parts:
+        done += part
+        pace(done, total)
+        assert pace.share == pytest.approx(done / total, abs=1e-9)
+
+
+@given(
+    st.lists(st.tuples(st.integers(1, 100), st.lists(SOME_WORK, max_size=3), st.integers(0, 2)), min_size=1)
+)
+def test_announced_and_finished_places_never_take_the_share_back(places):
+    """Places of any sizes, with any times, of which some announce another: 1 only at the end."""
+    work, pace, before, wanted = Work(), Pace(), 0.0, {0: places[0]}
+    work.loads[0] = Load(places[0][0])
+    while wanted:
+        name, (runs, times, follow) = wanted.popitem()
+        for spent in times:
+            work.spend(name, spent, runs / len(times))
+        work.end(name, 1.0)
+        for one in range(follow):
+            if (new := len(work.loads)) < len(places):
+                work.loads[new] = Load(places[new][0], dear=1.0 + one)
+                wanted[new] = places[new]
+        work.finish(name)
+        pace(*work.so_far(2))
+        assert before <= pace.share <= 1.0
+        before = pace.share
+    assert pace.share in (0.0, 1.0)  # nothing, if no time was spent
+
+
+@pytest.mark.parametrize("path", RECORDED, ids=lambda path: path.stem)
+def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
+    """After a tenth of its time, until the middle; the share never falls."""
+    now = [0.0]
+    monkeypatch.setattr(COMPILING, "clock", lambda: now[0])
+    events = json.loads(path.read_text())
+    begun, end = (
+        next(one[1] for one in way if one[0] in ("report", "pace")) for way in (events, events[::-1])
+    )
+    work, pace, shares, told = Work(), Pace(), [0.0], []
+    for kind, *given_to in events:
+        if kind == "load":
+            work.loads[given_to[0]] = Load(*given_to[1:])
+        elif kind in ("report", "pace"):
+            now[0] = given_to[0]
+            pace(*(given_to[1:] or work.so_far(1)))
+            shares.append(pace.share)
+            if 0.1 < (now[0] - begun) / (end - begun) < 0.5 and pace.left is not None:
+                told.append(pace.left / (end - now[0]))
+        else:
+            getattr(work, kind)(*given_to)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert len(told) > 10
+    assert all(0.5 < one < 2.0 for one in told), (min(told), max(told), told[:5])
+
+
+def test_unknown_work_has_neither_share_nor_time():
+    """Of a total that is not known yet, and of none."""
+    pace = Pace()
+    for done, total in ((0.0, math.inf), (2.0, math.inf), (0.0, 0.0)):
+        pace(done, total)
+        assert (pace.share, pace.left) == (0.0, None)
+    assert FIRST_PART == 0.1
