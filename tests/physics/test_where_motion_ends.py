@@ -25,7 +25,7 @@ KICKS = (0.1, 0.5, 2.0, 4.0)
 @lru_cache
 def shipped(name: str, radial_load: float = 0.0, friction: float = 0.08) -> MovingCage:
     """Cage of a shipped study with another radial load [N] and pocket friction [-]."""
-    study = read_study(name)
+    study = read_study(name, "paper")
     study = replace(study, operation=replace(study.operation, radial_load=radial_load))
     return moving_cage(solve(study), friction)
 

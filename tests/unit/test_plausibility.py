@@ -14,7 +14,7 @@ from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict.beyond_models import Moved, beyond_motion, pocket_pressure, transmitted_force
 
-SHIPPED = read_study("cryogenic-turbopump")
+SHIPPED = read_study("cryogenic-turbopump", "paper")
 CAGE = SHIPPED.cage
 assert CAGE is not None
 

@@ -334,6 +334,24 @@ def test_a_damaged_piece_is_run_again(tmp_path, damaged):
     ledger.close()
 
 
+def test_pieces_are_bound_to_their_keys_and_written_at_once(tmp_path):
+    """Another reader has them before the file is closed; two that changed places, or a bit, are absent."""
+    ledger, keys = Ledger(tmp_path / NAME), (key_of(1), key_of(2))
+    for key, found in zip(keys, (b"one", b"two"), strict=True):
+        ledger.put(key, found)
+    other = Ledger(tmp_path / NAME)
+    assert [other.get(key) for key in keys] == [b"one", b"two"]
+    connection = sqlite3.connect(tmp_path / NAME)
+    rows = dict(connection.execute("SELECT key, found FROM piece"))
+    with connection:
+        connection.execute("UPDATE piece SET found = ? WHERE key = ?", (rows[keys[1]], keys[0]))
+        connection.execute("UPDATE piece SET found = ? WHERE key = ?", (rows[keys[1]][:-1] + b"x", keys[1]))
+    connection.close()
+    assert [other.get(key) for key in keys] == [None, None]
+    for one in (ledger, other):
+        one.close()
+
+
 def test_a_key_depends_on_the_last_bit():
     """Of a number, and on its kind."""
     assert len({key_of(0.1), key_of(np.nextafter(0.1, 1.0)), key_of("0.1"), key_of(0.1, 0.1)}) == 4

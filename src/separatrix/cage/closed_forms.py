@@ -153,7 +153,7 @@ def returned_share(law: BallTraction, mass: Kilogram, stiffness: NewtonPerMetre,
 
     depth.terminal, depth.direction = True, -1.0  # type: ignore[attr-defined]
     start = [0.0, speed, 0.0]
-    course = solve_ivp(rates, (0.0, LONG * period), start, "LSODA", events=depth, rtol=1e-8, atol=1e-12)
+    course = solve_ivp(rates, (0.0, LONG * period), start, "Radau", events=depth, rtol=1e-8, atol=1e-12)
     return max(0.0, -float(course.y[1, -1]) / speed)
 
 
