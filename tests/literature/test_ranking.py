@@ -15,7 +15,6 @@ import pytest
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.study.reading import read_study
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.judgement import Verdict
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 from separatrix.verdict.ranking_records import NotMeasured, Ranked
@@ -64,12 +63,3 @@ def test_what_the_paper_did_not_measure_is_not_ranked(ranking):
         row = next(row for row in environment.materials if row.name == "Meldin HTC 100")
         assert isinstance(row, NotMeasured)
         assert row.reason.startswith("not measured in gaseous nitrogen")
-
-
-def test_the_papers_statement_stands_beside_every_verdict_it_contradicts(ranking):
-    """Whatever is stable here although it needs less than 0.6 says that the paper would reject it."""
-    stable = [row for row in rows(ranking) if row.judgement.verdict is Verdict.STABLE]
-    contradicted = [row for row in stable if row.restitution_threshold < SOLID_LUBRICATION_LIMIT]
-    assert contradicted
-    assert all("By the paper's limit" in row.reason for row in contradicted)
-    assert "0.6" in ranking.paper_statement

@@ -25,7 +25,7 @@ FRICTION = f"ranking.A.{PLACE}"
 
 def study_of(friction, **given):
     """The shipped study with one candidate, and some of its numbers uncertain."""
-    shipped = read_study("cryogenic-turbopump")
+    shipped = read_study("cryogenic-turbopump", "paper")
     candidate = Candidate(name="A", friction={PLACE: Friction(mean=friction)})
     ranking = replace(shipped.ranking, candidates=(candidate,), environments=(PLACE,))
     study = replace(shipped, ranking=ranking, cage=replace(shipped.cage, material=None, material_name=""))

@@ -114,7 +114,7 @@ def test_the_full_model_asks_free_balls_and_a_wider_race():
 @pytest.mark.parametrize(
     ("models", "ball", "motion"),
     [
-        ({}, BallModel.DAMPER, MotionModel.PLANE),
+        ({"model": CageModel.PAPER}, BallModel.DAMPER, MotionModel.PLANE),
         (FULL, BallModel.AUTO, MotionModel.PLANE),
         (
             {"model": CageModel.FULL, "pocket_shape": PocketShape.CYLINDRICAL},

@@ -128,7 +128,7 @@ def test_every_option_is_there_in_plane_and_space(motion, keys):
 @pytest.mark.parametrize("model", list(CageModel))
 def test_a_model_is_asked_for_on_the_command_line(model):
     """--model sets the key of the cage, with itself as the origin."""
-    study = with_model(shipped(), model)
+    study = with_model(shipped(pocket_shape=PocketShape.CYLINDRICAL), model)
     assert study.cage.model is model
     assert study.origins["cage.model"] == f"--model {model.value}"
     cage = moving_cage(solve(study), 0.1)

@@ -18,6 +18,7 @@ from separatrix.study.study import (
     KinematicModel,
     Kinematics,
     Material,
+    MotionModel,
     PocketContact,
     PocketShape,
     StabilitySettings,
@@ -154,7 +155,8 @@ def test_the_cage_in_the_plane_takes_the_design_as_it_is():
     scatter = {"pocket_spacing_scatter": 0.05, "pocket_position_scatter": 1e-5, "ball_diameter_scatter": 1e-6}
     land = {"guidance": Guidance.INNER, "land_clearance": 8e-4, "land_friction": 0.15, "land_count": 2}
     land |= {"land_out_of_round": 2e-5, "land_lobes": 3, "unbalance": 1e-6, "gravity": 9.81}
-    changes = {"pocket_shape": PocketShape.ELONGATED, **pocket, **scatter, **land}
+    flat = {"pocket_shape": PocketShape.ELONGATED, "motion": MotionModel.PLANE}
+    changes = {**flat, **pocket, **scatter, **land}
     started = replace(STUDY.operation, ramp_time=0.05, ramp_start=0.2)
     found = moving(replace(cage(**changes), operation=started))
     assert {name: getattr(found, name) for name in changes} == changes

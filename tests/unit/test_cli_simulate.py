@@ -34,6 +34,7 @@ title = '{TITLE}'
 
 [cage]
 motion = "space"
+ball = "damper"
 ball_cage_friction = 0.2
 guidance = "inner"
 land_clearance = "0.5 mm"

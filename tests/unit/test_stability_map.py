@@ -284,6 +284,8 @@ def test_every_parameter_reaches_the_study(name, study):
         cage |= {"land_count": 2, "land_spacing": 0.01}
     if name == "cage.land_lobes":
         cage |= {"land_out_of_round": 1e-6}
+    if name == "cage.land_count":
+        cage |= {"motion": MotionModel.PLANE}
     study = replace(study, cage=replace(study.cage, **cage))
     if name == "operation.ramp_start":
         study = replace(study, operation=replace(study.operation, ramp_time=0.1))

@@ -151,21 +151,7 @@ def reason(threshold: RestitutionThreshold, judgement: Judgement) -> str:
     stable = judgement.verdict is Verdict.STABLE
     always = "Stable at any" if stable else "Pocket friction starts no whirl at any"
     ends = {0.0: "Stable at no restitution factor above 0.", 1.0: f"{always} restitution factor."}
-    other = disagreement(threshold.value, judgement.verdict)
-    return " ".join(part for part in (ends.get(threshold.value), judgement.reason, other) if part)
-
-
-def disagreement(threshold: Ratio, verdict: Verdict) -> str:
-    """Return how the paper's statement differs from the verdict; empty if it does not.
-
-    The paper rejects a material that needs a restitution factor below 0.6, whatever its film gives.
-    """
-    rejected = threshold < SOLID_LUBRICATION_LIMIT
-    if rejected and verdict is Verdict.STABLE:
-        return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be rejected."
-    if not rejected and verdict is Verdict.UNSTABLE:
-        return f"By the paper's limit (eta < {SOLID_LUBRICATION_LIMIT:g}) it would be kept."
-    return ""
+    return " ".join(part for part in (ends.get(threshold.value), judgement.reason) if part)
 
 
 class Pocket(NamedTuple):
