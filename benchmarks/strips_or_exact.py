@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from separatrix.chain.contacts import race_tracks
-from separatrix.chain.impact_restitution import restitution
-from separatrix.chain.race_curve import exact_slope, strips
+from separatrix.chain.impact_restitution import contact_damping, restitution
+from separatrix.chain.race_traction import SLOPE_ALONE, contact_traction
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import SeparatrixError
 from separatrix.study.reading import read_study
@@ -37,10 +37,10 @@ OWN = replace(EXACT, pressure=ContactPressure.COATED)
 
 
 WAYS = {
-    "series": lambda track: strips(track, ContactPressure.HERTZ).slope,
-    "coated": lambda track: strips(track, ContactPressure.COATED).slope,
-    "exact": lambda track: exact_slope(track, EXACT).slope,
-    "own": lambda track: exact_slope(track, OWN).slope,
+    "series": TractionSettings(),
+    "coated": TractionSettings(pressure=ContactPressure.COATED),
+    "exact": EXACT,
+    "own": OWN,
 }
 
 
@@ -50,12 +50,16 @@ def cells(solution: Solution, film: Film, ways: list[str]) -> list[str]:
     bearing = solution.study.bearing
     for way in ways:
         try:
-            slopes = [WAYS[way](track) for track in race_tracks(bearing, film, solution.bearing)]
+            slopes = [
+                contact_traction(track, WAYS[way], SLOPE_ALONE).slope
+                for track in race_tracks(bearing, film, solution.bearing)
+            ]
         except SeparatrixError:
             for column in found:
                 column.append("-")
             continue
-        dampings = solution.bearing.dampings(*slopes)
+        state = solution.bearing
+        dampings = [contact_damping(*each) for each in zip(slopes, (state.inner, state.outer), strict=True)]
         eta = restitution(*dampings, ball_cage_stiffness=3e6, cage_mass=0.025).restitution_factor
         for column, value in zip(
             found, (f"{slopes[0]:.2f}", f"{slopes[1]:.2f}", f"{sum(dampings):.0f}", f"{eta:.3f}"), strict=True

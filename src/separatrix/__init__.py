@@ -12,7 +12,6 @@ from typing import Any
 _PUBLIC = {
     "front.api": "Answer ToolAnswer bearing check compare load map material materials mobility rank report "
     "restitution sensitivity simulate stability sweep traction tribometer",
-    "chain.ball_traction": "BallTraction",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
     "chain.contacts": "BearingState RaceContact RaceTraction",
@@ -20,18 +19,17 @@ _PUBLIC = {
     "chain.equilibrium": "Equilibrium contact",
     "chain.hertz": "ContactEllipse contact_ellipse contact_modulus ellipse_of_axes "
     "ellipse_of_curvatures race_curvatures",
-    "chain.lubrication": "LubricationCurve lubrication_curve",
+    "chain.ball_traction": "BallTraction",
     "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
-    "chain.impact_restitution": "Restitution ball_pocket_stiffness damping_ratio race_damping "
-    "restitution_factor",
+    "chain.impact_restitution": "LubricationCurve Restitution ball_pocket_stiffness damping_ratio "
+    "lubrication_curve race_damping restitution_factor",
     "chain.solution": "Solution solve",
     "chain.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
     "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
     "chain.exact.cases": "ContactAnswer ContactCase ContactMotion ContactQuestion ContactSetup Gap "
     "SolvedCase exact_contact rolling_cases",
     "chain.film_compliance": "film_compliance",
-    "chain.shear": "ShearField shear_field",
-    "chain.traction_curve": "TractionCurve traction_curve traction_slope",
+    "chain.traction_curve": "ShearField TractionCurve shear_field traction_curve traction_slope",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError",
     "verdict.swept_cases": "Sweep SweptCase",
     "friction.logs": "read_log",

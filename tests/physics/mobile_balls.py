@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 import separatrix
 from separatrix.chain.ball_mobility import HeldBall, Modes, SlipLaw, friction_slopes, held_ball, modes
+from separatrix.chain.contacts import Rolling
 from separatrix.ground.units import Array
 from separatrix.study.study import BallBearing, Film, KinematicModel, Kinematics, Material, Operation, Study
 
@@ -36,16 +37,16 @@ def study_of(name: str) -> Study:
     return replace(le7, bearing=WHEEL, operation=operation, film=Film(race_friction=0.05))
 
 
-def records(name: str) -> tuple:
+def records(name: str) -> Rolling:
     """What `held_ball` and `mobility` take, before the slip law."""
     asked = study_of(name)
-    return asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction
+    return Rolling(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
 
 @lru_cache
 def held(name: str, law: SlipLaw = SlipLaw.RIGID) -> HeldBall:
     """The ball in its slip fields; rigid, as the check numbers are."""
-    return held_ball(*records(name), law)
+    return held_ball(records(name), law)
 
 
 @lru_cache

@@ -36,7 +36,7 @@ def loaded_ball() -> HeldBall:
     slip = 1e-7 * (ORBIT - RADIUS)
     return HeldBall(
         problem=problem, rings=np.array((0.0, sum(lengths))), state=np.array((0.0, lengths[1], *(0.0,) * 4)),
-        slips=(slip, slip), cells=4, nodes=chebyshev_nodes(4), capacity=2.0 * MU * Q,
+        slips=(slip, slip), nodes=chebyshev_nodes(2), capacity=2.0 * MU * Q,
     )  # fmt: skip
 
 

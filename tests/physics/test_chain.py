@@ -7,8 +7,8 @@ import pytest
 
 from separatrix.cage.disturbance import free_leads
 from separatrix.cage.moving_cage import moving_cage, turned_forward
-from separatrix.chain.lubrication import lubrication_curve
-from separatrix.chain.orbit import orbital_waves
+from separatrix.chain.contacts import orbital_waves
+from separatrix.chain.impact_restitution import lubrication_curve
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
 from separatrix.study.study import KinematicModel, Kinematics

@@ -10,7 +10,7 @@ from cages import with_distributions
 from scipy.integrate import solve_bvp
 
 from separatrix.cage import moving_cage
-from separatrix.chain.clearances import mean_expansion, ring_growth, running_clearances
+from separatrix.chain.clearances import TurningRing, mean_expansion, running_clearances
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.study.ball_bearing import Expansion
@@ -31,6 +31,15 @@ PLASTIC = Material(
     name="plastic", elastic_modulus=5e9, poisson_ratio=0.35, density=1500.0, thermal_expansion=40e-6
 )
 RING = {"density": 1500.0, "elastic_modulus": 5e9, "poisson_ratio": 0.35, "speed": 2000.0}
+
+
+def ring_growth(radius, *, inner, outer, density, elastic_modulus, poisson_ratio, speed):
+    """Growth of a ring of a material of these numbers."""
+    material = Material(name="ring", elastic_modulus=elastic_modulus, poisson_ratio=poisson_ratio)
+    ring = TurningRing(inner=inner, outer=outer, material=material, density=density, speed=speed)
+    return ring.growth(radius)
+
+
 SHAPE = {"inner_diameter": 58e-3, "outer_diameter": 72e-3, "width": 14e-3}
 
 

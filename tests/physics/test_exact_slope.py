@@ -16,7 +16,7 @@ from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_c
 from separatrix.chain.exact.slip import FrictionLaw, over_cells
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.exact.transient import shift, transient
-from separatrix.chain.film_profile import Profile, worn_band
+from separatrix.chain.film_compliance import Profile, worn_band
 from separatrix.chain.hertz import ellipse_of_axes
 from separatrix.ground.errors import ConvergenceError
 

@@ -14,8 +14,9 @@ from mobile_balls import NAMES, held, impact, modes_of, records, study_of
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
-from separatrix.chain import ball_mobility
+from separatrix.chain import contacts
 from separatrix.chain.ball_mobility import (
+    BallTraction,
     SlipLaw,
     balanced,
     fitted_law,
@@ -26,11 +27,10 @@ from separatrix.chain.ball_mobility import (
     pocket_friction_effect,
     pushed,
 )
-from separatrix.chain.ball_traction import BallTraction
-from separatrix.chain.contacts import bearing_state, race_tracks
+from separatrix.chain.contacts import Rolling, race_tracks
 from separatrix.chain.equilibrium.balance import slip_coefficients
 from separatrix.chain.equilibrium.groove import friction_resultants, touch
-from separatrix.chain.race_curve import race_slope
+from separatrix.chain.race_traction import exact_slope
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
 from separatrix.study.study import KinematicModel, TractionModel, TractionSettings
@@ -175,7 +175,8 @@ def test_push_begins_with_the_linear_law():
 def moved(name, *, model=None, film=None, **operation):
     """Mobility of a bearing with another operation, kinematic model or film."""
     bearing, usual, own_model, own_film, traction = records(name)
-    return mobility(bearing, replace(usual, **operation), model or own_model, film or own_film, traction)
+    asked = Rolling(bearing, replace(usual, **operation), model or own_model, film or own_film, traction)
+    return mobility(asked)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -242,7 +243,7 @@ def test_a_hard_impact_carries_the_ball_along():
 @pytest.mark.parametrize("name", ["cryo", "wheel 6000"])
 def test_one_state_reproduces_an_impact(name):
     """m_e u' = N - F(u): within 0.02 below the capacity; up to four times it within 0.08 (why: the page)."""
-    found, (mass, k) = mobility(*records(name), SlipLaw.RIGID), RING[name]
+    found, (mass, k) = mobility(records(name), SlipLaw.RIGID), RING[name]
     at, law = found.capacity / math.sqrt(k * mass), found.traction
     for over, error in ((0.1, 0.02), (0.5, 0.02), (1.0, 0.04), (4.0, 0.08)):
         both = np.mean([by_fields(name, over * at, sense)[0] for sense in (1.0, -1.0)])
@@ -255,15 +256,14 @@ def test_one_state_reproduces_an_impact(name):
 
 def state_of(name):
     """State of a bearing."""
-    bearing, operation, model, film, _ = records(name)
-    return bearing_state(bearing, operation, model, film.race_friction)
+    return records(name).state
 
 
 def test_elastic_creep_meets_the_spin_moment_of_the_exact_contact():
     """At the same spin the outer pivoting moment is met within 1 % by elastic creep; rigid, it is 4 % off."""
     asked = study_of("cryo")
     tracks = race_tracks(asked.bearing, asked.film, state_of("cryo"))
-    outer = race_slope(tracks[1], TractionSettings(model=TractionModel.EXACT))
+    outer = exact_slope(tracks[1], TractionSettings(model=TractionModel.EXACT))
     exact = abs(outer.solution.spin_moment)
     rigid, elastic = (_outer_moment(law) for law in (SlipLaw.RIGID, SlipLaw.ELASTIC))
     assert elastic == pytest.approx(exact, rel=0.01)
@@ -289,11 +289,11 @@ def _outer_moment(law: SlipLaw) -> float:
 
 def test_slip_speeds_are_those_of_the_elastic_creep():
     """v_e = f V/alpha_0: a contact that only creeps would carry all its friction there."""
-    found = mobility(*records("cryo")).linear
+    found = mobility(records("cryo")).linear
     assert found.slip_speed_inner == pytest.approx(0.1 * 25.0098 / 66.340, rel=1e-3)
     assert found.slip_speed_outer == pytest.approx(0.1 * 25.1133 / 75.584, rel=1e-3)
     rigid = 1e-4 * 0.25 * 0.065 * 1500.0 * math.pi / 3.0
-    assert mobility(*records("cryo"), SlipLaw.RIGID).linear.slip_speed_outer == pytest.approx(rigid, rel=1e-6)
+    assert mobility(records("cryo"), SlipLaw.RIGID).linear.slip_speed_outer == pytest.approx(rigid, rel=1e-6)
 
 
 def test_a_bearing_that_turns_the_other_way_is_the_same():
@@ -321,9 +321,9 @@ def test_a_ball_off_the_inner_race_is_refused(monkeypatch):
     """Nothing turns it there."""
     given, state = records("cryo"), state_of("cryo")
     lifted = replace(state, inner=replace(state.inner, load=0.0))
-    monkeypatch.setattr(ball_mobility, "bearing_state", lambda *_: lifted)
+    monkeypatch.setattr(contacts, "bearing_state", lambda *_: lifted)
     with pytest.raises(InputError, match="must press a ball on both races"):
-        held_ball.__wrapped__(*given, SlipLaw.RIGID)
+        held_ball.__wrapped__(given, SlipLaw.RIGID)
 
 
 def test_a_radial_bearing_has_no_pitch():

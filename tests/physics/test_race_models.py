@@ -7,15 +7,14 @@ from cages import BEARING
 
 from separatrix.chain import exact
 from separatrix.chain.contacts import race_tracks
-from separatrix.chain.race_curve import (
+from separatrix.chain.race_traction import (
     beyond_strips,
     coated_ellipse,
     contact_problem,
+    contact_traction,
     exact_slope,
     film_strain,
     pressure_slip,
-    race_curve,
-    strips,
 )
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
@@ -81,7 +80,7 @@ def test_the_chain_takes_the_slopes_of_its_model():
 
 def test_the_curve_passes_free_rolling_with_its_slope():
     """At its middle increment 0 nothing is transmitted: 2e-5 of the friction, where the offset is found."""
-    curve = race_curve(track(), EXACT)
+    curve = contact_traction(track(), EXACT)
     middle = curve.creep_increment.size // 2
     assert curve.creep_increment[middle] == 0.0
     assert abs(curve.traction_coefficient[middle]) <= 2e-5 * 0.1
@@ -130,7 +129,9 @@ def test_the_pressure_of_coated_bodies_cures_the_strips_in_part():
     own = track(film(0.5e9, 0.46, 3e-6))
     assert coated_ellipse(own).semi_minor > 1.15 * own.ellipse.semi_minor
     best = exact_slope(own, replace(EXACT, pressure=ContactPressure.COATED)).slope
-    hertz, coated = (strips(own, pressure).slope for pressure in ContactPressure)
+    hertz, coated = (
+        contact_traction(own, TractionSettings(pressure=pressure)).slope for pressure in ContactPressure
+    )
     assert abs(coated - best) < 0.5 * abs(hertz - best)
 
 

@@ -8,10 +8,17 @@ import pytest
 from separatrix.chain.creep import Creep
 from separatrix.chain.hertz import contact_ellipse
 from separatrix.chain.master_curve import film_tables
-from separatrix.chain.shear import shear_field
 from separatrix.chain.strip import solve_strip
-from separatrix.chain.traction_curve import reach, traction_curve, traction_slope
-from separatrix.chain.traction_ellipse import GAUSS_NODES, GAUSS_WEIGHTS, LEVELS, panel_edges
+from separatrix.chain.traction_curve import (
+    GAUSS_NODES,
+    GAUSS_WEIGHTS,
+    LEVELS,
+    panel_edges,
+    reach,
+    shear_field,
+    traction_curve,
+    traction_slope,
+)
 
 ELLIPSE = contact_ellipse(500.0, 200.0, 20.0, 113e9)
 A, B, P0, E, N = ELLIPSE.semi_major, ELLIPSE.semi_minor, ELLIPSE.max_pressure, ELLIPSE.contact_modulus, 500.0
@@ -114,7 +121,7 @@ def test_strips_solved_one_by_one_agree(friction, lam, spin, curvature, shift):
     delta = shift * saturation
     found = curve(spin, curvature, friction=friction, compliance=lam * B / E, increments=[0.0, delta])
     sigma, eta = spin * A / saturation, curvature * A * A / saturation
-    levels = LEVELS * reach(film_tables(200)[0], lam)
+    levels = LEVELS * reach(lam, film_tables(200)[0])
 
     def directly(nodes):
         sums = []

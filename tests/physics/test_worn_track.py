@@ -9,10 +9,8 @@ from hypothesis import strategies as st
 from test_exact_slope import INNER, OUTER
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.film_compliance import film_compliance, track_of
-from separatrix.chain.film_profile import Profile, worn_band
-from separatrix.chain.shear import shear_field
-from separatrix.chain.traction_curve import traction_curve, traction_slope
+from separatrix.chain.film_compliance import Profile, film_compliance, track_of, worn_band
+from separatrix.chain.traction_curve import shear_field, traction_curve, traction_slope
 from separatrix.ground.errors import InputError
 from separatrix.study.study import Film, Material, Race, Wear, Worn
 

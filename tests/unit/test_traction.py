@@ -12,9 +12,8 @@ from separatrix.chain import strip as strip_module
 from separatrix.chain.creep import Creep
 from separatrix.chain.film_compliance import film_compliance
 from separatrix.chain.hertz import contact_ellipse
-from separatrix.chain.shear import shear_field
 from separatrix.chain.strip import solve_strip
-from separatrix.chain.traction_curve import traction_curve, traction_slope
+from separatrix.chain.traction_curve import shear_field, traction_curve, traction_slope
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.study.study import Film, Material
 

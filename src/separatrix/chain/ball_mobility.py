@@ -1,30 +1,31 @@
-"""Mobility of the most loaded ball along its orbit: rates, dampings, law of traction.
+"""How the races hold a pushed ball: dampings, effective mass, capacity, and the law that the cage takes.
 
-The ball is held between its rings by the slip fields of both contacts. Its motion is x = (u, spin): u [m/s]
-its speed along the orbit beyond the free one, and its spin (axial, radial, orbital) in the orbiting frame
-[rad/s]. Its place in the plane of the contacts, V, follows the balance of forces at once: the contact planes
-are slaved. M x' = S x + e_1 F, and the mobility is Y(s) = u/F = e_1^T (s M - S)^-1 e_1 =
+The most loaded ball is held between its rings by the slip fields of both contacts. Its motion is x = (u,
+spin): u [m/s] its speed along the orbit beyond the free one, and its spin (axial, radial, orbital) in the
+orbiting frame [rad/s]. Its place in the plane of the contacts, V, follows the balance of forces at once: the
+contact planes are slaved. M x' = S x + e_1 F, and the mobility is Y(s) = u/F = e_1^T (s M - S)^-1 e_1 =
 sum_i c_i lambda_i/(s + lambda_i), so that sum c_i = Y(0) = 1/C_eff. docs/theory/mobility.md.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from separatrix.chain.ball_modes import Modes, modes
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
-from separatrix.chain.contacts import BearingState, bearing_state, of_both_races, race_tracks
+from separatrix.chain.contacts import RaceContact, Rolling, of_both_races
 from separatrix.chain.creep import Creep
 from separatrix.chain.equilibrium.balance import contact_friction, turning_loads
 from separatrix.chain.equilibrium.balance import free_ball as balance_of_ball
 from separatrix.chain.equilibrium.groove import chebyshev_nodes, touch
-from separatrix.chain.equilibrium.problem import Problem, copy, problem, work
-from separatrix.chain.race_curve import race_slope
+from separatrix.chain.equilibrium.problem import Problem, problem, work
+from separatrix.chain.race_traction import SLOPE_ALONE, contact_traction
 from separatrix.ground.compiled import kernel
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.schema import Spelled
@@ -57,12 +58,11 @@ class SlipLaw(Spelled):
 class LinearMobility:
     """Small motion of the most loaded ball about its steady rolling.
 
-    Modes by rising rate, arrays of shape (mode,): `rates` are those at which they decay, `oscillations` their
-    angular frequencies (0 of an overdamped one), `shares` what each adds to the speed of a slow push.
-    `damping` holds the slowest mode, the attitude of the spin axis; `damping_relaxed` lets it follow too;
-    `damping_locked` holds all spin. `effective_mass` is `damping` over the next rate. A pocket that rubs with
-    friction f on the ball it pushes changes the speed by 1 - `pocket_friction_effect` f behind the ball,
-    and 1 + in front of it. The groove values are those of the ball centre across its orbit.
+    Modes by rising rate: `rates` are those at which they decay, `oscillations` their angular frequencies (0
+    of an overdamped one), `shares` what each adds to the speed of a slow push. `damping` is C_f: it holds the
+    slowest mode, the attitude of the spin axis; `effective_mass` is `damping` over the next rate. A pocket
+    that rubs with friction f on the ball it pushes changes the speed by 1 - `pocket_friction_effect` f behind
+    the ball, and 1 + in front of it. The groove values are those of the ball centre across its orbit.
     """
 
     slip_law: SlipLaw  # which slip speed rounds the corner of Coulomb's law
@@ -104,11 +104,17 @@ class Mobility:
     notes: tuple[str, ...] = ()  # where the slip fields leave the range of their model, a sentence each
 
 
-SETTLED = 1e-10
-"""Unbalanced friction of a settled ball over mu (Q_i + Q_o); rounding of the slip fields allows 1e-13."""
+SETTLED, CLOSED = 1e-10, 1e-8
+"""Unbalance of a settled and of a pushed ball over the capacity; rounding of the slip fields allows 1e-13."""
 
 LADDER = (1.0, 300.0, 100.0, 30.0, 10.0, 3.0, 1.0)
 """Factors of the slip speeds on the way to the asked ones, where the first attempt does not settle."""
+
+RIGID = 1e-4
+"""Slip speed of rigid contacts over the speed difference of the rings times d_m/4."""
+
+CELLS = {SlipLaw.ELASTIC: 48, SlipLaw.RIGID: 96}
+"""Strips across an ellipse; half as many places along rolling. Those of 4 times as many are within 1e-3."""
 
 
 class HeldBall(NamedTuple):
@@ -123,78 +129,86 @@ class HeldBall(NamedTuple):
     rings: Array
     state: Array
     slips: tuple[float, float]
-    cells: int
     nodes: Array
     capacity: Newton
     notes: tuple[str, ...] = ()
 
     @property
-    def orbit_radius(self) -> float:
-        """Radius of the orbit [m]."""
-        return 0.5 * self.problem.pitch_diameter
-
-    @property
     def units(self) -> Array:
         """One unit of the speeds of a state in x, shape (4,) [m/s and rad/s]."""
-        speed = self.problem.speed
-        return np.array((self.orbit_radius * speed, speed, speed, speed))
+        return self.problem.speed * np.array((0.5 * self.problem.pitch_diameter, 1.0, 1.0, 1.0))
+
+    @property
+    def scales(self) -> Array:
+        """Capacity, and its couple on the ball, of the rows of a balance, shape (6,) [N and N m]."""
+        return self.capacity * np.array((1.0, 1.0, 1.0, *(0.5 * self.problem.ball_diameter,) * 3))
 
     @property
     def masses(self) -> Array:
         """Mass matrix of x, shape (4, 4): a ball that runs ahead turns about the bearing axis, too."""
         p = self.problem
         masses = np.diag((p.ball_mass, p.ball_inertia, p.ball_inertia, p.ball_inertia))
-        masses[1, 0] = p.ball_inertia / self.orbit_radius
+        masses[1, 0] = p.ball_inertia / (0.5 * p.pitch_diameter)
         return masses
 
 
 @kernel
-def ball_balance(
-    p: Problem,
-    rings: Array,
-    state: Array,
-    slips: tuple[float, float],
-    cells: int,
-    nodes: Array,
-    balance: Array,
-    slopes: Array,
-) -> None:
+def _balanced(
+    p: Problem, rings: Array, state: Array, slips: tuple[float, float], nodes: Array
+) -> tuple[Array, Array]:
+    out, balance = work(6), np.empty(6)
+    balance_of_ball(p, rings, state, slips, 2 * nodes.shape[1], nodes, balance, out)
+    return balance, out.by_state[:, :6].copy()
+
+
+def balanced(ball: HeldBall, state: Array) -> tuple[Array, Array]:
     """Forces and couples on the ball with its inertia, shape (6,), and slopes with its state, (6, 6)."""
-    out = work(6)
-    balance_of_ball(p, rings, state, slips, cells, nodes, balance, out)
-    for q in range(6):
-        copy(slopes[q], out.by_state[q])
+    balance, slopes = _balanced(ball.problem, ball.rings, state, ball.slips, ball.nodes)
+    return balance, slopes
 
 
 @kernel
 def groove_slopes(
-    p: Problem,
-    rings: Array,
-    state: Array,
-    slips: tuple[float, float],
-    cells: int,
-    nodes: Array,
-    lateral: Array,
-    along: Array,
-) -> None:
+    p: Problem, rings: Array, state: Array, slips: tuple[float, float], nodes: Array
+) -> tuple[Array, Array]:
     """Friction against a speed of the ball across each groove, shape (2,) [N s/m], and y of each, (2, 2)."""
     i = touch(p, -1.0, rings[0] - state[0], rings[1] - state[1], 0.0)
     o = touch(p, 1.0, state[0], state[1], 0.0)
     load_o, load_i, _ = turning_loads(p, i, o)
-    r = np.empty((5, 7))
-    contact_friction(p, -1.0, i, load_i, state, slips[0], cells, nodes, r)
-    lateral[0] = p.friction * load_i * r[4, 6] / abs(p.speed)
-    along[0, 0], along[0, 1] = i.cosine, -i.sine
-    contact_friction(p, 1.0, o, load_o, state, slips[1], cells, nodes, r)
-    lateral[1] = p.friction * load_o * r[4, 6] / abs(p.speed)
-    along[1, 0], along[1, 1] = -o.cosine, o.sine
+    r, lateral, along = np.empty((5, 7)), np.empty(2), np.empty((2, 2))
+    for k in range(2):
+        side, at, load = (-1.0, i, load_i) if k == 0 else (1.0, o, load_o)
+        contact_friction(p, side, at, load, state, slips[k], 2 * nodes.shape[1], nodes, r)
+        lateral[k] = p.friction * load * r[4, 6] / abs(p.speed)
+        along[k, 0], along[k, 1] = -side * at.cosine, side * at.sine
+    return lateral, along
 
 
-def balanced(ball: HeldBall, state: Array) -> tuple[Array, Array]:
-    """Balance of the ball in a state, shape (6,), and its slopes, (6, 6)."""
-    balance, slopes = np.empty(6), np.empty((6, 6))
-    ball_balance(ball.problem, ball.rings, state, ball.slips, ball.cells, ball.nodes, balance, slopes)
-    return balance, slopes
+Equations = Callable[[Array], tuple[Array, Array]]
+"""From unknowns, what is not yet 0, shape (n,), and its slopes with them, (n, n)."""
+
+
+def newton(equations: Equations, start: Array, scales: Array, goal: float) -> tuple[Array, float]:
+    """Newton's method with step halving; the unknowns, and the norm of what is left over the scales."""
+    here, (rest, slopes) = start, equations(start)
+    norm = float(np.linalg.norm(rest / scales))
+    for _ in range(60):
+        if norm <= goal:
+            break
+        try:
+            step = np.linalg.solve(slopes / scales[:, None], rest / scales)
+        except np.linalg.LinAlgError:  # no way on: what is left tells the caller
+            break
+        for stride in 0.5 ** np.arange(12):
+            trial = here - stride * step
+            trial_rest, trial_slopes = equations(trial)
+            now = float(np.linalg.norm(trial_rest / scales))
+            if now <= (1.0 - 0.1 * stride) * norm:
+                break
+        else:
+            break
+        here, rest, slopes, norm = trial, trial_rest, trial_slopes, now
+    return here, norm
 
 
 def settle(ball: HeldBall) -> HeldBall:
@@ -206,35 +220,14 @@ def settle(ball: HeldBall) -> HeldBall:
         The friction of both races does not balance.
     """
     for steps in (LADDER[:1], LADDER[1:]):
-        state, rest = ball.state.copy(), np.inf
+        state, rest = ball.state, np.inf
         for factor in steps:
-            slips = (factor * ball.slips[0], factor * ball.slips[1])
-            state, rest = _newton(ball._replace(slips=slips), state)
+            eased = ball._replace(slips=(factor * ball.slips[0], factor * ball.slips[1]))
+            state, rest = newton(partial(balanced, eased), state, ball.scales, 0.1 * SETTLED)
         if rest <= SETTLED:
             return ball._replace(state=state)
     message = f"Mobility: friction of the races does not balance (unbalance {rest:.2g}, limit {SETTLED:g})."
     raise ConvergenceError(message, len(LADDER), rest)
-
-
-def _newton(ball: HeldBall, state: Array) -> tuple[Array, float]:
-    """Newton with step halving; the state and its largest unbalance over the capacity."""
-    scales = ball.capacity * np.array((1.0, 1.0, 1.0, *(0.5 * ball.problem.ball_diameter,) * 3))
-    balance, slopes = balanced(ball, state)
-    norm = float(np.linalg.norm(balance / scales))
-    for _ in range(60):
-        if norm <= 0.1 * SETTLED:
-            break
-        step = np.asarray(np.linalg.solve(slopes / scales[:, None], balance / scales))
-        for stride in 0.5 ** np.arange(12):
-            trial = state - stride * step
-            there, slopes_there = balanced(ball, trial)
-            now = float(np.linalg.norm(there / scales))
-            if now <= (1.0 - 0.1 * stride) * norm:
-                break
-        else:
-            break
-        state, balance, slopes, norm = trial, there, slopes_there, now
-    return state, norm
 
 
 def friction_slopes(ball: HeldBall) -> Array:
@@ -244,12 +237,54 @@ def friction_slopes(ball: HeldBall) -> Array:
     return np.asarray(slopes[2:, 2:] - slopes[2:, :2] @ follows) / ball.units
 
 
+REAL = 1e-9
+"""Imaginary part of a rate over its size below which it is rounding."""
+
+
+class Modes(NamedTuple):
+    """Modes of M x' = S x by rising rate, shape (4,), and the dampings of a slow push [N s/m]."""
+
+    slopes: Array  # S
+    masses: Array  # M
+    rates: NDArray[np.complex128]
+    shares: NDArray[np.complex128]  # of 1/C_eff
+    relaxed: NewtonSecondPerMetre  # C_eff, every mode relaxed
+    held: NewtonSecondPerMetre  # C_f, the slowest mode held
+    locked: NewtonSecondPerMetre  # all spin held
+    mass: Kilogram  # of the motion that the slowest mode does not follow, C_f over the next rate
+    right: Array | None  # the slowest mode's pattern in x; None where it is not overdamped
+    left: Array | None  # and the row that measures it
+
+
+def modes(slopes: Array, masses: Array) -> Modes:
+    """Modes of M x' = S x from S and M, shape (4, 4) each."""
+    found, patterns = np.linalg.eig(np.linalg.solve(masses, slopes))
+    order = np.argsort(np.abs(found), kind="stable")
+    rates, patterns = -found[order].astype(complex), patterns[:, order]
+    measures = np.linalg.inv(patterns)
+    pushed = np.linalg.solve(masses, np.eye(len(masses))[0])
+    shares = patterns[0] * (measures @ pushed) / rates
+    first = int(abs(rates[0].imag) <= REAL * abs(rates[0]))  # of the modes that follow
+    held = 1.0 / float(np.sum(shares[first:]).real)
+    return Modes(
+        slopes=slopes,
+        masses=masses,
+        rates=rates,
+        shares=shares,
+        relaxed=1.0 / float(np.sum(shares).real),
+        held=held,
+        locked=float(-slopes[0, 0]),
+        mass=held / float(np.abs(rates[first])),
+        right=patterns[:, 0].real if first else None,
+        left=measures[0].real if first else None,
+    )
+
+
 def groove(ball: HeldBall) -> tuple[NewtonSecondPerMetre, NewtonPerMetre]:
     """Damping and stiffness of the ball centre along its grooves, where both contacts give least."""
     _, slopes = balanced(ball, ball.state)
     stiffness, directions = np.linalg.eigh(-0.5 * (slopes[:2, :2] + slopes[:2, :2].T))
-    lateral, along = np.empty(2), np.empty((2, 2))
-    groove_slopes(ball.problem, ball.rings, ball.state, ball.slips, ball.cells, ball.nodes, lateral, along)
+    lateral, along = groove_slopes(ball.problem, ball.rings, ball.state, ball.slips, ball.nodes)
     return float(lateral @ (along @ directions[:, 0]) ** 2), float(stiffness[0])
 
 
@@ -283,8 +318,7 @@ def fitted_law(speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass:
     knee = float(target.max()) / slope
 
     def law(log_speed: float) -> BallTraction:
-        own = math.exp(log_speed)
-        return BallTraction(mass=mass, slope=float(slope), speed=own)
+        return BallTraction(mass=mass, slope=float(slope), speed=math.exp(log_speed))
 
     def error(log_speed: float) -> float:
         return float(np.abs(law(log_speed).force(speed) - target).max())
@@ -296,11 +330,24 @@ def fitted_law(speed: Array, force: Array, *, slope: NewtonSecondPerMetre, mass:
 FIRST, LAST, MOST, POINTS = 0.02, 6.0, 0.25, 25
 """Speeds of a curve: first and last over capacity/C_f, the most over the rolling speed, and how many."""
 
-CLOSED = 1e-8
-"""Unbalance over the capacity of a point of the curve."""
-
 DEEPEST = 8
 """Halvings of the way from one point to the next."""
+
+ACTS = [0, 1, 3, 4, 5]
+"""Rows of a balance that a pushed ball keeps: all but the force along the orbit."""
+
+
+def push_curve(ball: HeldBall, found: Modes, rolling_speed: MetrePerSecond) -> tuple[Array, Array, Array]:
+    """Speeds, forces forward and backward; the curve ends where a push finds no balance beyond the knee."""
+    knee = ball.capacity / found.held
+    last = min(LAST * knee, MOST * abs(rolling_speed))
+    speed = np.geomspace(min(FIRST * knee, 0.5 * last), last, POINTS)
+    forward, backward = pushed(ball, found, speed), -pushed(ball, found, -speed)
+    count = min(forward.size, backward.size)
+    if count == 0 or speed[count - 1] < min(knee, 0.5 * last):
+        message = f"Mobility: a push at {speed[count]:.3g} m/s finds no balance of friction."
+        raise ConvergenceError(message, count, speed[count])
+    return speed[:count], forward[:count], backward[:count]
 
 
 def pushed(ball: HeldBall, found: Modes, speeds: Array) -> Array:
@@ -309,102 +356,58 @@ def pushed(ball: HeldBall, found: Modes, speeds: Array) -> Array:
     The slowest mode stays; without its pattern the spin relaxes for good.
     """
     unknown, at, forces = np.zeros(6), 0.0, []
-    for speed in speeds:
-        try:
-            force, unknown = _follow(ball, found, unknown, at, float(speed))
-        except ConvergenceError:
+    for speed in map(float, speeds):
+        there = _follow(ball, found, unknown, at, speed)
+        if there is None:
             break
-        forces.append(force)
-        at = float(speed)
+        unknown, at = there, speed
+        forces.append(_pushed(ball, found, unknown, speed)[0])
     return np.array(forces)
 
 
-def _follow(ball: HeldBall, found: Modes, start: Array, at: float, speed: float) -> tuple[float, Array]:
-    """Force at a speed from the solution at the last one, in as many steps as Newton's method needs."""
-    unknown, step, depth = start, speed - at, 0
-    while True:
-        trial = speed if abs(speed - at) <= abs(step) * (1.0 + 1e-12) else at + step
-        force, there, rest = _pushed_balance(ball, found, unknown, trial)
-        if rest <= CLOSED:
-            unknown, at = there, trial
-            if at == speed:
-                return force, unknown
-        elif depth < DEEPEST:
-            step, depth = 0.5 * step, depth + 1
-        else:
-            message = f"Mobility: a push at {trial:.3g} m/s finds no balance of friction."
-            raise ConvergenceError(message, DEEPEST, rest)
+def _follow(
+    ball: HeldBall, found: Modes, start: Array, at: float, speed: float, depth: int = 0
+) -> Array | None:
+    """Balance at a speed from that at another, by halves of a way that is too far; None if none is found."""
+    scales = np.append(ball.scales[ACTS], 1.0)
+    there, rest = newton(lambda x: _pushed(ball, found, x, speed)[1:], start, scales, 0.01 * CLOSED)
+    if rest <= CLOSED or depth == DEEPEST:
+        return there if rest <= CLOSED else None
+    middle = 0.5 * (at + speed)
+    halfway = _follow(ball, found, start, at, middle, depth + 1)
+    return None if halfway is None else _follow(ball, found, halfway, middle, speed, depth + 1)
 
 
-def _pushed_balance(ball: HeldBall, found: Modes, unknown: Array, speed: float) -> tuple[float, Array, float]:
-    """Newton on (V - V_0, spin - spin_0, drift of the held mode), all scaled; force and unbalance, too."""
-    force, best, rest = 0.0, unknown, np.inf
-    for _ in range(25):
-        force, rows, matrix = _equations(ball, found, unknown, speed)
-        rest, best = float(np.abs(rows).max()), unknown
-        if not np.isfinite(rest) or rest <= 0.01 * CLOSED:
-            break
-        try:
-            unknown = unknown - np.linalg.solve(matrix, rows)
-        except np.linalg.LinAlgError:
-            return force, best, np.inf
-    return force, best, rest
-
-
-def _equations(ball: HeldBall, found: Modes, unknown: Array, speed: float) -> tuple[float, Array, Array]:
+def _pushed(ball: HeldBall, found: Modes, unknown: Array, speed: float) -> tuple[float, Array, Array]:
     """Force of a push, what is not yet 0, shape (6,), and its slopes with the unknowns, (6, 6).
 
-    Balance in the plane of the contacts, couples less the drift, and the held mode's coordinate.
+    The unknowns are V - V_0, spin - spin_0 and the drift of the held mode, all scaled; the rows the balance
+    in the plane of the contacts, the couples less the drift, and the held mode's coordinate.
     """
-    arm, acts = 0.5 * ball.problem.ball_diameter, [0, 1, 3, 4, 5]
-    scales = ball.capacity * np.array((1.0, 1.0, arm, arm, arm))
     units = np.array((1e-6 * ball.problem.ball_diameter,) * 2 + (abs(ball.units[1]),) * 3)
     moved = unknown[:5] * units
-    state = ball.state.copy()
-    state[:2] += moved[:2]
-    state[2] += speed / ball.units[0]
-    state[3:] += moved[2:] / ball.units[1:]
+    state = ball.state + np.array((*moved[:2], speed / ball.units[0], *(moved[2:] / ball.units[1:])))
     balance, slopes = balanced(ball, state)
-    drift, row = np.zeros(4), np.zeros(4)
-    if found.right is not None and found.left is not None:
-        drift = _over_spin(found.masses @ found.right) * ball.capacity * arm
-        row = _over_spin(found.left)
-    balance[2:] -= unknown[5] * drift
-    matrix = np.zeros((6, 6))
-    matrix[:5, :2] = slopes[acts, :2]
-    matrix[:5, 2:5] = slopes[acts, 3:] / ball.units[1:]
-    matrix[:5, :5] *= units / scales[:, None]
-    matrix[2:5, 5] = -drift[1:] / scales[2:]
-    matrix[5, 2:5], matrix[5, 5] = row[1:], float(found.right is None)
-    coordinate = (row[0] * speed + row[1:] @ moved[2:]) / units[2]
-    last = unknown[5] if found.right is None else coordinate
-    return -float(balance[2]), np.append(balance[acts] / scales, last), matrix
-
-
-def _over_spin(values: Array) -> Array:
-    """A pattern over its largest part of spin."""
-    return np.asarray(values / float(np.abs(values[1:]).max()))
+    matrix, last = np.zeros((6, 6)), unknown[5]
+    matrix[:5, :2], matrix[:5, 2:5] = slopes[ACTS, :2], slopes[ACTS, 3:] / ball.units[1:]
+    matrix[:5, :5] *= units
+    if found.right is None or found.left is None:
+        matrix[5, 5] = 1.0
+    else:
+        drift, row = found.masses @ found.right, found.left / np.abs(found.left[1:]).max()
+        drift *= ball.scales[-1] / np.abs(drift[1:]).max()
+        balance[2:] -= unknown[5] * drift
+        matrix[2:5, 5], matrix[5, 2:5] = -drift[1:], row[1:]
+        last = (row[0] * speed + row[1:] @ moved[2:]) / units[2]
+    return -float(balance[2]), np.append(balance[ACTS], last), matrix
 
 
 REMEMBERED = 256
 """Balls that are kept, by the records they are made of."""
 
-RIGID = 1e-4
-"""Slip speed of rigid contacts over the speed difference of the rings times d_m/4."""
-
-CELLS = {SlipLaw.ELASTIC: 48, SlipLaw.RIGID: 96}
-"""Strips across an ellipse; half as many places along rolling. Those of 4 times as many are within 1e-3."""
-
 
 @lru_cache(maxsize=REMEMBERED)
-def held_ball(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-    slip_law: SlipLaw,
-) -> HeldBall:
+def held_ball(asked: Rolling, slip_law: SlipLaw) -> HeldBall:
     """Most loaded ball at rest in its two slip fields, remembered by the value of these records.
 
     It orbits in the positive sense: a bearing that turns the other way is mirrored.
@@ -416,11 +419,11 @@ def held_ball(
     ConvergenceError
         The friction of both races does not balance.
     """
-    state = bearing_state(bearing, operation, kinematics, film.race_friction)
+    (bearing, operation, _, film, _), state = asked, asked.state
     ball = state.inner.ball
     if state.equilibrium.orbital_speed[ball] < 0.0:
         turned = replace(operation, inner_speed=-operation.inner_speed, outer_speed=-operation.outer_speed)
-        return held_ball(bearing, turned, kinematics, film, settings, slip_law)
+        return held_ball(asked._replace(operation=turned), slip_law)
     if not (state.inner.load > 0.0 and state.outer.load > 0.0):
         cure = "Raise the axial load or lower the speed."
         raise InputError("[operation] loads and speed", "must press a ball on both races", "", cure)
@@ -431,90 +434,79 @@ def held_ball(
         for f, at in ((p.inner_conformity, state.inner), (p.outer_conformity, state.outer))
     )
     orbit = (state.equilibrium.orbital_speed[ball] - p.outer_speed) / p.speed
-    slips, notes = (RIGID * 0.25 * p.pitch_diameter,) * 2, tuple[str, ...]()
+    inner_slip = outer_slip = RIGID * 0.25 * p.pitch_diameter * abs(p.speed)
+    notes: tuple[str, ...] = ()
     if slip_law is SlipLaw.ELASTIC:
-        inner_slip, outer_slip, notes = elastic_slip_speeds(bearing, film, settings, state)
-        slips = inner_slip / abs(p.speed), outer_slip / abs(p.speed)
-    cells = CELLS[slip_law]
+        inner_slip, outer_slip, notes = elastic_slip_speeds(asked)
     return settle(
         HeldBall(
             problem=p,
             rings=outer + inner,
             state=np.array((*outer, orbit, *(state.equilibrium.ball_spin[ball] / p.speed))),
-            slips=slips,
-            cells=cells,
-            nodes=chebyshev_nodes(cells // 2),
+            slips=(inner_slip / abs(p.speed), outer_slip / abs(p.speed)),
+            nodes=chebyshev_nodes(CELLS[slip_law] // 2),
             capacity=film.race_friction * (state.inner.load + state.outer.load),
             notes=notes,
         )
     )
 
 
-def elastic_slip_speeds(
-    bearing: BallBearing, film: Film, settings: TractionSettings, state: BearingState
-) -> tuple[MetrePerSecond, MetrePerSecond, tuple[str, ...]]:
+def elastic_slip_speeds(asked: Rolling) -> tuple[MetrePerSecond, MetrePerSecond, tuple[str, ...]]:
     r"""Slip at which the elastic creep of the inner and of the outer race would transmit all friction [m/s].
 
     :math:`v_e = f_{BT} V/\alpha_0` with the slope :math:`\alpha_0` of contact and film without spin and
     Heathcote's slip, by the traction model of the settings; with the notes of that.
     """
-    tracks = [replace(one, creep=Creep(spin=0.0, curvature=0.0)) for one in race_tracks(bearing, film, state)]
-    found = of_both_races(lambda track: race_slope(track, settings), (tracks[0], tracks[1]))
-    speeds = state.inner.rolling_speed, state.outer.rolling_speed
-    inner, outer = (film.race_friction * abs(v) / one.slope for v, one in zip(speeds, found, strict=True))
-    return inner, outer, (*found[0].notes, *found[1].notes)
+    state, friction, none = asked.state, asked.film.race_friction, Creep(spin=0.0, curvature=0.0)
+    one, two = of_both_races(
+        lambda track: contact_traction(replace(track, creep=none), asked.settings, SLOPE_ALONE), asked.tracks
+    )
+    inner, outer = (
+        friction * abs(at.rolling_speed) / found.slope
+        for at, found in ((state.inner, one), (state.outer, two))
+    )
+    return inner, outer, (*one.notes, *two.notes)
 
 
 def free_ball(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-    fastest_rate: PerSecond,
+    asked: Rolling, fastest_rate: PerSecond
 ) -> tuple[FreeBall, tuple[RadianPerSecond, RadianPerSecond, RadianPerSecond]]:
     """The most loaded ball with its slip fields at free rolling, and its spin; it orbits positively."""
-    held = held_ball(bearing, operation, kinematics, film, settings, SlipLaw.ELASTIC)
-    state, p = bearing_state(bearing, operation, kinematics, film.race_friction), held.problem
-    spin, outer_speed = held.state[3:] * p.speed, p.outer_speed
-    orbit = held.state[2] * p.speed + outer_speed
-    fields = []
-    inner_ring, to_inner = p.speed + outer_speed, held.rings - held.state[:2]
-    for side, race, contact, f, ring, slip in (
-        (-1.0, to_inner, state.inner, p.inner_conformity, inner_ring, held.slips[0]),
-        (1.0, held.state[:2], state.outer, p.outer_conformity, outer_speed, held.slips[1]),
-    ):
-        normal, a = side * race / np.hypot(*race), contact.ellipse.semi_major
+    held, state, friction = held_ball(asked, SlipLaw.ELASTIC), asked.state, asked.film.race_friction
+    p, place = held.problem, held.state[:2]
+    spin, orbit = held.state[3:] * p.speed, held.state[2] * p.speed + p.outer_speed
+
+    def field(side: float, to_centre: Array, contact: RaceContact, ring: float) -> SlipField:
+        normal, a = side * to_centre / np.hypot(*to_centre), contact.ellipse.semi_major
+        f, elastic = (
+            (p.inner_conformity, held.slips[0]) if side < 0.0 else (p.outer_conformity, held.slips[1])
+        )
         pivoting = (spin[0] - ring + orbit) * normal[0] + spin[1] * normal[1]
         rolling = (spin[0] - ring + orbit) * normal[1] - spin[1] * normal[0]
-        fields.append(
-            SlipField(
-                normal_axial=float(normal[0]),
-                normal_radial=float(normal[1]),
-                limit=film.race_friction * contact.load,
-                semi_major=a,
-                axis_ratio=contact.ellipse.semi_minor / a,
-                slip=float(0.5 * rolling * p.ball_diameter - (ring - orbit) * held.orbit_radius),
-                pivoting=float(a * pivoting),
-                heathcote=float(rolling * a * a * (2.0 * f + 1.0) / (4.0 * f * p.ball_diameter)),
-                elastic_slip=float(slip * abs(p.speed)),
-            )
+        return SlipField(
+            normal_axial=float(normal[0]),
+            normal_radial=float(normal[1]),
+            limit=friction * contact.load,
+            semi_major=a,
+            axis_ratio=contact.ellipse.semi_minor / a,
+            slip=float(0.5 * (rolling * p.ball_diameter - (ring - orbit) * p.pitch_diameter)),
+            pivoting=float(a * pivoting),
+            heathcote=float(rolling * a * a * (2.0 * f + 1.0) / (4.0 * f * p.ball_diameter)),
+            elastic_slip=float(elastic * abs(p.speed)),
         )
+
     ball = FreeBall(
-        mass=p.ball_mass, inertia=p.ball_inertia, inner=fields[0], outer=fields[1], fastest_rate=fastest_rate
+        mass=p.ball_mass,
+        inertia=p.ball_inertia,
+        inner=field(-1.0, held.rings - place, state.inner, p.speed + p.outer_speed),
+        outer=field(1.0, place, state.outer, p.outer_speed),
+        fastest_rate=fastest_rate,
     )
     return ball, (float(spin[0]), float(spin[1]), float(spin[2]))
 
 
 @lru_cache(maxsize=REMEMBERED)
-def mobility(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-    slip_law: SlipLaw = SlipLaw.ELASTIC,
-) -> Mobility:
+def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
     """Mobility of the most loaded ball along its orbit, remembered by the value of these records.
 
     Raises
@@ -528,14 +520,13 @@ def mobility(
     -----
     docs/theory/mobility.md. Whole slip fields of both contacts, quasi-steady; contact planes slaved.
     """
-    ball = held_ball(bearing, operation, kinematics, film, settings, slip_law)
+    ball = held_ball(asked, slip_law)
     found = modes(friction_slopes(ball), ball.masses)
-    state = bearing_state(bearing, operation, kinematics, film.race_friction)
-    speed, forward, backward = _push_curve(ball, found, state.inner.rolling_speed)
+    speed, forward, backward = push_curve(ball, found, asked.state.inner.rolling_speed)
     mean = 0.5 * (forward + backward)
     law = fitted_law(speed, mean, slope=found.held, mass=found.mass)
     return Mobility(
-        ball=state.inner.ball,
+        ball=asked.state.inner.ball,
         linear=_linear(ball, found, slip_law),
         capacity=ball.capacity,
         traction=law,
@@ -558,7 +549,7 @@ def linear_mobility(
     slip_law: SlipLaw,
 ) -> LinearMobility:
     """Small motion of the most loaded ball alone."""
-    ball = held_ball(bearing, operation, kinematics, film, settings, slip_law)
+    ball = held_ball(Rolling(bearing, operation, kinematics, film, settings), slip_law)
     return _linear(ball, modes(friction_slopes(ball), ball.masses), slip_law)
 
 
@@ -581,16 +572,3 @@ def _linear(ball: HeldBall, found: Modes, slip_law: SlipLaw) -> LinearMobility:
         groove_damping=damping,
         groove_stiffness=stiffness,
     )
-
-
-def _push_curve(ball: HeldBall, found: Modes, rolling_speed: MetrePerSecond) -> tuple[Array, Array, Array]:
-    """Speeds, forces forward and backward; the curve ends where a push finds no balance beyond the knee."""
-    knee = ball.capacity / found.held
-    last = min(LAST * knee, MOST * abs(rolling_speed))
-    speed = np.geomspace(min(FIRST * knee, 0.5 * last), last, POINTS)
-    forward, backward = pushed(ball, found, speed), -pushed(ball, found, -speed)
-    count = min(forward.size, backward.size)
-    if speed[count - 1] < min(knee, 0.5 * last):
-        message = f"Mobility: a push at {speed[count]:.3g} m/s finds no balance of friction."
-        raise ConvergenceError(message, count, speed[count])
-    return speed[:count], forward[:count], backward[:count]

@@ -1,4 +1,4 @@
-"""What the races do to a pushed ball: of one state, a mass and a law of traction; free, two slip fields."""
+"""What the cage takes of a pushed ball: of one state, a mass and a law of traction; free, two slip fields."""
 
 from __future__ import annotations
 
@@ -28,23 +28,11 @@ class BallTraction:
 
     u is the speed beyond its free orbit. The slip fields of bearings have the knee of this power within 1 to
     2 % of the capacity (docs/theory/mobility.md).
-
-    Parameters
-    ----------
-    mass : float
-        Effective mass m_e: of the ball with the spin that follows it at once [kg].
-    slope, speed : float
-        C [N s/m], and v, above which the races slide [m/s]; infinite for a damper.
-
-    Raises
-    ------
-    InputError
-        A number is not above zero.
     """
 
-    mass: Kilogram = key(positive(1e-12, 1e3))  # of the ball
-    slope: NewtonSecondPerMetre = key(positive(1e-12, 1e12))
-    speed: MetrePerSecond
+    mass: Kilogram = key(positive(1e-12, 1e3))  # m_e, of the ball with the spin that follows it at once
+    slope: NewtonSecondPerMetre = key(positive(1e-12, 1e12))  # C
+    speed: MetrePerSecond  # v, above which the races slide; infinite for a damper
 
     @property
     def capacity(self) -> Newton:
@@ -70,32 +58,17 @@ def _knee_above_rest(speed: MetrePerSecond) -> Faults:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlipField:
-    """One race at a free ball in steady rolling, seen from the ball.
+    """One race at a free ball in steady rolling, seen from the ball."""
 
-    Attributes
-    ----------
-    normal_axial, normal_radial : float
-        Direction from the ball's centre to the contact: along the axis and outward [-].
-    limit : float
-        Friction times load [N].
-    semi_major, axis_ratio : float
-        Half the ellipse across the groove [m], and its other half over it [-].
-    slip, pivoting, heathcote : float
-        Slip of the middle along the orbit; half the ellipse times the pivoting speed; slip of the ellipse's
-        ends against its middle from the curvature of the pressed surface [m/s].
-    elastic_slip : float
-        Slip that elastic creep makes of full friction [m/s].
-    """
-
-    normal_axial: Ratio
-    normal_radial: Ratio
-    limit: Newton
-    semi_major: Metre
-    axis_ratio: Ratio
-    slip: MetrePerSecond
-    pivoting: MetrePerSecond
-    heathcote: MetrePerSecond
-    elastic_slip: MetrePerSecond
+    normal_axial: Ratio  # direction from the ball's centre to the contact, along the axis
+    normal_radial: Ratio  # and outward
+    limit: Newton  # friction times load
+    semi_major: Metre  # half the ellipse across the groove
+    axis_ratio: Ratio  # its other half over it
+    slip: MetrePerSecond  # of the middle along the orbit
+    pivoting: MetrePerSecond  # half the ellipse times the pivoting speed
+    heathcote: MetrePerSecond  # slip of the ellipse's ends against its middle, as the pressed surface curves
+    elastic_slip: MetrePerSecond  # slip that elastic creep makes of full friction
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

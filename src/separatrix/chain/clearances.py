@@ -6,7 +6,7 @@ Every part is isotropic, free of stress before it turns, and at one temperature 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from separatrix.ground.errors import InputError, together
@@ -15,7 +15,6 @@ from separatrix.ground.units import (
     Kilogram,
     KilogramPerMetre3,
     Metre,
-    Pascal,
     PerKelvin,
     RadianPerSecond,
     Ratio,
@@ -38,46 +37,24 @@ AS_RUNNING = 'Or state the running clearances: clearances = "as running".'
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Clearances:
-    """Clearances of the cage as it runs, and the growth of the parts behind them.
+    """Clearances of the cage as it runs, and the growth of the parts behind them."""
 
-    Attributes
-    ----------
-    temperature, cage_speed : float
-        Of all parts [K], and the mean orbital speed of the balls [rad/s].
-    pocket_at_rest, pocket : float
-        Clearance along the circumference, stop to stop, at 293 K at rest and as it runs [m].
-    pocket_axial_at_rest, pocket_axial : float or None
-        The same along the axis, of an elongated pocket [m].
-    land_at_rest, land : float or None
-        Diametral clearance of the land, None without one [m].
-    ball_strain, ring_strain, cage_strain : float
-        Thermal strain from 293 K; None for a ring without the land of the cage [-].
-    hoop_strain : float
-        Of the cage's pitch circle by its rotation [-].
-    pitch_radius_growth : float
-        Of the cage, by both [m].
-    cage_land_growth, ring_land_growth : float or None
-        Of the radius of the cage's land and of the ring's, by their rotation [m].
-    guesses : tuple of str
-        Numbers behind the clearances that no source states.
-    """
-
-    temperature: Kelvin
-    cage_speed: RadianPerSecond
-    pocket_at_rest: Metre
-    pocket: Metre
-    pocket_axial_at_rest: Metre | None
+    temperature: Kelvin  # of all parts
+    cage_speed: RadianPerSecond  # mean orbital speed of the balls
+    pocket_at_rest: Metre  # clearance along the circumference, stop to stop, at 293 K at rest
+    pocket: Metre  # the same as it runs
+    pocket_axial_at_rest: Metre | None  # clearance along the axis, of an elongated pocket
     pocket_axial: Metre | None
-    land_at_rest: Metre | None
+    land_at_rest: Metre | None  # diametral clearance of the land, None without one
     land: Metre | None
-    ball_strain: Ratio
-    ring_strain: Ratio | None
+    ball_strain: Ratio  # thermal strain from 293 K
+    ring_strain: Ratio | None  # of the ring with the land of the cage
     cage_strain: Ratio
-    hoop_strain: Ratio
-    pitch_radius_growth: Metre
-    cage_land_growth: Metre | None
-    ring_land_growth: Metre | None
-    guesses: tuple[str, ...]
+    hoop_strain: Ratio  # of the cage's pitch circle by its rotation
+    pitch_radius_growth: Metre  # of the cage, by both
+    cage_land_growth: Metre | None  # of the radius of the cage's land, by its rotation
+    ring_land_growth: Metre | None  # of the radius of the ring's, by its rotation
+    guesses: tuple[str, ...]  # numbers behind the clearances that no source states
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -111,32 +88,29 @@ def mean_expansion(material: Material, temperature: Kelvin) -> tuple[PerKelvin, 
     return nearest.mean, f"that at {end:g} K" if abs(end - temperature) > NEAR else why
 
 
-def ring_growth(
-    radius: Metre,
-    *,
-    inner: Metre,
-    outer: Metre,
-    density: KilogramPerMetre3,
-    elastic_modulus: Pascal,
-    poisson_ratio: Ratio,
-    speed: RadianPerSecond,
-) -> Metre:
-    r"""Radial displacement in a ring that turns freely, in plane stress (Lame).
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TurningRing:
+    """A ring that turns freely, of a material; alike radii are those of a thin one."""
 
-    .. math::
-        u = \frac{\rho\omega^2 r}{E}\frac{(3+\nu)(1-\nu)}{8}\left[a^2 + b^2
-        + \frac{1+\nu}{1-\nu}\frac{a^2b^2}{r^2} - \frac{1+\nu}{3+\nu}r^2\right]
+    inner: Metre  # radii
+    outer: Metre
+    material: Material
+    density: KilogramPerMetre3
+    speed: RadianPerSecond
 
-    Parameters
-    ----------
-    radius : float
-        Where the displacement is wanted, from `inner` to `outer` [m].
-    inner, outer : float
-        Radii of the ring; alike for a thin one, which grows by rho w^2 r^3 / E [m].
-    """
-    a, b, r, nu = inner, outer, radius, poisson_ratio
-    shape = a * a + b * b + (1.0 + nu) / (1.0 - nu) * (a * b / r) ** 2 - (1.0 + nu) / (3.0 + nu) * r * r
-    return density * speed**2 * r / elastic_modulus * (3.0 + nu) * (1.0 - nu) / 8.0 * shape
+    def growth(self, radius: Metre) -> Metre:
+        r"""Radial displacement at a radius from `inner` to `outer`, in plane stress (Lame).
+
+        .. math::
+            u = \frac{\rho\omega^2 r}{E}\frac{(3+\nu)(1-\nu)}{8}\left[a^2 + b^2
+            + \frac{1+\nu}{1-\nu}\frac{a^2b^2}{r^2} - \frac{1+\nu}{3+\nu}r^2\right]
+
+        In a thin ring that is rho w^2 r^3 / E.
+        """
+        a, b, r = self.inner, self.outer, radius
+        nu, E = self.material.poisson_ratio, self.material.elastic_modulus
+        shape = a * a + b * b + (1.0 + nu) / (1.0 - nu) * (a * b / r) ** 2 - (1.0 + nu) / (3.0 + nu) * r * r
+        return self.density * self.speed**2 * r / E * (3.0 + nu) * (1.0 - nu) / 8.0 * shape
 
 
 def running_clearances(
@@ -162,16 +136,17 @@ def running_clearances(
     InputError
         The temperature or the expansion of a part is not known, or a clearance closes.
     """
-    T, guesses = operation.temperature, list[str]()
+    T = operation.temperature
     if T is None:
         cure = f"Give it. {AS_RUNNING}"
         raise InputError("[operation] temperature", AT_ROOM, cure=cure)
     if material is None:
         cure = f"Give it, with its thermal_expansion. {AS_RUNNING}"
         raise InputError("[cage] material", AT_ROOM, cure=cure)
-    ball = _strain(bearing.ball_material, T, "[bearing] ball_material", guesses)
-    cage = _strain(material, T, "[cage] material", guesses)
-    turning = _Turning.of_cage(bearing, design, material, cage_mass, cage_speed, guesses)
+    parts = _Parts(bearing=bearing, operation=operation, design=design, temperature=T)
+    ball = parts.strain(bearing.ball_material, "[bearing] ball_material")
+    cage = parts.strain(material, "[cage] material")
+    turning = parts.cage(material, cage_mass, cage_speed)
     middle, D = bearing.pitch_diameter / 2.0, bearing.ball_diameter
     hoop, nu = turning.growth(middle) / middle, material.poisson_ratio
 
@@ -182,8 +157,8 @@ def running_clearances(
     axial = design.pocket_axial_clearance
     ring, cage_land, ring_land, land = None, None, None, None
     if design.guidance is not Guidance.BALL and design.land_clearance is not None:
-        ring = _strain(bearing.ring_material, T, "[bearing] ring_material", guesses)
-        cage_land, ring_land, land = _land(bearing, operation, design, turning, (cage, ring), guesses)
+        ring = parts.strain(bearing.ring_material, "[bearing] ring_material")
+        cage_land, ring_land, land = parts.land(turning, design.land_clearance, cage, ring)
     found = Clearances(
         temperature=T,
         cage_speed=cage_speed,
@@ -200,7 +175,7 @@ def running_clearances(
         pitch_radius_growth=middle * (cage + hoop),
         cage_land_growth=cage_land,
         ring_land_growth=ring_land,
-        guesses=tuple(guesses),
+        guesses=tuple(parts.guesses),
     )
     if closed := list(_closed(found, material.name)):
         raise together(closed)
@@ -220,107 +195,82 @@ def as_it_runs(design: CageDesign, found: Clearances | None) -> CageDesign:
     )
 
 
-def _strain(material: Material, temperature: Kelvin, where: str, guesses: list[str]) -> Ratio:
-    """Thermal strain from 293 K; at 293 K no expansion is needed."""
-    if temperature == ROOM:
-        return 0.0
-    found = mean_expansion(material, temperature)
-    if found is None:
-        rule = f"needs its thermal expansion from 293 K to {temperature:g} K"
-        cure = f'Add thermal_expansion = "12 um/m/K", the mean. {AS_RUNNING}'
-        raise InputError(where, rule, material.name, cure)
-    alpha, why = found
-    if why:
-        shown = format_quantity(alpha, "m/m/K", 3)
-        guesses.append(f"thermal expansion of {where}, {shown} ({why})")
-    return alpha * (temperature - ROOM)
+@dataclass(frozen=True, kw_only=True)
+class _Parts:
+    """Bearing and cage at a temperature, and the guesses made on the way."""
 
+    bearing: BallBearing
+    operation: Operation
+    design: CageDesign
+    temperature: Kelvin
+    guesses: list[str] = field(default_factory=list)
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Turning:
-    """A ring that turns."""
+    def strain(self, material: Material, where: str) -> Ratio:
+        """Thermal strain from 293 K; at 293 K no expansion is needed."""
+        if self.temperature == ROOM:
+            return 0.0
+        found = mean_expansion(material, self.temperature)
+        if found is None:
+            rule = f"needs its thermal expansion from 293 K to {self.temperature:g} K"
+            cure = f'Add thermal_expansion = "12 um/m/K", the mean. {AS_RUNNING}'
+            raise InputError(where, rule, material.name, cure)
+        alpha, why = found
+        if why:
+            shown = format_quantity(alpha, "m/m/K", 3)
+            self.guesses.append(f"thermal expansion of {where}, {shown} ({why})")
+        return alpha * (self.temperature - ROOM)
 
-    inner: Metre
-    outer: Metre
-    material: Material
-    density: KilogramPerMetre3
-    speed: RadianPerSecond
-
-    @staticmethod
-    def of_cage(
-        bearing: BallBearing,
-        design: CageDesign,
-        material: Material,
-        mass: Kilogram,
-        speed: RadianPerSecond,
-        guesses: list[str],
-    ) -> _Turning:
-        """The cage: of its shape, else a thin ring at the pitch circle."""
-        shape, density = ring_of(design, bearing), material.density
+    def cage(self, material: Material, mass: Kilogram, speed: RadianPerSecond) -> TurningRing:
+        """The cage that turns: of its shape, else a thin ring at the pitch circle."""
+        shape, density = ring_of(self.design, self.bearing), material.density
         if density is None:
             density = DENSITY if shape is None else mass / shape.volume
             if shape is None and speed != 0.0:
-                guesses.append(f"density of the cage, {DENSITY:g} kg/m3")
-        inner, outer = design.inner_diameter, design.outer_diameter
+                self.guesses.append(f"density of the cage, {DENSITY:g} kg/m3")
+        inner, outer = self.design.inner_diameter, self.design.outer_diameter
         if (inner is None or outer is None) and speed != 0.0:
-            guesses.append("section of the cage: a thin ring at the pitch circle")
-        return _Turning(
-            inner=(inner or bearing.pitch_diameter) / 2.0,
-            outer=(outer or bearing.pitch_diameter) / 2.0,
-            material=material,
-            density=density,
-            speed=speed,
-        )
+            self.guesses.append("section of the cage: a thin ring at the pitch circle")
+        inner, outer = ((one or self.bearing.pitch_diameter) / 2.0 for one in (inner, outer))
+        return TurningRing(inner=inner, outer=outer, material=material, density=density, speed=speed)
 
-    def growth(self, radius: Metre) -> Metre:
-        """Radial growth by the rotation."""
-        E, nu = self.material.elastic_modulus, self.material.poisson_ratio
-        size = {"inner": self.inner, "outer": self.outer, "elastic_modulus": E, "poisson_ratio": nu}
-        return ring_growth(radius, density=self.density, speed=self.speed, **size)
+    def land(
+        self, cage: TurningRing, clearance: Metre, on_cage: Ratio, on_ring: Ratio
+    ) -> tuple[Metre, Metre, Metre]:
+        """Growth of the land's radius on the cage and on its ring by rotation, and the running clearance.
 
+        From the clearance at rest and the thermal strains of cage and ring.
+        """
+        design, is_outer = self.design, self.design.guidance is Guidance.OUTER
+        own = design.outer_diameter if is_outer else design.inner_diameter
+        if own is None and design.land_diameter is None:
+            self.guesses.append("diameter of the cage's land: the pitch diameter")
+        d = own or design.land_diameter or self.bearing.pitch_diameter
+        D = d + clearance if is_outer else d - clearance
+        cage_land = cage.growth(d / 2.0 if cage.inner <= d / 2.0 <= cage.outer else cage.outer)
+        ring_land = self.ring_growth(D / 2.0, is_outer=is_outer)
+        growth = D * on_ring + 2.0 * ring_land - d * on_cage - 2.0 * cage_land
+        return cage_land, ring_land, clearance + growth if is_outer else clearance - growth
 
-def _land(
-    bearing: BallBearing,
-    operation: Operation,
-    design: CageDesign,
-    cage: _Turning,
-    strains: tuple[Ratio, Ratio],
-    guesses: list[str],
-) -> tuple[Metre, Metre, Metre]:
-    """Growth of the land's radius on the cage and on its ring by rotation, and the running clearance."""
-    is_outer, c = design.guidance is Guidance.OUTER, design.land_clearance or 0.0
-    own = design.outer_diameter if is_outer else design.inner_diameter
-    if own is None and design.land_diameter is None:
-        guesses.append("diameter of the cage's land: the pitch diameter")
-    d = own or design.land_diameter or bearing.pitch_diameter
-    D = d + c if is_outer else d - c
-    on_cage = cage.growth(d / 2.0 if cage.inner <= d / 2.0 <= cage.outer else cage.outer)
-    on_ring = _ring_growth(bearing, operation, D / 2.0, guesses, is_outer=is_outer)
-    growth = D * strains[1] + 2.0 * on_ring - d * strains[0] - 2.0 * on_cage
-    return on_cage, on_ring, c + growth if is_outer else c - growth
-
-
-def _ring_growth(
-    bearing: BallBearing, operation: Operation, land: Metre, guesses: list[str], *, is_outer: bool
-) -> Metre:
-    """Growth of the land's radius on a ring; a ring between its land and its bore, or outside diameter."""
-    speed = operation.outer_speed if is_outer else operation.inner_speed
-    if speed == 0.0:
-        return 0.0
-    material, bore = bearing.ring_material, bearing.bore
-    if material.density is None:
-        cure = f'Add density = "7650 kg/m3" or the like. {AS_RUNNING}'
-        raise InputError("[bearing] ring_material", "needs a density, for the growth of its land", cure=cure)
-    far = land
-    if bore is None:
-        guesses.append("section of the ring with the land: thin, because the bore is not given")
-    else:
-        far = bearing.pitch_diameter - bore / 2.0 if is_outer else bore / 2.0
-        if is_outer:
-            guesses.append("outside diameter of the bearing: as far from the pitch diameter as the bore")
-    return _Turning(
-        inner=min(far, land), outer=max(far, land), material=material, density=material.density, speed=speed
-    ).growth(land)
+    def ring_growth(self, land: Metre, *, is_outer: bool) -> Metre:
+        """Growth of the land's radius on a ring between its land and its bore, or outside diameter."""
+        speed = self.operation.outer_speed if is_outer else self.operation.inner_speed
+        if speed == 0.0:
+            return 0.0
+        material, bore, far = self.bearing.ring_material, self.bearing.bore, land
+        if material.density is None:
+            cure = f'Add density = "7650 kg/m3" or the like. {AS_RUNNING}'
+            rule = "needs a density, for the growth of its land"
+            raise InputError("[bearing] ring_material", rule, cure=cure)
+        if bore is None:
+            self.guesses.append("section of the ring with the land: thin, because the bore is not given")
+        elif is_outer:
+            far = self.bearing.pitch_diameter - bore / 2.0
+            self.guesses.append("outside diameter of the bearing: as far from the pitch diameter as the bore")
+        else:
+            far = bore / 2.0
+        inner, outer = min(far, land), max(far, land)
+        ring = TurningRing(inner=inner, outer=outer, material=material, density=material.density, speed=speed)
+        return ring.growth(land)
 
 
 def _closed(found: Clearances, cage: str) -> Iterator[InputError]:

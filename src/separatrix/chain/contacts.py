@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -19,17 +19,15 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.equilibrium.balance import LEAST_SHARE
-from separatrix.chain.exact import RaceSlope
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.impact_restitution import contact_damping
-from separatrix.chain.orbit import mean_speed
-from separatrix.chain.race_curve import RaceTrack, race_curve, race_slope
+from separatrix.chain.race_traction import SLOPE_ALONE, RaceTrack, contact_traction
 from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
+    Array,
+    Metre,
     MetrePerSecond,
     Newton,
-    NewtonSecondPerMetre,
     Pascal,
     Radian,
     RadianPerSecond,
@@ -43,7 +41,6 @@ from separatrix.study.study import (
     Operation,
     Race,
     Study,
-    TractionModel,
     TractionSettings,
 )
 
@@ -81,17 +78,7 @@ class BearingState:
     @property
     def cage_speed(self) -> RadianPerSecond:
         """Mean orbital speed of the balls [rad/s]."""
-        return mean_speed(self.equilibrium.orbital_speed)
-
-    def dampings(
-        self, inner_slope: Ratio, outer_slope: Ratio
-    ) -> tuple[NewtonSecondPerMetre, NewtonSecondPerMetre]:
-        """Shares of the inner and the outer race in C_mu, from the slopes of their traction curves."""
-        inner, outer = self.inner, self.outer
-        return (
-            contact_damping(inner_slope, inner.load, inner.rolling_speed),
-            contact_damping(outer_slope, outer.load, outer.rolling_speed),
-        )
+        return float(np.mean(self.equilibrium.orbital_speed))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,6 +94,26 @@ class RaceTraction:
         return (*self.inner.notes, *self.outer.notes)
 
 
+class Rolling(NamedTuple):
+    """What the traction of a bearing depends on; it is remembered by the value of these records."""
+
+    bearing: BallBearing
+    operation: Operation
+    kinematics: KinematicModel
+    film: Film
+    settings: TractionSettings
+
+    @property
+    def state(self) -> BearingState:
+        """Equilibrium and contacts."""
+        return bearing_state(self.bearing, self.operation, self.kinematics, self.film.race_friction)
+
+    @property
+    def tracks(self) -> tuple[RaceTrack, RaceTrack]:
+        """What rolls on what at the inner and at the outer race."""
+        return race_tracks(self.bearing, self.film, self.state)
+
+
 @lru_cache(maxsize=REMEMBERED)
 def bearing_state(
     bearing: BallBearing, operation: Operation, kinematics: KinematicModel, race_friction: Ratio
@@ -114,72 +121,36 @@ def bearing_state(
     """Equilibrium and contacts of a bearing, remembered by the value of these records."""
     found = _unchangeable(equilibrium(bearing, operation, kinematics, race_friction))
     inner, outer = (_race_contact(bearing, found, race) for race in Race)
-    ellipses = {Race.INNER: inner.ellipse, Race.OUTER: outer.ellipse}
     turns = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
-    notes = tuple(beyond_contacts(bearing, found, ellipses, turns=turns))
+    notes = tuple(beyond_contacts(bearing, found, (inner, outer), turns=turns))
     return BearingState(equilibrium=found, inner=inner, outer=outer, notes=notes)
 
 
 def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race) -> RaceContact:
     ball = found.most_loaded
-
-    def of_ball(quantity: str) -> float:
-        return float(getattr(found, f"{quantity}_{race.value}")[ball])
-
-    angle, ratio = of_ball("contact_angle"), of_ball("spin_roll_ratio")
+    angle, load, ratio, speed = (
+        float(getattr(found, f"{name}_{race.value}")[ball])
+        for name in ("contact_angle", "load", "spin_roll_ratio", "rolling_speed")
+    )
     return RaceContact(
         ball=ball,
         contact_angle=angle,
-        load=of_ball("load"),
+        load=load,
         ellipse=contact(found, bearing, race, ball),
         creep=contact_creep(bearing, race, angle, ratio),
         spin_roll_ratio=ratio,
-        rolling_speed=of_ball("rolling_speed"),
+        rolling_speed=speed,
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RaceSlopes:
-    """Slopes of the traction curves at free rolling, with their errors and offsets."""
-
-    inner: TractionCurve | RaceSlope
-    outer: TractionCurve | RaceSlope
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Where the contacts leave the range of their model, a sentence each."""
-        return (*self.inner.notes, *self.outer.notes)
-
-
 @lru_cache(maxsize=REMEMBERED)
-def race_traction(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-) -> RaceTraction:
-    """Traction curves of both races, remembered by the value of these records."""
-    state = bearing_state(bearing, operation, kinematics, film.race_friction)
-    inner, outer = of_both_races(lambda track: race_curve(track, settings), race_tracks(bearing, film, state))
+def race_traction(asked: Rolling, *, whole: bool = True) -> RaceTraction:
+    """Traction of both races: curves, or the slopes alone, for which the exact contact needs no curve."""
+    increments = None if whole else SLOPE_ALONE
+    inner, outer = of_both_races(
+        lambda track: contact_traction(track, asked.settings, increments), asked.tracks
+    )
     return RaceTraction(inner=_unchangeable(inner), outer=_unchangeable(outer))
-
-
-@lru_cache(maxsize=REMEMBERED)
-def race_slopes(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-) -> RaceSlopes:
-    """Slopes of both races, remembered by the value of these records; the exact contact needs no curve."""
-    if settings.model is TractionModel.STRIPS:
-        curves = race_traction(bearing, operation, kinematics, film, settings)
-        return RaceSlopes(inner=curves.inner, outer=curves.outer)
-    state = bearing_state(bearing, operation, kinematics, film.race_friction)
-    inner, outer = of_both_races(lambda track: race_slope(track, settings), race_tracks(bearing, film, state))
-    return RaceSlopes(inner=inner, outer=outer)
 
 
 def race_tracks(bearing: BallBearing, film: Film, state: BearingState) -> tuple[RaceTrack, RaceTrack]:
@@ -209,6 +180,56 @@ def _unchangeable(solved: Solved) -> Solved:
     return solved
 
 
+HIGHEST = 4
+ENOUGH: Ratio = 0.9999
+"""Share of the variance of those waves at which the others are left out: speeds to 1 % of their spread."""
+
+ALIKE = 1e-9
+"""Orbital speeds that differ by less than this share of their mean do not differ: an axial load."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OrbitalWaves:
+    """Speed of a ball at azimuth p beyond the mean: the sum of A_h cos h p + B_h sin h p, h = 1, 2, ...
+
+    Under a radial load or a moment the balls differ in contact angle, and so in orbital speed. Each ball
+    passes every azimuth, so it leads and lags the ball set periodically.
+    """
+
+    cosines: tuple[MetrePerSecond, ...] = ()  # A_h; none where all balls run alike
+    sines: tuple[MetrePerSecond, ...] = ()  # B_h
+    share: Ratio | None = None  # of the variance between the balls that these harmonics hold, if there is any
+
+
+def orbital_waves(orbital_speed: Array, azimuth: Array, pitch_radius: Metre) -> OrbitalWaves:
+    """Discrete Fourier transform of the balls' speeds about their mean.
+
+    Parameters
+    ----------
+    orbital_speed, azimuth : ndarray
+        Of each ball, at even azimuths, shape (ball,) [rad/s] and [rad].
+    pitch_radius : float
+        R, which makes speeds along the circumference of them [m].
+
+    Notes
+    -----
+    Harmonics up to 4, and below half the balls: what Z balls tell; of these the first ones that hold
+    `ENOUGH` of their variance. `share` says how much of the whole is kept.
+    """
+    mean = float(np.mean(orbital_speed))
+    beyond = pitch_radius * (orbital_speed - mean)
+    if np.max(np.abs(beyond)) <= ALIKE * abs(mean) * pitch_radius:
+        return OrbitalWaves()
+    angles = np.outer(np.arange(1, min(HIGHEST, (azimuth.size - 1) // 2) + 1), azimuth)
+    cosines, sines = (2.0 / azimuth.size * (wave(angles) @ beyond) for wave in (np.cos, np.sin))
+    power = np.cumsum(cosines**2 + sines**2)
+    kept = 1 + int(np.searchsorted(power, ENOUGH * power[-1]))
+    share = min(1.0, 0.5 * float(power[kept - 1]) / float(np.mean(beyond**2)))
+    return OrbitalWaves(
+        cosines=tuple(cosines[:kept].tolist()), sines=tuple(sines[:kept].tolist()), share=share
+    )
+
+
 def require_rolling(study: Study) -> None:
     """Refuse a bearing that does not roll: traction and restitution have no meaning there."""
     if study.operation.inner_speed == study.operation.outer_speed:
@@ -231,59 +252,36 @@ SHOULDER: Ratio = 0.2
 
 
 def beyond_contacts(
-    bearing: BallBearing, found: Equilibrium, ellipses: dict[Race, ContactEllipse], *, turns: bool
+    bearing: BallBearing, found: Equilibrium, contacts: tuple[RaceContact, RaceContact], *, turns: bool
 ) -> Iterator[str]:
-    """Sentences, from the equilibrium and the ellipses of the most loaded ball."""
-    race, most = max(((r, e.max_pressure) for r, e in ellipses.items()), key=lambda pair: pair[1])
+    """Sentences, from the equilibrium and the contacts of the most loaded ball."""
+    races = list(zip(Race, contacts, (bearing.inner_conformity, bearing.outer_conformity), strict=True))
+    race, most = max(((race, at.ellipse.max_pressure) for race, at, _ in races), key=lambda pair: pair[1])
     if most > STATIC_PRESSURE:
         yield (
             f"The contact pressure of {format_quantity(most, 'Pa', 3)} at the {race.value} race exceeds "
             f"{format_quantity(STATIC_PRESSURE, 'Pa', 2)}, the static limit of ISO 76: the races take "
             "permanent dents."
         )
-    yield from _over_the_shoulder(bearing, found, ellipses)
-    if turns:
-        yield from _skidding(found)
-
-
-def shoulder_angle(bearing: BallBearing, race: Race) -> Radian:
-    """Angle from the bottom of a groove to its shoulder of assumed height."""
-    inner = race is Race.INNER
-    conformity = bearing.inner_conformity if inner else bearing.outer_conformity
-    return math.acos(1.0 - SHOULDER / conformity)
-
-
-def _over_the_shoulder(
-    bearing: BallBearing, found: Equilibrium, ellipses: dict[Race, ContactEllipse]
-) -> Iterator[str]:
-    """The far end of the most loaded ball's ellipse, as an angle on the ball, against the shoulder."""
-    ends = {}
-    for race, ellipse in ellipses.items():
-        angle = abs(float(getattr(found, f"contact_angle_{race.value}")[found.most_loaded]))
-        ends[race] = angle + math.asin(min(2.0 * ellipse.semi_major / bearing.ball_diameter, 1.0))
-    race = max(ends, key=lambda r: ends[r] - shoulder_angle(bearing, r))
-    limit = shoulder_angle(bearing, race)
-    if ends[race] > limit:
+    # the far end of the ellipse, as an angle on the ball, against the shoulder
+    ends = []
+    for race, at, f in races:
+        reach = math.asin(min(2.0 * at.ellipse.semi_major / bearing.ball_diameter, 1.0))
+        ends.append((race, abs(at.contact_angle) + reach, math.acos(1.0 - SHOULDER / f)))
+    race, end, shoulder = max(ends, key=lambda one: one[1] - one[2])
+    if end > shoulder:
         yield (
-            f"The contact at the {race.value} race ends {math.degrees(ends[race]):.0f} deg from the bottom "
-            f"of its groove, beyond a shoulder at {math.degrees(limit):.0f} deg (assumed height: "
-            f"{SHOULDER:g} of the ball diameter): the edge raises the pressure above the computed one."
+            f"The contact at the {race.value} race ends {math.degrees(end):.0f} deg from the bottom of its "
+            f"groove, beyond a shoulder at {math.degrees(shoulder):.0f} deg (assumed height: {SHOULDER:g} of "
+            "the ball diameter): the edge raises the pressure above the computed one."
         )
-
-
-def _skidding(found: Equilibrium) -> Iterator[str]:
-    """Balls that the inner race hardly touches; without race control it turns them as if it did."""
+    # balls that the inner race hardly touches; without race control it turns them as if it did
     hardly = found.load_inner < LEAST_SHARE * found.load_outer
-    if not hardly.any():
-        return
-    share, limit = (
-        100.0 * float(np.min(found.load_inner[hardly] / found.load_outer[hardly])),
-        100 * LEAST_SHARE,
-    )
-    free = found.model is KinematicModel.FREE
-    taken = f"for {limit:g} % of it" if free else "as at the first touch"
-    yield (
-        f"{hardly.sum()} of {hardly.size} balls are almost unloaded: the inner race carries as little as "
-        f"{share:.2g} % of the outer load, below the limit of {limit:g} %. Such balls skid; their speeds are "
-        f"computed {taken}."
-    )
+    if turns and hardly.any():
+        share, limit = 100.0 * np.min(found.load_inner[hardly] / found.load_outer[hardly]), 100 * LEAST_SHARE
+        taken = f"for {limit:g} % of it" if found.model is KinematicModel.FREE else "as at the first touch"
+        yield (
+            f"{hardly.sum()} of {hardly.size} balls are almost unloaded: the inner race carries as little as "
+            f"{share:.2g} % of the outer load, below the limit of {limit:g} %. Such balls skid; their speeds "
+            f"are computed {taken}."
+        )

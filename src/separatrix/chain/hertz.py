@@ -10,7 +10,7 @@ import numpy as np
 
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Array, Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian, Ratio
+from separatrix.ground.units import Array, Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian
 from separatrix.study.study import BallBearing, Material, Race
 
 
@@ -121,36 +121,55 @@ def contact_ellipse(
     return ContactEllipse(**cast("dict[str, float]", columns))
 
 
-def _ellipse(
-    load: Newton, curvature_rolling: PerMetre, curvature_transverse: PerMetre, contact_modulus: Pascal
-) -> ContactEllipse:
+def _ellipse(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal) -> ContactEllipse:
     """One contact."""
-    _check(load, curvature_rolling, curvature_transverse, contact_modulus)
-    k, K, D = ellipse_shape(curvature_rolling / curvature_transverse, 0.0)
-    a = math.cbrt(3.0 * load * D / (math.pi * contact_modulus * curvature_transverse))
-    b = k * a
+    groove = "The groove radius must exceed the ball radius."
+    swap = "Swap the two: the ellipse is long where the gap curves less."
+    for name, value, is_right, rule, cure in (
+        ("load", load, 0.0 <= load < math.inf, "must be finite and >= 0 [N]", ""),
+        ("contact_modulus", modulus, 0.0 < modulus < math.inf, "must be finite and > 0 [Pa]", ""),
+        (
+            "curvature_transverse",
+            transverse,
+            0.0 < transverse < math.inf,
+            "must be finite and > 0 [1/m]",
+            groove,
+        ),
+        (
+            "curvature_rolling",
+            rolling,
+            transverse <= rolling < math.inf,
+            f"must lie from {transverse:g} up [1/m]",
+            swap,
+        ),
+    ):
+        if not is_right:
+            raise InputError(f"contact_ellipse: {name}", rule, f"{value:g}", cure)
+    k, K, D = ellipse_shape(rolling / transverse, 0.0)
+    a = math.cbrt(3.0 * load * D / (math.pi * modulus * transverse))
+    return _made(load, (k * a, a), (rolling, transverse), modulus, K)
+
+
+def _made(
+    load: Newton,
+    half_lengths: tuple[Metre, Metre],
+    curvatures: tuple[PerMetre, PerMetre],
+    modulus: Pascal,
+    K: float,
+) -> ContactEllipse:
+    """Contact of half lengths and curvatures along rolling and across, with K of its shape."""
+    b, a = half_lengths
     p0 = 1.5 * load / (math.pi * a * b) if load > 0.0 else 0.0
     return ContactEllipse(
         load=load,
         semi_major=a,
         semi_minor=b,
         max_pressure=p0,
-        approach=p0 * b * K / contact_modulus,
-        curvature_rolling=curvature_rolling,
-        curvature_transverse=curvature_transverse,
-        contact_modulus=contact_modulus,
+        approach=p0 * min(a, b) * K / modulus,
+        curvature_rolling=curvatures[0],
+        curvature_transverse=curvatures[1],
+        contact_modulus=modulus,
     )
-
-
-def axis_ratio(curvature_ratio: Ratio) -> Ratio:
-    """Ratio b/a of the ellipse for R_y/R_x = `curvature_ratio` >= 1 [-]."""
-    return float(ellipse_shape(curvature_ratio, 0.0)[0])
-
-
-def curvature_ratio(axis_ratio: Ratio) -> Ratio:
-    """Ratio R_y/R_x >= 1 for an ellipse of this b/a, in (0, 1] [-]; the inverse of `axis_ratio`."""
-    _, D, N = elliptic_integrals(axis_ratio)
-    return N / (axis_ratio**2 * D)
 
 
 def ellipse_of_axes(load: Newton, rolling: Metre, lateral: Metre, modulus: Pascal) -> ContactEllipse:
@@ -161,20 +180,11 @@ def ellipse_of_axes(load: Newton, rolling: Metre, lateral: Metre, modulus: Pasca
     """
     short, long = min(rolling, lateral), max(rolling, lateral)
     k = short / long
-    K, D, _ = elliptic_integrals(k)
+    K, D, N = elliptic_integrals(k)
     flat = 3.0 * load * D / (math.pi * modulus * long**3)
-    curved = flat * curvature_ratio(k)
-    p0 = 1.5 * load / (math.pi * short * long)
-    return ContactEllipse(
-        load=load,
-        semi_major=lateral,
-        semi_minor=rolling,
-        max_pressure=p0,
-        approach=p0 * short * K / modulus,
-        curvature_rolling=curved if rolling <= lateral else flat,
-        curvature_transverse=flat if rolling <= lateral else curved,
-        contact_modulus=modulus,
-    )
+    curved = flat * (N / (k**2 * D))
+    curvatures = (curved, flat) if rolling <= lateral else (flat, curved)
+    return _made(load, (rolling, lateral), curvatures, modulus, K)
 
 
 def ellipse_of_curvatures(
@@ -185,24 +195,6 @@ def ellipse_of_curvatures(
         return contact_ellipse(load, rolling, transverse, modulus)
     turned = contact_ellipse(load, transverse, rolling, modulus)
     return ellipse_of_axes(load, turned.semi_major, turned.semi_minor, modulus)
-
-
-def _check(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal) -> None:
-    where = "contact_ellipse:"
-    if not 0.0 <= load < math.inf:
-        raise InputError(f"{where} load", "must be finite and >= 0 [N]", f"{load:g}")
-    if not 0.0 < modulus < math.inf:
-        raise InputError(f"{where} contact_modulus", "must be finite and > 0 [Pa]", f"{modulus:g}")
-    if not 0.0 < transverse < math.inf:
-        cure = "The groove radius must exceed the ball radius."
-        raise InputError(
-            f"{where} curvature_transverse", "must be finite and > 0 [1/m]", f"{transverse:g}", cure
-        )
-    if not transverse <= rolling < math.inf:
-        cure = "Swap the two: the ellipse is long where the gap curves less."
-        raise InputError(
-            f"{where} curvature_rolling", f"must lie from {transverse:g} up [1/m]", f"{rolling:g}", cure
-        )
 
 
 @part

@@ -6,26 +6,30 @@ the ball through the damper :math:`C_\mu`, in series with the spring. docs/theor
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, hypot, log, pi, sqrt
+from typing import Annotated
 
 import numpy as np
 
+from separatrix.chain.contacts import RaceContact
+from separatrix.chain.film_compliance import film_compliance
 from separatrix.chain.hertz import contact_modulus
-from separatrix.ground.compiled import kernel
+from separatrix.chain.traction_curve import traction_slope
+from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     Array,
     Kilogram,
     Metre,
     MetrePerSecond,
-    Newton,
     NewtonPerMetre,
     NewtonPerMetre1_5,
     NewtonSecondPerMetre,
     Ratio,
 )
-from separatrix.study.study import Material
+from separatrix.study.study import Film, Material
 
 SOLID_LUBRICATION_LIMIT: Ratio = 0.6
 """The paper, section 5: "a fairly low restitution factor (eta < 0.6). This threshold value is too low to
@@ -70,9 +74,9 @@ class Restitution:
         return 0.5 * sqrt(self.ball_cage_stiffness * self.cage_mass)
 
 
-def contact_damping(slope: Ratio, load: Newton, rolling_speed: MetrePerSecond) -> NewtonSecondPerMetre:
+def contact_damping(slope: Ratio, contact: RaceContact) -> NewtonSecondPerMetre:
     """One race's share of C_mu, alpha N / V (Eq. 18)."""
-    return slope * load / rolling_speed
+    return slope * contact.load / contact.rolling_speed
 
 
 def race_damping(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
@@ -145,7 +149,7 @@ def ball_pocket_stiffness(
     cage_mass : float
         The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
     impact_speed : float
-        Speed of the impact, [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
+        [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
 
     Notes
     -----
@@ -204,60 +208,40 @@ def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
 @kernel
 def _speed_returned(beta: Ratio) -> Ratio:
     """Follow h' = u - beta h^3, u' = -2 h^4 from h = 0, u = 1 until h, the approach's root, is 0 again."""
-    h, u = 0.0, 1.0
-    a, b, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(ORDER + 1)
+    a, b, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(ORDER + 1)  # of h, u and h^2
+    b[0] = 1.0
     while True:
-        _impact_series(h, u, beta, a, b, square)
-        step = exp(-2.0) / max(_growth(a), _growth(b))
-        if _value(a, step) <= 0.0:
-            return -_value(b, _root(a, step))
-        h, u = _value(a, step), _value(b, step)
+        for n in range(ORDER):
+            cube, fourth = 0.0, 0.0
+            square[n] = 0.0
+            for i in range(n + 1):
+                square[n] += a[i] * a[n - i]
+            for i in range(n + 1):
+                cube += square[i] * a[n - i]
+                fourth += square[i] * square[n - i]
+            a[n + 1] = (b[n] - beta * cube) / (n + 1)
+            b[n + 1] = -2.0 * fourth / (n + 1)
+        growth = 0.0  # one over the radius of convergence; every fifth coefficient may be all that is not 0
+        for n in range(ORDER - 5, ORDER + 1):
+            growth = max(growth, abs(a[n]) ** (1.0 / n), abs(b[n]) ** (1.0 / n))
+        step = exp(-2.0) / growth
+        h, slope = _power_series(a, step)
+        if h <= 0.0:
+            for _ in range(20):  # Newton's method from beyond the root
+                step -= h / slope
+                h, slope = _power_series(a, step)
+            return -_power_series(b, step)[0]
+        a[0], b[0] = h, _power_series(b, step)[0]
 
 
-@kernel
-def _impact_series(h: float, u: float, beta: Ratio, a: Array, b: Array, square: Array) -> None:
-    """Taylor coefficients of h, u and h^2, shape (ORDER + 1,)."""
-    a[0], b[0] = h, u
-    for n in range(ORDER):
-        twice, cube, fourth = 0.0, 0.0, 0.0
-        for i in range(n + 1):
-            twice += a[i] * a[n - i]
-        square[n] = twice
-        for i in range(n + 1):
-            cube += square[i] * a[n - i]
-            fourth += square[i] * square[n - i]
-        a[n + 1] = (b[n] - beta * cube) / (n + 1)
-        b[n + 1] = -2.0 * fourth / (n + 1)
-
-
-@kernel
-def _value(coefficients: Array, at: float) -> float:
-    """Value of a power series, by Horner's rule."""
-    total = 0.0
+@part
+def _power_series(coefficients: Array, at: float) -> tuple[float, float]:
+    """Value and slope of a power series, by Horner's rule."""
+    value, slope = 0.0, 0.0
     for n in range(coefficients.size - 1, -1, -1):
-        total = coefficients[n] + at * total
-    return total
-
-
-@kernel
-def _growth(coefficients: Array) -> float:
-    """One over the radius of convergence; every fifth coefficient may be all that is not 0."""
-    largest = 0.0
-    for n in range(ORDER - 5, ORDER + 1):
-        largest = max(largest, abs(coefficients[n]) ** (1.0 / n))
-    return largest
-
-
-@kernel
-def _root(a: Array, beyond: float) -> float:
-    """Root of the series below a place where it is negative, by Newton's method."""
-    place = beyond
-    for _ in range(20):
-        slope = 0.0
-        for n in range(a.size - 1, 0, -1):
-            slope = n * a[n] + place * slope
-        place -= _value(a, place) / slope
-    return place
+        slope = value + at * slope
+        value = coefficients[n] + at * value
+    return value, slope
 
 
 def restitution(
@@ -283,4 +267,71 @@ def restitution(
         race_damping_free_spin=free,
         damping_ratio_free_spin=zeta_free,
         restitution_factor_free_spin=restitution_factor(zeta_free),
+    )
+
+
+FILM_THICKNESSES: tuple[Metre, ...] = (0.0, *(float(h) for h in np.geomspace(1e-9, 1e-5, 41)))
+"""Bare, then 1 nm to 10 um, ten to a decade."""
+
+RACE_FRICTIONS: tuple[Ratio, ...] = (0.02, 0.05, 0.1, 0.2, 0.4)
+"""From burnished MoS2 in vacuum to nearly unlubricated steel."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LubricationCurve:
+    """Restitution factor against film thickness and race friction, bare to thick (the paper's Fig. 8)."""
+
+    film_thickness: Annotated[Array, "m", ("film_thickness",)]  # 0 is bare
+    race_friction: Annotated[Array, "-", ("race_friction",)]  # friction of ball on race of each curve
+    restitution_factor: Annotated[Array, "-", ("race_friction", "film_thickness")]  # with dampings summed
+    restitution_factor_free_spin: Annotated[Array, "-", ("race_friction", "film_thickness")]
+    film_material: str  # whose modulus the film has
+
+
+def lubrication_curve(
+    inner: RaceContact,
+    outer: RaceContact,
+    film_material: Material,
+    *,
+    ball_cage_stiffness: NewtonPerMetre,
+    cage_mass: Kilogram,
+    film_thicknesses: Sequence[Metre] = FILM_THICKNESSES,
+    race_frictions: Sequence[Ratio] = RACE_FRICTIONS,
+) -> LubricationCurve:
+    """Restitution factor for each race friction and film thickness, the kinematics held.
+
+    Parameters
+    ----------
+    inner, outer : RaceContact
+        Contacts of the ball.
+    film_material : Material
+        Gives the film its shear modulus.
+    ball_cage_stiffness, cage_mass : float
+        k_BC [N/m] and M_C [kg].
+    film_thicknesses, race_frictions : sequence of float
+        Total thickness over ball and race, 0 for bare [m]; f_BT, > 0 [-].
+
+    Notes
+    -----
+    The film is in series with the half-planes at every thickness; beyond some 3 % of the semi-minor axis that
+    departs from a bonded layer (docs/theory/traction.md). Without race control the ball's spin depends on the
+    race friction too; here it is that of the contacts given.
+    """
+
+    def under(h: Metre, f: Ratio) -> tuple[Ratio, Ratio]:
+        compliance = film_compliance(Film(race_friction=f, material=film_material, thickness=h)) if h else 0.0
+        shares = []
+        for at in (inner, outer):
+            slope, _ = traction_slope(at.ellipse, at.creep, race_friction=f, film_compliance=compliance)
+            shares.append(contact_damping(slope, at))
+        found = restitution(*shares, ball_cage_stiffness=ball_cage_stiffness, cage_mass=cage_mass)
+        return found.restitution_factor, found.restitution_factor_free_spin
+
+    factors = np.array([[under(h, f) for h in film_thicknesses] for f in race_frictions])
+    return LubricationCurve(
+        film_thickness=np.array(film_thicknesses),
+        race_friction=np.array(race_frictions),
+        restitution_factor=np.ascontiguousarray(factors[..., 0]),
+        restitution_factor_free_spin=np.ascontiguousarray(factors[..., 1]),
+        film_material=film_material.name,
     )

@@ -10,8 +10,8 @@ then interpolated.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,20 +21,18 @@ from separatrix.ground.units import Array
 
 LAM_MIN, LAM_MAX, LAM_COUNT = 1e-3, 300.0, 56
 CREEP_COUNT = 257
+SOFT = math.pi / 4.0  # s (1 + SOFT lam) tends to a constant where the film is soft
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MasterTable:
+class MasterTable(NamedTuple):
     """Traction over its bound, F, on a grid of v = s c/(1 + s c) and log lam, with s = F'(0)/2.
 
-    values : shape (film, creep, 2): F and dF/dv [-]; log_scale : shape (film,), ln[s (1 + gamma lam)]; axis
-    : (lam_min, lam_max, first log, step, gamma) of the film axis, uniform in ln[(lam + lam_min)/(1 +
-    lam/lam_max)].
+    The film axis is uniform in w = ln[(lam + lam_min)/(1 + lam/lam_max)].
     """
 
-    values: Array
-    log_scale: Array
-    axis: tuple[float, float, float, float, float]
+    values: Array  # F and dF/dv, shape (film, creep, 2)
+    log_scale: Array  # ln[s (1 + pi lam/4)], shape (film,)
+    axis: tuple[float, float]  # first w, and its step
 
 
 @kernel
@@ -137,11 +135,18 @@ def _ordered(c: Array, F: Array, S: Array) -> Knots:
 
 def _row(knots: Knots, scale: float) -> Array:
     """One strip's F and dF/dv on the grid of v = s c/(1 + s c), shape (creep, 2) [-]."""
-    c = knots[0]
+    c, F, S = knots
     v = np.linspace(0.0, 1.0, CREEP_COUNT)[:-1]
     creep = v / (1.0 - v) / scale
-    inside, within = creep < c[-1], np.minimum(creep, c[-1])
-    curve, tangent = _hermite(knots, within)
+    inside, at = creep < c[-1], np.minimum(creep, c[-1])
+    # the cubics that have the values and tangents of the knots
+    i = np.clip(np.searchsorted(c, at, side="right") - 1, 0, c.size - 2)
+    step, x = c[i + 1] - c[i], at - c[i]
+    chord = (F[i + 1] - F[i]) / step
+    bend = (S[i] + S[i + 1] - 2.0 * chord) / step
+    square, cube = (chord - S[i]) / step - bend, bend / step
+    curve = F[i] + S[i] * x + square * (x * x) + cube * (x * x * x)
+    tangent = S[i] + square * x * 2.0 + cube * (x * x) * 3.0
     row = np.zeros((CREEP_COUNT, 2))
     row[:-1, 0] = np.where(inside, np.minimum(curve, 1.0), 1.0)
     row[:-1, 1] = np.where(inside, np.maximum(tangent, 0.0), 0.0) / (scale * (1.0 - v) ** 2)
@@ -149,62 +154,33 @@ def _row(knots: Knots, scale: float) -> Array:
     return row
 
 
-def _hermite(knots: Knots, at: Array) -> tuple[Array, Array]:
-    """Value and tangent of the cubics that have the values and tangents of the knots."""
-    c, F, S = knots
-    i = np.clip(np.searchsorted(c, at, side="right") - 1, 0, c.size - 2)
-    step, x = c[i + 1] - c[i], at - c[i]
-    chord = (F[i + 1] - F[i]) / step
-    bend = (S[i] + S[i + 1] - 2.0 * chord) / step
-    square, cube = (chord - S[i]) / step - bend, bend / step
-    return F[i] + S[i] * x + square * (x * x) + cube * (x * x * x), S[i] + square * x * 2.0 + cube * (
-        x * x
-    ) * 3.0
-
-
 @lru_cache(maxsize=4)
 def film_tables(nodes: int) -> tuple[MasterTable, MasterTable]:
-    """Tables of the film in series: extrapolated from `nodes` and 2 `nodes` elements, and the latter."""
-    axis, lams = film_axis()
-    knots = [matched_knots(strip_influence(nodes, lam), strip_influence(2 * nodes, lam)) for lam in lams]
-    scales = [0.5 * best[2][0] for best, _ in knots]
-    log_scale = np.log(np.array(scales) * (1.0 + axis[4] * lams))
-    best, fine = (
-        MasterTable(
-            values=np.array([_row(pair[i], s) for pair, s in zip(knots, scales, strict=True)]),
-            log_scale=log_scale,
-            axis=axis,
-        )
-        for i in (0, 1)
-    )
-    return best, fine
+    """Tables of the film in series: extrapolated from `nodes` and 2 `nodes` elements, and the latter.
 
-
-def film_axis() -> tuple[tuple[float, float, float, float, float], Array]:
-    """Nodes of the film axis from lam = 0 to practically infinite, uniform in the stretched logarithm."""
+    Their films reach from none to a practically infinite one.
+    """
     first, last = math.log(LAM_MIN), math.log(LAM_MAX * (1.0 - 1e-6))
     stretched = np.exp(np.linspace(first, last, LAM_COUNT))
     lams = (stretched - LAM_MIN) / (1.0 - stretched / LAM_MAX)
     lams[0] = 0.0
-    return (LAM_MIN, LAM_MAX, first, (last - first) / (LAM_COUNT - 1), math.pi / 4.0), lams
-
-
-@part
-def film_place(lam: float, axis: tuple[float, float, float, float, float], count: int) -> tuple[int, float]:
-    """First of the four table rows around lam, and the place of lam in row steps from it."""
-    lam_min, lam_max, first, step, _ = axis
-    w = (math.log((lam + lam_min) / (1.0 + lam / lam_max)) - first) / step
-    w = min(max(w, 0.0), count - 1.0)
-    start = min(max(int(w) - 1, 0), count - 4)
-    return start, w - start
+    knots = [matched_knots(strip_influence(nodes, lam), strip_influence(2 * nodes, lam)) for lam in lams]
+    scales = np.array([0.5 * best[2][0] for best, _ in knots])
+    log_scale, axis = np.log(scales * (1.0 + SOFT * lams)), (first, (last - first) / (LAM_COUNT - 1))
+    best, fine = (
+        np.array([_row(pair[i], scale) for pair, scale in zip(knots, scales, strict=True)]) for i in (0, 1)
+    )
+    return MasterTable(best, log_scale, axis), MasterTable(fine, log_scale, axis)
 
 
 @kernel
-def master_traction(
-    c: float, lam: float, values: Array, log_scale: Array, axis: tuple[float, float, float, float, float]
-) -> tuple[float, float]:
+def master_traction(c: float, lam: float, table: MasterTable) -> tuple[float, float]:
     """Traction over its bound, F, and dF/dc of one strip, for c of either sign (cubic in v and log lam)."""
-    start, w = film_place(lam, axis, log_scale.size)
+    values, log_scale, count = table.values, table.log_scale, table.log_scale.size
+    w = (math.log((lam + LAM_MIN) / (1.0 + lam / LAM_MAX)) - table.axis[0]) / table.axis[1]
+    w = min(max(w, 0.0), count - 1.0)
+    start = min(max(int(w) - 1, 0), count - 4)
+    w -= start
     weights = (
         -(w - 1.0) * (w - 2.0) * (w - 3.0) / 6.0,
         w * (w - 2.0) * (w - 3.0) / 2.0,
@@ -214,7 +190,7 @@ def master_traction(
     log_s = 0.0
     for i in range(4):
         log_s += weights[i] * log_scale[start + i]
-    s = math.exp(log_s) / (1.0 + axis[4] * lam)
+    s = math.exp(log_s) / (1.0 + SOFT * lam)
     v = s * abs(c) / (1.0 + s * abs(c))
     cells = values.shape[1] - 1
     cell = min(int(v * cells), cells - 1)
@@ -225,8 +201,7 @@ def master_traction(
             f0, d0 = values[start + i, cell, 0], values[start + i, cell, 1] * h
             f1, d1 = values[start + i, cell + 1, 0], values[start + i, cell + 1, 1] * h
             rise = f1 - f0
-            F += weights[i] * (f0 + u * (d0 + u * (3.0 * rise - 2.0 * d0 - d1 + u * (d0 + d1 - 2.0 * rise))))
-            dF += weights[i] * (
-                d0 + u * (6.0 * rise - 4.0 * d0 - 2.0 * d1 + 3.0 * u * (d0 + d1 - 2.0 * rise))
-            )
+            square, cube = 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise
+            F += weights[i] * (f0 + u * (d0 + u * (square + u * cube)))
+            dF += weights[i] * (d0 + u * (2.0 * square + 3.0 * u * cube))
     return math.copysign(min(F, 1.0), c), dF / h * s * (1.0 - v) ** 2

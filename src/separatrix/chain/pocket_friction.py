@@ -121,12 +121,9 @@ def impact_force(
     :math:`\sqrt{\zeta^2-1}` above 1 (docs/theory/friction.md).
     """
     zeta = damping_ratio
-    if abs(zeta - 1.0) < 1e-6:
-        decay = 1.0
-    elif zeta < 1.0:
-        decay = zeta * acos(zeta) / sqrt(1.0 - zeta**2)
-    else:
-        decay = zeta * acosh(zeta) / sqrt(zeta**2 - 1.0)
+    decay = 1.0
+    if abs(zeta - 1.0) >= 1e-6:
+        decay = zeta * (acos(zeta) if zeta < 1.0 else acosh(zeta)) / sqrt(abs(1.0 - zeta**2))
     return speed * sqrt(stiffness * mass) * exp(-decay)
 
 

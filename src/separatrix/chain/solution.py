@@ -17,16 +17,22 @@ from separatrix.chain.ball_traction import FreeBall
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
-    RaceSlopes,
+    OrbitalWaves,
     RaceTraction,
+    Rolling,
     bearing_state,
-    race_slopes,
+    orbital_waves,
     race_traction,
     require_rolling,
 )
-from separatrix.chain.impact_restitution import Restitution, ball_pocket_stiffness, restitution
-from separatrix.chain.lubrication import LubricationCurve, lubrication_curve
-from separatrix.chain.orbit import OrbitalWaves, orbital_waves
+from separatrix.chain.impact_restitution import (
+    LubricationCurve,
+    Restitution,
+    ball_pocket_stiffness,
+    contact_damping,
+    lubrication_curve,
+    restitution,
+)
 from separatrix.chain.pocket_friction import (
     REFERENCE,
     PocketConditions,
@@ -108,8 +114,8 @@ class Solution:
         return bearing_state(asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction)
 
     @cached_property
-    def traction(self) -> RaceTraction:
-        """Traction curves of both races.
+    def rolling(self) -> Rolling:
+        """What the traction of the races depends on.
 
         Raises
         ------
@@ -119,17 +125,17 @@ class Solution:
         asked = self.study
         require_rolling(asked)
         _ = self.bearing  # its notes
-        return race_traction(
-            asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction
-        )
+        return Rolling(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
 
     @cached_property
-    def slopes(self) -> RaceSlopes:
-        """Slopes of both traction curves at free rolling; refused as `traction` is."""
-        asked = self.study
-        require_rolling(asked)
-        _ = self.bearing  # its notes
-        return race_slopes(asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
+    def traction(self) -> RaceTraction:
+        """Traction curves of both races; refused as `rolling` is."""
+        return race_traction(self.rolling)
+
+    @cached_property
+    def slopes(self) -> RaceTraction:
+        """Slopes of both traction curves at free rolling, without the curves; refused as `rolling` is."""
+        return race_traction(self.rolling, whole=False)
 
     @property
     def stated_design(self) -> CageDesign:
@@ -198,7 +204,8 @@ class Solution:
     def restitution(self) -> Restitution:
         """Restitution factor of the cage's impacts, with the race damping behind it."""
         mass = self.inertia.mass  # refused before anything is computed
-        inner, outer = self.bearing.dampings(self.slopes.inner.slope, self.slopes.outer.slope)
+        inner = contact_damping(self.slopes.inner.slope, self.bearing.inner)
+        outer = contact_damping(self.slopes.outer.slope, self.bearing.outer)
         return restitution(inner, outer, ball_cage_stiffness=self.ball_cage_stiffness, cage_mass=mass)
 
     @cached_property
@@ -214,20 +221,15 @@ class Solution:
 
     @cached_property
     def mobility(self) -> Mobility:
-        """How the races let the most loaded ball be pushed along its orbit; refused as `traction` is."""
-        asked = self.study
-        require_rolling(asked)
-        _ = self.bearing  # its notes
-        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
-        found = mobility(*records)
-        return found if asked.film.wear is None else replace(found, notes=(WORN_MOBILITY, *found.notes))
+        """How the races let the most loaded ball be pushed along its orbit; refused as `rolling` is."""
+        found = mobility(self.rolling)
+        is_whole = self.study.film.wear is None
+        return found if is_whole else replace(found, notes=(WORN_MOBILITY, *found.notes))
 
     @cached_property
     def free_ball(self) -> tuple[FreeBall, tuple[float, float, float]]:
         """The most loaded ball with its slip fields, and its spin, in a bearing that turns forward."""
-        asked, rates = self.study, self.mobility.linear.rates
-        records = (asked.bearing, asked.operation, asked.kinematics.model, asked.film, asked.traction)
-        return free_ball(*records, float(np.abs(rates).max()))
+        return free_ball(self.rolling, float(np.abs(self.mobility.linear.rates).max()))
 
     @cached_property
     def lubrication(self) -> LubricationCurve | None:

@@ -28,11 +28,8 @@ from separatrix.ground.units import Array, Ratio
 @part
 def log_kernel(x: float, half_width: float) -> float:
     """Surface displacement at x of a uniform unit traction on |x| < half_width, without its constant."""
-    displacement = 0.0
-    for edge, sign in ((x + half_width, 1.0), (x - half_width, -1.0)):
-        if edge != 0.0:
-            displacement -= sign * edge * math.log(abs(edge))
-    return 2.0 / math.pi * displacement
+    right, left = x + half_width, x - half_width  # never 0: x lies on centres of elements
+    return 2.0 / math.pi * (left * math.log(abs(left)) - right * math.log(abs(right)))
 
 
 @kernel
@@ -59,11 +56,6 @@ def node_pressure(nodes: int) -> Array:
         averages[i] = (upper - lower) * nodes / 2.0
         upper = lower
     return averages
-
-
-def node_positions(nodes: int) -> Array:
-    """Centres of the elements from the leading edge x = +1 to -1, shape (node,) [-]."""
-    return 1.0 - (2.0 * np.arange(nodes) + 1.0) / nodes
 
 
 @part
@@ -144,7 +136,7 @@ def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> 
             f"Strip of {nodes} elements: the stick zone still changes after {-sweeps} sweeps.", -sweeps
         )
     return StripSolution(
-        along=node_positions(nodes),
+        along=1.0 - (2.0 * np.arange(nodes) + 1.0) / nodes,
         pressure=pressure,
         shear=q,
         tangent=stick_solution(t, np.zeros(nodes), np.full(nodes, 4.0 / nodes), slip),
@@ -178,6 +170,7 @@ def stick_solution(t: Array, q: Array, strain: Array, slip: Array) -> Array:
 def active_set(t: Array, bound: Array, strain: Array) -> tuple[Array, Array, int]:
     """Traction, slip sign (0 in stick), shape (node,) each, and sweeps, negative if unsettled.
 
+    Coulomb wants slip where a sticking element is beyond its bound, and stick where slip opposes traction.
     All wrong elements change at once; should that cycle, one at a time, the first in order (Murty's rule).
     """
     slip = np.zeros(bound.size)
@@ -185,25 +178,16 @@ def active_set(t: Array, bound: Array, strain: Array) -> tuple[Array, Array, int
     limit = BLOCK_SWEEPS + LEAST_INDEX_SWEEPS * bound.size
     for sweep in range(1, limit + 1):
         q = stick_solution(t, slip * bound, strain, slip)
-        wanted = wanted_slip(t, q, strain, bound, slip)
-        wrong = np.nonzero(wanted != slip)[0]
-        if wrong.size == 0:
+        rest = strain - toeplitz_product(t, q)
+        settled = True
+        for i in range(q.size):
+            wanted = slip[i]
+            if slip[i] == 0.0 and abs(q[i]) > bound[i] * (1.0 + 1e-12):
+                wanted = np.sign(q[i])
+            elif slip[i] * rest[i] < -1e-12:
+                wanted = 0.0
+            if wanted != slip[i] and (settled or sweep <= BLOCK_SWEEPS):
+                slip[i], settled = wanted, False
+        if settled:
             return q, slip, sweep
-        if sweep <= BLOCK_SWEEPS:
-            slip = wanted
-        else:
-            slip[wrong[0]] = wanted[wrong[0]]
     return q, slip, -limit
-
-
-@part
-def wanted_slip(t: Array, q: Array, strain: Array, bound: Array, slip: Array) -> Array:
-    """Slip sign that Coulomb wants: within the bound in stick, along the traction in slip; shape (node,)."""
-    rest = strain - toeplitz_product(t, q)
-    wanted = slip.copy()
-    for i in range(q.size):
-        if slip[i] == 0.0 and abs(q[i]) > bound[i] * (1.0 + 1e-12):
-            wanted[i] = np.sign(q[i])
-        elif slip[i] * rest[i] < -1e-12:
-            wanted[i] = 0.0
-    return wanted

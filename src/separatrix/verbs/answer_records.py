@@ -12,10 +12,9 @@ from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutco
 from separatrix.chain.ball_mobility import LinearMobility, Mobility
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.contacts import BearingState
-from separatrix.chain.lubrication import LubricationCurve
-from separatrix.chain.shear import ShearField
+from separatrix.chain.impact_restitution import LubricationCurve
 from separatrix.chain.solution import Solution
-from separatrix.chain.traction_curve import TractionCurve
+from separatrix.chain.traction_curve import ShearField, TractionCurve
 from separatrix.ground.units import (
     Kilogram,
     Metre,

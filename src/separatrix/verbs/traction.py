@@ -30,8 +30,7 @@ RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 def compute(study: Study, _options: NoOptions) -> TractionAnswer:
     """Traction curves, and by strips at other pivoting-to-rolling ratios."""
     from separatrix.chain.contacts import race_tracks
-    from separatrix.chain.race_curve import beyond_strips
-    from separatrix.chain.shown_traction import curves_by_ratio, shear, shown_curve
+    from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
     from separatrix.chain.solution import solve
     from separatrix.verbs.answer_records import TractionAnswer
 

@@ -15,7 +15,7 @@ from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.exact.transient import shift, transient
 from separatrix.chain.exact.two_way import solve_two_way
-from separatrix.chain.film_profile import Profile, worn_band
+from separatrix.chain.film_compliance import Profile, worn_band
 
 __all__ = [
     "Body",

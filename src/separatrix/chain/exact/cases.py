@@ -33,7 +33,7 @@ from separatrix.chain.exact.rolling import (
 from separatrix.chain.exact.slope import RaceSlope, traction_slope
 from separatrix.chain.exact.transient import shift, transient
 from separatrix.chain.exact.two_way import solve_two_way
-from separatrix.chain.film_profile import Profile
+from separatrix.chain.film_compliance import Profile
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio, unit_of
 

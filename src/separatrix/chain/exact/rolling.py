@@ -25,7 +25,7 @@ from separatrix.chain.exact.operator import Operator, rolling_operator
 from separatrix.chain.exact.precondition import SLIP
 from separatrix.chain.exact.pressure import film_strain, press, pressed_contact, pressure_slip
 from separatrix.chain.exact.slip import TOLERANCE, FrictionLaw, Settled, over_cells, rough_compliance, settle
-from separatrix.chain.film_profile import Profile
+from separatrix.chain.film_compliance import Profile
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio

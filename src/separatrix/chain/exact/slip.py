@@ -26,7 +26,7 @@ from separatrix.chain.exact.grid import GAUSS_NODES, GAUSS_WEIGHTS, Grid
 from separatrix.chain.exact.krylov import Sets, right_side, solve_step
 from separatrix.chain.exact.operator import Operator, product
 from separatrix.chain.exact.precondition import OUTSIDE, SLIP, STICK, States
-from separatrix.chain.film_profile import Profile
+from separatrix.chain.film_compliance import Profile
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, Pascal, Ratio

@@ -28,7 +28,7 @@ from separatrix.chain.exact.rolling import (
     solution_of,
 )
 from separatrix.chain.exact.slip import Settled
-from separatrix.chain.film_profile import Profile
+from separatrix.chain.film_compliance import Profile
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Newton, Ratio
 

@@ -1,4 +1,4 @@
-"""Traction curve of ball on one race, by strips or by the exact contact.
+"""Traction of a ball on one race, by strips or by the exact contact, and where the strips leave their range.
 
 The film is a layer on the race, as thick as the study's film in all; a worn one, whose thickness varies, is
 in series.
@@ -6,10 +6,10 @@ in series.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import pi
 
 import numpy as np
 
@@ -19,9 +19,9 @@ from separatrix.chain.exact.pressure import pressed_contact
 from separatrix.chain.exact.slope import COLUMNS, ROWS
 from separatrix.chain.film_compliance import track_of
 from separatrix.chain.hertz import ContactEllipse
-from separatrix.chain.traction_curve import TractionCurve, traction_curve
+from separatrix.chain.traction_curve import ShearField, TractionCurve, shear_field, traction_curve
 from separatrix.ground.errors import ConvergenceError, InputError
-from separatrix.ground.units import Pascal, Ratio
+from separatrix.ground.units import Array, Pascal, Ratio
 from separatrix.study.study import (
     ContactPressure,
     Film,
@@ -34,6 +34,11 @@ from separatrix.study.study import (
 
 REMEMBERED = 512
 """Exact contacts that are kept, by the records they are made of."""
+
+SLOPE_ALONE = np.empty(0)
+"""Increments of a curve of which only the slope is asked."""
+
+STRIPS = TractionSettings()
 
 STRAINED: Ratio = 0.1
 """Film strain p0/M_c from which a film is no longer linearly elastic."""
@@ -67,14 +72,17 @@ class RaceTrack:
         """Whether nothing is transmitted: no friction or no load."""
         return self.film.race_friction == 0.0 or self.ellipse.load == 0.0
 
-    @property
-    def is_worn(self) -> bool:
-        """Whether the film of this race is worn."""
-        return self.film.wear is not None and self.film.wear.touches(self.race)
 
+def contact_traction(
+    track: RaceTrack, settings: TractionSettings, increments: Array | None = None
+) -> TractionCurve:
+    """Traction curve of a contact and its slope, by the model of the settings.
 
-def race_curve(track: RaceTrack, settings: TractionSettings) -> TractionCurve:
-    """Traction curve by the model of the settings.
+    Parameters
+    ----------
+    increments : array or None
+        Creep increments, shape (case,) [-]; None takes those of `traction_curve`, and `SLOPE_ALONE` none:
+        each costs the exact contact a solution.
 
     Raises
     ------
@@ -82,22 +90,14 @@ def race_curve(track: RaceTrack, settings: TractionSettings) -> TractionCurve:
         A film that the exact contact does not take: too thick, nearly incompressible, or compressed to
         nothing.
     ConvergenceError
-        A point of the exact curve did not settle.
+        Free rolling or a point of the exact curve did not settle.
     """
-    if settings.model is TractionModel.STRIPS or track.is_idle:
-        return strips(track, settings.pressure)
-    return exact_curve(track, settings, strips(track, ContactPressure.HERTZ))
-
-
-def strips(
-    track: RaceTrack, pressure: ContactPressure, increments: np.ndarray | None = None
-) -> TractionCurve:
-    """Traction curve by strips."""
-    film, ellipse = track.film, track.ellipse
-    if pressure is ContactPressure.COATED and film.body is not None and not track.is_idle:
+    film, ellipse, by_strips = track.film, track.ellipse, settings.model is TractionModel.STRIPS
+    is_coated = settings.pressure is ContactPressure.COATED and film.body is not None and not track.is_idle
+    if by_strips and is_coated:
         ellipse = coated_ellipse(track)
     friction, compliance = track_of(film, track.race, ellipse.semi_major)
-    return traction_curve(
+    plain = traction_curve(
         ellipse,
         track.creep,
         race_friction=friction,
@@ -105,66 +105,31 @@ def strips(
         film_thickness=film.thickness or 0.0,
         creep_increments=increments,
     )
-
-
-def contact_problem(track: RaceTrack, settings: TractionSettings) -> exact.ContactProblem:
-    """The exact contact of a race."""
-    film = track.film
-    ball, ring = (exact.solid(m.elastic_modulus, m.poisson_ratio) for m in (track.ball, track.ring))
-    layers: tuple[exact.Layer, ...] = ()
-    if film.body is not None and film.thickness is not None and not track.is_worn:
-        coat = exact.solid(film.body.elastic_modulus, film.body.poisson_ratio)
-        layers = (exact.Layer(thickness=film.thickness, solid=coat),)
-    friction, compliance = track_of(film, track.race, track.ellipse.semi_major)
-    return exact.ContactProblem(
-        ellipse=track.ellipse,
-        bodies=(exact.Body(base=ball), exact.Body(base=ring, layers=layers)),
-        friction=exact.FrictionLaw(coefficient=friction),
-        film_compliance=compliance if track.is_worn else 0.0,
-        own_pressure=settings.pressure is ContactPressure.COATED and bool(layers),
-        coupled=settings.pressure_slip is PressureSlip.INCLUDED,
+    if by_strips or track.is_idle:
+        return plain
+    found = exact_slope(track, settings)
+    return replace(
+        plain,
+        traction_coefficient=_exact_coefficients(track, settings, plain.creep_increment),
+        slope=found.slope,
+        slope_error=found.slope_error,
+        free_rolling_offset=found.free_rolling_offset,
+        nodes=COLUMNS[1],
+        notes=found.notes,
     )
-
-
-def race_slope(track: RaceTrack, settings: TractionSettings) -> TractionCurve | exact.RaceSlope:
-    """Slope at free rolling and its error by the model of the settings."""
-    if settings.model is TractionModel.STRIPS or track.is_idle:
-        return strips(track, settings.pressure)
-    return exact_slope(track, settings)
 
 
 @lru_cache(maxsize=REMEMBERED)
 def exact_slope(track: RaceTrack, settings: TractionSettings) -> exact.RaceSlope:
-    """Slope at free rolling, its error, and the solution there; remembered by the value of the records."""
+    """The exact contact in free rolling and the slope there; remembered by the value of the records."""
     return exact.traction_slope(contact_problem(track, settings), track.creep)
 
 
-@lru_cache(maxsize=REMEMBERED)
-def coated_ellipse(track: RaceTrack) -> ContactEllipse:
-    """Ellipse with the area and the length along rolling of the contact of the coated bodies.
-
-    Its pressure is Hertz's form with the largest value that the load gives it.
-    """
-    whole = replace(track.film, wear=None)
-    bodies = contact_problem(replace(track, film=whole), TractionSettings()).bodies
-    grid, _, _ = pressed_contact(track.ellipse, bodies, columns=COLUMNS[1], rows=ROWS)
-    area = float(grid.fraction.sum()) * grid.cell_area
-    b = 0.5 * float(grid.fraction.sum(axis=1).max()) * grid.dx
-    a = area / (pi * b)
-    p0 = 1.5 * track.ellipse.load / area
-    return replace(track.ellipse, semi_minor=b, semi_major=a, max_pressure=p0)
-
-
-def exact_curve(track: RaceTrack, settings: TractionSettings, plain: TractionCurve) -> TractionCurve:
-    """Slope on two grids, and the curve on the finer one, at the increments of a curve by strips.
-
-    Raises
-    ------
-    ConvergenceError
-        A point did not settle.
-    """
-    found = exact_slope(track, settings)
-    problem, creep = contact_problem(track, settings), track.creep
+def _exact_coefficients(track: RaceTrack, settings: TractionSettings, increments: Array) -> Array:
+    """Traction coefficients at increments from free rolling, on the finer of the grids of its slope."""
+    if increments.size == 0:
+        return increments
+    found, problem, creep = exact_slope(track, settings), contact_problem(track, settings), track.creep
     rows = ROWS if problem.own_pressure else found.solution.across.size
     made = exact.rolling_contact(problem, columns=COLUMNS[1], rows=rows)
     slips = (
@@ -174,44 +139,70 @@ def exact_curve(track: RaceTrack, settings: TractionSettings, plain: TractionCur
             spin=creep.spin,
             curvature=creep.curvature,
         )
-        for increment in plain.creep_increment
+        for increment in increments
     )
     coefficients = []
     for solution in exact.solve_each(made, slips):
         if isinstance(solution, ConvergenceError):
             raise solution
         coefficients.append(solution.traction_coefficient)
-    return replace(
-        plain,
-        traction_coefficient=np.array(coefficients),
-        slope=found.slope,
-        slope_error=found.slope_error,
-        free_rolling_offset=found.free_rolling_offset,
-        nodes=COLUMNS[1],
-        notes=found.notes,
+    return np.array(coefficients)
+
+
+def contact_problem(track: RaceTrack, settings: TractionSettings) -> exact.ContactProblem:
+    """The exact contact of a race."""
+    film = track.film
+    ball, ring = (exact.solid(m.elastic_modulus, m.poisson_ratio) for m in (track.ball, track.ring))
+    layers: tuple[exact.Layer, ...] = ()
+    is_worn = film.wear is not None and film.wear.touches(track.race)
+    if film.body is not None and film.thickness is not None and not is_worn:
+        coat = exact.solid(film.body.elastic_modulus, film.body.poisson_ratio)
+        layers = (exact.Layer(thickness=film.thickness, solid=coat),)
+    friction, compliance = track_of(film, track.race, track.ellipse.semi_major)
+    return exact.ContactProblem(
+        ellipse=track.ellipse,
+        bodies=(exact.Body(base=ball), exact.Body(base=ring, layers=layers)),
+        friction=exact.FrictionLaw(coefficient=friction),
+        film_compliance=compliance if is_worn else 0.0,
+        own_pressure=settings.pressure is ContactPressure.COATED and bool(layers),
+        coupled=settings.pressure_slip is PressureSlip.INCLUDED,
     )
+
+
+@lru_cache(maxsize=REMEMBERED)
+def coated_ellipse(track: RaceTrack) -> ContactEllipse:
+    """Ellipse with the area and the length along rolling of the contact of the coated bodies.
+
+    Its pressure is Hertz's form with the largest value that the load gives it.
+    """
+    whole = replace(track.film, wear=None)
+    bodies = contact_problem(replace(track, film=whole), STRIPS).bodies
+    grid, _, _ = pressed_contact(track.ellipse, bodies, columns=COLUMNS[1], rows=ROWS)
+    area = float(grid.fraction.sum()) * grid.cell_area
+    b = 0.5 * float(grid.fraction.sum(axis=1).max()) * grid.dx
+    p0 = 1.5 * track.ellipse.load / area
+    return replace(track.ellipse, semi_minor=b, semi_major=area / (math.pi * b), max_pressure=p0)
 
 
 def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) -> Iterator[str]:
     """Where the strips leave their range: a sentence each, from the exact contact in free rolling."""
-    strips_by, exact_by, coated_by = (
-        asked.by(TractionModel.STRIPS, ContactPressure.HERTZ),
-        asked.by(TractionModel.EXACT, ContactPressure.HERTZ),
-        asked.by(TractionModel.EXACT, ContactPressure.COATED),
-    )
+    by_hertz = asked.by(TractionModel.EXACT, ContactPressure.HERTZ)
     try:
         found = [exact_slope(track, asked.by(TractionModel.EXACT)).solution for track in tracks]
     except (InputError, ConvergenceError) as error:
         yield f"The exact contact has no answer to compare the strips with: {error}"
         return
-    off = _apart(tracks, strips_by, exact_by)
+    off = _apart(tracks, STRIPS, by_hertz)
     if off > CLOSE:
         yield f"The slopes by strips are up to {off:.0%} off those of the exact contact."
     is_soft = all(track.film.wear is None for track in tracks) and any(
-        _squeeze(one) > SQUEEZED for one in tracks
+        film_strain(track, track.ellipse.max_pressure) * (track.film.thickness or 0.0)
+        > SQUEEZED * track.ellipse.approach
+        for track in tracks
     )
     is_pressed = is_soft or asked.pressure is ContactPressure.COATED
-    pressed = _apart(tracks, coated_by, exact_by) if is_pressed else 0.0
+    by_coated = asked.by(TractionModel.EXACT, ContactPressure.COATED)
+    pressed = _apart(tracks, by_coated, by_hertz) if is_pressed else 0.0
     if pressed > CLOSE:
         yield (
             f"The film changes the pressure, and with it the slopes by up to {pressed:.0%}: "
@@ -244,10 +235,10 @@ def beyond_strips(tracks: tuple[RaceTrack, RaceTrack], asked: TractionSettings) 
         )
 
 
-def _apart(tracks: tuple[RaceTrack, RaceTrack], one: TractionSettings, other: TractionSettings) -> Ratio:
+def _apart(tracks: tuple[RaceTrack, RaceTrack], *models: TractionSettings) -> Ratio:
     """Largest relative difference of the slopes by two models; 0 where one of them has no answer."""
     try:
-        pairs = [(race_slope(track, one).slope, race_slope(track, other).slope) for track in tracks]
+        pairs = [[contact_traction(track, model, SLOPE_ALONE).slope for model in models] for track in tracks]
     except (InputError, ConvergenceError):
         return 0.0
     return max(abs(x / y - 1.0) for x, y in pairs)
@@ -261,15 +252,44 @@ def film_strain(track: RaceTrack, pressure: Pascal) -> Ratio:
     return pressure / exact.solid(material.elastic_modulus, material.poisson_ratio).compression_modulus
 
 
-def _squeeze(track: RaceTrack) -> Ratio:
-    """Compression of the film by the largest pressure over the approach of the bodies."""
-    ellipse = track.ellipse
-    return film_strain(track, ellipse.max_pressure) * (track.film.thickness or 0.0) / ellipse.approach
-
-
 def pressure_slip(track: RaceTrack) -> Ratio:
     """Largest slip by the pressure, between unlike or coated bodies, over the saturation creep 2 mu p0/E*."""
     settings = TractionSettings(model=TractionModel.EXACT, pressure_slip=PressureSlip.INCLUDED)
     contact = exact.rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
     saturation = 2.0 * track.film.race_friction * track.ellipse.max_pressure / track.ellipse.contact_modulus
     return float(np.abs(contact.coupling).max()) / saturation
+
+
+SPIN_ROLL_RATIOS = (0.0, 0.1, 0.2, 0.4, 0.8)
+"""Pivoting-to-rolling ratios at which the traction curves are drawn, as in the paper's Fig. 7."""
+
+SATURATED = 0.995
+"""Share of the whole friction from which a traction curve counts as flat in a figure."""
+
+
+def shown_curve(track: RaceTrack, settings: TractionSettings) -> TractionCurve:
+    """Curve of one contact at 101 increments, up to a quarter beyond those at which it is saturated."""
+    widest = float(contact_traction(track, STRIPS).creep_increment[-1])
+    finer = contact_traction(track, STRIPS, widest * np.sinh(np.linspace(-6.0, 6.0, 201)) / math.sinh(6.0))
+    coefficient = np.abs(finer.traction_coefficient)
+    rising = coefficient < SATURATED * coefficient.max()
+    farthest = float(np.abs(finer.creep_increment[rising]).max(initial=0.0))
+    return contact_traction(
+        track, settings, np.linspace(-1.0, 1.0, 101) * min(1.25 * farthest or widest, widest)
+    )
+
+
+def curves_by_ratio(track: RaceTrack, curve: TractionCurve) -> tuple[TractionCurve, ...]:
+    """Traction curves by strips at `SPIN_ROLL_RATIOS`, with the sign and at the increments of a curve."""
+    own = track.creep.spin
+    spins = (math.copysign(ratio, own) * track.ellipse.curvature_rolling for ratio in SPIN_ROLL_RATIOS)
+    tracks = (replace(track, creep=replace(track.creep, spin=spin)) for spin in spins)
+    return tuple(contact_traction(one, STRIPS, curve.creep_increment) for one in tracks)
+
+
+def shear(track: RaceTrack) -> ShearField:
+    """Shear in five strips of a contact in free rolling (the paper's Fig. 6)."""
+    friction, compliance = track_of(track.film, track.race, track.ellipse.semi_major)
+    return shear_field(
+        track.ellipse, track.creep, race_friction=friction, film_compliance=compliance, strips=5
+    )
