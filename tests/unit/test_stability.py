@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from separatrix.cage import Cause, RunOutcome, moving_cage, run_ensemble
+from separatrix.chain.impact_restitution import damping_ratio, restitution_factor
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
@@ -23,7 +24,6 @@ from separatrix.verdict.response import (
     Side,
     cage_at,
     cell_of,
-    with_damping,
 )
 from separatrix.verdict.stability_curve import (
     COARSE,
@@ -244,16 +244,23 @@ def test_unresolved_runs_are_told(monkeypatch):
     assert re.search(r"2 of 5 runs from 0.5 m/s at friction 0.1 .* not whirling", note)
 
 
+def eta_of(cage, damping):
+    """Nominal restitution factor of a race damping."""
+    return restitution_factor(damping_ratio(cage.ball_cage_stiffness, cage.mass, damping))
+
+
 @pytest.mark.parametrize("ball", [BallModel.TRACTION, BallModel.FREE])
 def test_races_that_hold_twice_as_hard_give_the_same_traction_at_half_the_slip(ball):
     """Capacity and mass stay; at eta = 1 the balls are gripped."""
     cage = moving_cage(SHIPPED, 0.1, ball)
-    hard = with_damping(cage, 2.0 * cage.race_damping)
+    hard = cage_at(cage, eta_of(cage, 2.0 * cage.race_damping), 0.1)
     assert hard.traction.capacity == pytest.approx(cage.traction.capacity, rel=1e-12)  # rounding
-    assert hard.traction.slope == 2.0 * cage.traction.slope
+    # of eta and back
+    assert hard.traction.slope == pytest.approx(2.0 * cage.traction.slope, rel=1e-9)
     assert (hard.free_ball is None) == (ball is not BallModel.FREE)
     if hard.free_ball is not None:
-        assert hard.free_ball.inner.elastic_slip == cage.free_ball.inner.elastic_slip / 2.0
+        slip = cage.free_ball.inner.elastic_slip / 2.0
+        assert hard.free_ball.inner.elastic_slip == pytest.approx(slip, rel=1e-9)
         assert hard.free_ball.capacity == cage.free_ball.capacity
     gripped = cage_at(cage, 1.0, 0.1)
     assert (gripped.traction, gripped.free_ball, gripped.race_damping) == (None, None, math.inf)
