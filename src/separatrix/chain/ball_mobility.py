@@ -20,11 +20,16 @@ from separatrix.chain.ball_modes import Modes, modes
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.chain.contacts import BearingState, bearing_state, of_both_races, race_tracks
 from separatrix.chain.creep import Creep
-from separatrix.chain.equilibrium.balance import contact_friction, turning_loads
-from separatrix.chain.equilibrium.balance import free_ball as balance_of_ball
-from separatrix.chain.equilibrium.groove import chebyshev_nodes, touch
-from separatrix.chain.equilibrium.problem import Problem, copy, problem, work
+from separatrix.chain.grooved_ball import (
+    Problem,
+    contact_friction,
+    free_balance,
+    problem,
+    touches,
+    turning_loads,
+)
 from separatrix.chain.race_curve import race_slope
+from separatrix.chain.slip_friction import chebyshev_nodes
 from separatrix.ground.compiled import kernel
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.schema import Spelled
@@ -123,7 +128,6 @@ class HeldBall(NamedTuple):
     rings: Array
     state: Array
     slips: tuple[float, float]
-    cells: int
     nodes: Array
     capacity: Newton
     notes: tuple[str, ...] = ()
@@ -150,20 +154,10 @@ class HeldBall(NamedTuple):
 
 @kernel
 def ball_balance(
-    p: Problem,
-    rings: Array,
-    state: Array,
-    slips: tuple[float, float],
-    cells: int,
-    nodes: Array,
-    balance: Array,
-    slopes: Array,
+    p: Problem, rings: Array, state: Array, slips: tuple[float, float], nodes: Array, rows: Array
 ) -> None:
-    """Forces and couples on the ball with its inertia, shape (6,), and slopes with its state, (6, 6)."""
-    out = work(6)
-    balance_of_ball(p, rings, state, slips, cells, nodes, balance, out)
-    for q in range(6):
-        copy(slopes[q], out.by_state[q])
+    """Forces and couples on the ball with its inertia, and their slopes: `rows`, (12, 9)."""
+    free_balance(p, rings, state, slips, nodes, rows)
 
 
 @kernel
@@ -172,29 +166,27 @@ def groove_slopes(
     rings: Array,
     state: Array,
     slips: tuple[float, float],
-    cells: int,
     nodes: Array,
     lateral: Array,
     along: Array,
 ) -> None:
     """Friction against a speed of the ball across each groove, shape (2,) [N s/m], and y of each, (2, 2)."""
-    i = touch(p, -1.0, rings[0] - state[0], rings[1] - state[1], 0.0)
-    o = touch(p, 1.0, state[0], state[1], 0.0)
+    i, o = touches(p, rings, state)
     load_o, load_i, _ = turning_loads(p, i, o)
     r = np.empty((5, 7))
-    contact_friction(p, -1.0, i, load_i, state, slips[0], cells, nodes, r)
+    contact_friction(p, -1.0, i, load_i, state, slips[0], nodes, r)
     lateral[0] = p.friction * load_i * r[4, 6] / abs(p.speed)
     along[0, 0], along[0, 1] = i.cosine, -i.sine
-    contact_friction(p, 1.0, o, load_o, state, slips[1], cells, nodes, r)
+    contact_friction(p, 1.0, o, load_o, state, slips[1], nodes, r)
     lateral[1] = p.friction * load_o * r[4, 6] / abs(p.speed)
     along[1, 0], along[1, 1] = -o.cosine, o.sine
 
 
 def balanced(ball: HeldBall, state: Array) -> tuple[Array, Array]:
     """Balance of the ball in a state, shape (6,), and its slopes, (6, 6)."""
-    balance, slopes = np.empty(6), np.empty((6, 6))
-    ball_balance(ball.problem, ball.rings, state, ball.slips, ball.cells, ball.nodes, balance, slopes)
-    return balance, slopes
+    rows = np.empty((12, 9))
+    ball_balance(ball.problem, ball.rings, state, ball.slips, ball.nodes, rows)
+    return rows[:6, 0], rows[:6, 1:7]
 
 
 def settle(ball: HeldBall) -> HeldBall:
@@ -249,7 +241,7 @@ def groove(ball: HeldBall) -> tuple[NewtonSecondPerMetre, NewtonPerMetre]:
     _, slopes = balanced(ball, ball.state)
     stiffness, directions = np.linalg.eigh(-0.5 * (slopes[:2, :2] + slopes[:2, :2].T))
     lateral, along = np.empty(2), np.empty((2, 2))
-    groove_slopes(ball.problem, ball.rings, ball.state, ball.slips, ball.cells, ball.nodes, lateral, along)
+    groove_slopes(ball.problem, ball.rings, ball.state, ball.slips, ball.nodes, lateral, along)
     return float(lateral @ (along @ directions[:, 0]) ** 2), float(stiffness[0])
 
 
@@ -435,15 +427,13 @@ def held_ball(
     if slip_law is SlipLaw.ELASTIC:
         inner_slip, outer_slip, notes = elastic_slip_speeds(bearing, film, settings, state)
         slips = inner_slip / abs(p.speed), outer_slip / abs(p.speed)
-    cells = CELLS[slip_law]
     return settle(
         HeldBall(
             problem=p,
             rings=outer + inner,
             state=np.array((*outer, orbit, *(state.equilibrium.ball_spin[ball] / p.speed))),
             slips=slips,
-            cells=cells,
-            nodes=chebyshev_nodes(cells // 2),
+            nodes=chebyshev_nodes(CELLS[slip_law] // 2),
             capacity=film.race_friction * (state.inner.load + state.outer.load),
             notes=notes,
         )

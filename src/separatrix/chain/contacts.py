@@ -18,8 +18,8 @@ import numpy as np
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.chain.equilibrium.balance import LEAST_SHARE
 from separatrix.chain.exact import RaceSlope
+from separatrix.chain.grooved_ball import LEAST_SHARE
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.impact_restitution import contact_damping
 from separatrix.chain.orbit import mean_speed
