@@ -11,9 +11,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from separatrix.chain.ball_mobility import HeldBall, balanced, modes
-from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants
-from separatrix.chain.equilibrium.problem import Problem
+from separatrix.chain.grooved_ball import Problem
 from separatrix.chain.hertz import approach_coefficient
+from separatrix.chain.slip_friction import chebyshev_nodes, friction_resultants
 
 M, RADIUS, ORBIT, SPEED, Q, MU = 2.029805e-3, 3.969e-3, 19.25e-3, 50_000 * math.pi / 30.0, 600.0, 0.1
 HARD = 1e17
@@ -30,8 +30,8 @@ def loaded_ball() -> HeldBall:
         lengths.append((f - 0.5) * 2.0 * RADIUS + (Q / stiffness) ** (2.0 / 3.0))
     problem = Problem(
         ball_diameter=2.0 * RADIUS, pitch_diameter=2.0 * ORBIT, inner_conformity=f, outer_conformity=f,
-        free_sine=0.0, free_cosine=1.0, modulus=HARD, ball_mass=M, ball_inertia=0.4 * M * RADIUS**2,
-        outer_speed=0.0, speed=SPEED, inner_share=0.0, friction=MU, inertia_factor=1.0,
+        modulus=HARD, ball_mass=M, ball_inertia=0.4 * M * RADIUS**2,
+        outer_speed=0.0, speed=SPEED, inner_share=0.0, friction=MU,
     )  # fmt: skip
     slip = 1e-7 * (ORBIT - RADIUS)
     return HeldBall(
@@ -122,7 +122,7 @@ def pivot(slide: float, spin: float = 1.0) -> tuple[float, float]:
     found, out = [], np.empty((5, 7))
     for cells in (100, 200):
         c = np.array((spin, 0.0, slide, 0.0))
-        friction_resultants(c, 1.0, 1.0, 50.0, 1e13, 1e-9, cells, chebyshev_nodes(cells // 2), out)
+        friction_resultants(c, 1.0, 1.0, 50.0, 1e13, 1e-9, chebyshev_nodes(cells // 2), out)
         found.append(out[[2, 0], 0].copy())
     force, moment = (4.0 * found[1] - found[0]) / 3.0
     return float(force), float(moment)

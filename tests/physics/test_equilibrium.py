@@ -250,3 +250,14 @@ def test_balls_that_leave_the_inner_race_rest_on_the_outer() -> None:
         assert np.abs(result.contact_angle_outer[lost]).max() < 1e-3
         for name in ("contact_angle_inner", "orbital_speed", "spin_roll_ratio_inner", "pitch_angle"):
             assert np.isfinite(getattr(result, name)).all()
+
+
+@pytest.mark.parametrize("model", [OUTER, INNER, FREE])
+def test_balls_that_float_at_rest_touch_neither_race(model: KinematicModel) -> None:
+    """Radial load without speed: balls of the far side carry nothing, and no rounding decides a contact."""
+    result = equilibrium(LE7, Operation(inner_speed=0.0, axial_load=0.0, radial_load=1000.0), model, 0.1)
+    floats = np.abs(result.load_inner) < 1e-9 * result.load_inner.max()
+    assert floats.any()
+    assert not (result.inner_contact | result.outer_contact)[floats].any()
+    assert (result.inner_contact & result.outer_contact)[~floats].all()
+    assert np.isfinite(result.spin_roll_ratio_inner).all()

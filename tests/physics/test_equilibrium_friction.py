@@ -8,9 +8,14 @@ from cages import BEARING_218 as BEARING
 from scipy.special import ellipe
 
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.chain.equilibrium.balance import contact_actions, contact_friction, slip_coefficients
-from separatrix.chain.equilibrium.groove import chebyshev_nodes, friction_resultants, touch
-from separatrix.chain.equilibrium.problem import problem
+from separatrix.chain.grooved_ball import (
+    contact_actions,
+    contact_friction,
+    problem,
+    slip_coefficients,
+    touch,
+)
+from separatrix.chain.slip_friction import NODES, chebyshev_nodes, friction_resultants
 from separatrix.ground.units import Array
 from separatrix.study.study import KinematicModel, Operation, Race
 
@@ -20,7 +25,7 @@ RPM = 2.0 * math.pi / 60.0
 def resultants(c: tuple[float, ...], a: float, b: float, smoothing: float, cells: int = 48) -> Array:
     """Per unit load and friction, on a ball of 1 cm radius."""
     out = np.empty((5, 7))
-    friction_resultants(np.array(c), a, b, 1e-2, 1.02e-2, smoothing, cells, chebyshev_nodes(cells // 2), out)
+    friction_resultants(np.array(c), a, b, 1e-2, 1.02e-2, smoothing, chebyshev_nodes(cells // 2), out)
     return out
 
 
@@ -103,14 +108,14 @@ def test_power_of_the_rings_is_lost_in_sliding(speeds):
         angle = (result.contact_angle_inner if side < 0 else result.contact_angle_outer)[0]
         load = (result.load_inner if side < 0 else result.load_outer)[0]
         length = 0.023167 * 22.23e-3 + contact(result, BEARING, race, 0).approach
-        at = touch(p, side, length * math.sin(angle), length * math.cos(angle), 0.0)
+        at = touch(p, side, length * math.sin(angle), length * math.cos(angle))
         state = np.array((0.0, 0.0, orbit, *(result.ball_spin[0] / p.speed)))
-        smoothing, force, slopes = 1e-4 * 0.25 * p.pitch_diameter, np.empty(6), np.empty((6, 6))
-        nodes = chebyshev_nodes(24)
-        contact_actions(p, side, at, load, 0.0, state, smoothing, 48, nodes, force, slopes)
+        smoothing, acts = 1e-4 * 0.25 * p.pitch_diameter, np.empty((6, 7))
+        contact_actions(p, side, at, load, 0.0, state, smoothing, NODES, acts)
+        force = acts[:, 0]
         given += ring * (0.5 * p.pitch_diameter * force[2] + force[3])
         per_unit, c = np.empty((5, 7)), np.empty(4)
-        contact_friction(p, side, at, load, state, smoothing, 48, nodes, per_unit)
+        contact_friction(p, side, at, load, state, smoothing, NODES, per_unit)
         slip_coefficients(p, side, at, state, c, np.empty(2))
         lost += 0.15 * load * abs(p.speed) * float(c @ per_unit[:4, 0])
     assert lost > 0.0

@@ -28,9 +28,9 @@ from separatrix.chain.ball_mobility import (
     pushed,
 )
 from separatrix.chain.contacts import Rolling, race_tracks
-from separatrix.chain.equilibrium.balance import slip_coefficients
-from separatrix.chain.equilibrium.groove import friction_resultants, touch
+from separatrix.chain.grooved_ball import slip_coefficients, touch
 from separatrix.chain.race_traction import exact_slope
+from separatrix.chain.slip_friction import friction_resultants
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
 from separatrix.study.study import KinematicModel, TractionModel, TractionSettings
@@ -275,14 +275,14 @@ def _outer_moment(law: SlipLaw) -> float:
     """Pivoting moment of the outer contact at the spin of the rigid equilibrium, without a traction force."""
     ball, rigid = held("cryo", law), held("cryo")
     p, out, c = ball.problem, np.empty((5, 7)), np.empty(4)
-    at = touch(p, 1.0, rigid.state[0], rigid.state[1], 0.0)
+    at = touch(p, 1.0, rigid.state[0], rigid.state[1])
     slip_coefficients(p, 1.0, at, rigid.state, c, np.empty(2))
     c[3] = 0.0
     a = at.major_coefficient * at.load ** (1.0 / 3.0)
     radius = 2.0 * 0.52 * p.ball_diameter / (2.0 * 0.52 + 1.0)
     sizes = a, a * at.axis_ratio, 0.5 * p.ball_diameter, radius
     for _ in range(30):
-        friction_resultants(c, *sizes, ball.slips[1], 96, rigid.nodes, out)
+        friction_resultants(c, *sizes, ball.slips[1], rigid.nodes, out)
         c[2] -= out[2, 0] / out[2, 3]
     return abs(p.friction * at.load * out[0, 0])
 

@@ -21,11 +21,16 @@ from numpy.typing import NDArray
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.chain.contacts import RaceContact, Rolling, of_both_races
 from separatrix.chain.creep import Creep
-from separatrix.chain.equilibrium.balance import contact_friction, turning_loads
-from separatrix.chain.equilibrium.balance import free_ball as balance_of_ball
-from separatrix.chain.equilibrium.groove import chebyshev_nodes, touch
-from separatrix.chain.equilibrium.problem import Problem, problem, work
+from separatrix.chain.grooved_ball import (
+    Problem,
+    contact_friction,
+    free_balance,
+    problem,
+    touches,
+    turning_loads,
+)
 from separatrix.chain.race_traction import SLOPE_ALONE, contact_traction
+from separatrix.chain.slip_friction import chebyshev_nodes
 from separatrix.ground.compiled import kernel
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.schema import Spelled
@@ -153,18 +158,16 @@ class HeldBall(NamedTuple):
 
 
 @kernel
-def _balanced(
-    p: Problem, rings: Array, state: Array, slips: tuple[float, float], nodes: Array
-) -> tuple[Array, Array]:
-    out, balance = work(6), np.empty(6)
-    balance_of_ball(p, rings, state, slips, 2 * nodes.shape[1], nodes, balance, out)
-    return balance, out.by_state[:, :6].copy()
+def _balanced(p: Problem, rings: Array, state: Array, slips: tuple[float, float], nodes: Array) -> Array:
+    rows = np.empty((12, 9))
+    free_balance(p, rings, state, slips, nodes, rows)
+    return rows
 
 
 def balanced(ball: HeldBall, state: Array) -> tuple[Array, Array]:
     """Forces and couples on the ball with its inertia, shape (6,), and slopes with its state, (6, 6)."""
-    balance, slopes = _balanced(ball.problem, ball.rings, state, ball.slips, ball.nodes)
-    return balance, slopes
+    rows = _balanced(ball.problem, ball.rings, state, ball.slips, ball.nodes)
+    return rows[:6, 0], rows[:6, 1:7]
 
 
 @kernel
@@ -172,13 +175,12 @@ def groove_slopes(
     p: Problem, rings: Array, state: Array, slips: tuple[float, float], nodes: Array
 ) -> tuple[Array, Array]:
     """Friction against a speed of the ball across each groove, shape (2,) [N s/m], and y of each, (2, 2)."""
-    i = touch(p, -1.0, rings[0] - state[0], rings[1] - state[1], 0.0)
-    o = touch(p, 1.0, state[0], state[1], 0.0)
+    i, o = touches(p, rings, state)
     load_o, load_i, _ = turning_loads(p, i, o)
     r, lateral, along = np.empty((5, 7)), np.empty(2), np.empty((2, 2))
     for k in range(2):
         side, at, load = (-1.0, i, load_i) if k == 0 else (1.0, o, load_o)
-        contact_friction(p, side, at, load, state, slips[k], 2 * nodes.shape[1], nodes, r)
+        contact_friction(p, side, at, load, state, slips[k], nodes, r)
         lateral[k] = p.friction * load * r[4, 6] / abs(p.speed)
         along[k, 0], along[k, 1] = -side * at.cosine, side * at.sine
     return lateral, along

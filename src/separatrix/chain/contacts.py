@@ -18,7 +18,7 @@ import numpy as np
 from separatrix.chain.clearances import Clearances
 from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.chain.equilibrium.balance import LEAST_SHARE
+from separatrix.chain.grooved_ball import LEAST_SHARE
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.race_traction import SLOPE_ALONE, RaceTrack, contact_traction
 from separatrix.chain.traction_curve import TractionCurve
