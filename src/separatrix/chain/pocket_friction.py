@@ -56,6 +56,7 @@ def pocket_conditions(
     ball_diameter: Metre,
     ball_cage_stiffness: NewtonPerMetre,
     cage_mass: Kilogram,
+    felt_mass: Kilogram,
     damping_ratio: Ratio,
     impact_speed: MetrePerSecond,
 ) -> PocketConditions:
@@ -67,6 +68,9 @@ def pocket_conditions(
         For the spin of each ball.
     ball_cage_stiffness : float
         Linear stiffness of the pocket; Hertz's contact behind it gives the pressure [N/m].
+    cage_mass, felt_mass : float
+        Of the cage, with which stiffness and damping ratio are told, and what an impact feels of it where the
+        cage may turn [kg].
     damping_ratio : float
         Of the impact, from the chain: the races yield and take force from it [-].
     impact_speed : float
@@ -79,7 +83,8 @@ def pocket_conditions(
     """
     speeds = sliding_speed(equilibrium.ball_spin, ball_diameter)
     K = hertz_coefficient_for(ball_cage_stiffness, cage_mass, impact_speed)
-    force = impact_force(cage_mass, ball_cage_stiffness, damping_ratio, impact_speed)
+    felt_ratio = damping_ratio * sqrt(felt_mass / cage_mass)
+    force = impact_force(felt_mass, ball_cage_stiffness, felt_ratio, impact_speed)
     radius = contact_radius(force, K, ball_diameter)
     mean = force / (pi * radius**2)
     return PocketConditions(

@@ -42,7 +42,7 @@ from separatrix.chain.pocket_friction import (
     pocket_speed,
 )
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import MetrePerSecond, NewtonPerMetre, Ratio
+from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, Ratio
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import cage_candidate, environment_of
@@ -231,6 +231,12 @@ class Solution:
         """The most loaded ball with its slip fields, and its spin, in a bearing that turns forward."""
         return free_ball(self.rolling, float(np.abs(self.mobility.linear.rates).max()))
 
+    @property
+    def felt_mass(self) -> Kilogram:
+        """What an impact at a pocket feels of the cage, which may turn: half the mass of a thin ring."""
+        turning = (self.study.bearing.pitch_diameter / 2.0) ** 2 / self.inertia.moment_of_inertia
+        return 1.0 / (1.0 / self.inertia.mass + turning)
+
     @cached_property
     def lubrication(self) -> LubricationCurve | None:
         """Restitution factor against film thickness and race friction; None without a film material."""
@@ -252,6 +258,7 @@ class Solution:
             ball_diameter=self.study.bearing.ball_diameter,
             ball_cage_stiffness=self.ball_cage_stiffness,
             cage_mass=self.inertia.mass,
+            felt_mass=self.felt_mass,
             damping_ratio=self.restitution.damping_ratio,
             impact_speed=self.impact_speed,
         )

@@ -33,13 +33,13 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     solution = solve(study)
     overdamped = overdamped_notes(solution.restitution)
     _ = solution.clearances  # refused, and noted
-    body, stiffness = solution.inertia, solution.restitution.ball_cage_stiffness
-    turning = (study.bearing.pitch_diameter / 2.0) ** 2 / body.moment_of_inertia
-    felt, speed = 1.0 / (1.0 / body.mass + turning), solution.impact_speed
+    stiffness, speed = solution.restitution.ball_cage_stiffness, solution.impact_speed
     return RestitutionAnswer(
         solution=solution,
         impact_speed=speed,
-        effective_restitution_factor=returned_share(solution.mobility.traction, felt, stiffness, speed),
+        effective_restitution_factor=returned_share(
+            solution.mobility.traction, solution.felt_mass, stiffness, speed
+        ),
         film_thickness_here=study.film.thickness or 0.0,
         lubrication=solution.lubrication,
         notes=(*solution.notes, *overdamped),
