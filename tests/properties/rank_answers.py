@@ -44,6 +44,11 @@ def _of_verdict(row: Document, cage: Document) -> Iterator[str]:
     worst = next(count for count in counts if count["kick"] == row["worst_kick"])
     if row["cage_motion"] in most and 4 * worst[most[row["cage_motion"]]] < row["runs"]:
         yield f"{row['cage_motion']} in few runs: {worst}"
+    low, high = row["safety_factor_low"], row["safety_factor_high"]
+    if row["verdict"] == "STABLE" and high is not None and high < 1.0:
+        yield f"STABLE with a safety factor of at most {high}"
+    if row["verdict"] == "UNSTABLE" and low is not None and low > 1.0:
+        yield f"UNSTABLE with a safety factor of at least {low}"
     if row["verdict"] == "UNSTABLE" and 2 * worst["whirls"] <= row["runs"]:
         yield f"few whirl: {worst}"
     if row["verdict"] != "STABLE":

@@ -306,16 +306,18 @@ def environment(name: str, rows: Sequence[Part]) -> list[Block]:
 
 
 def footnotes(rows: Sequence[Part]) -> list[Note]:
-    """Return in what respect frictions are extrapolated."""
+    """Return in what respect frictions are extrapolated; on a screen, that of all of them."""
     measured = [row for row in rows if "friction" in row]
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
     alike = grouped((tuple(names), sentence) for sentence, names in who.items())
-    each = [
-        " ".join(f"{sentence}." for sentence in sentences)
-        + ("" if len(names) == len(measured) else f" ({', '.join(names)})")
-        for names, sentences in alike.items()
-    ]
-    return [Note(f"{MARK} extrapolated beyond the tests: {' '.join(each)}", "legend")] if each else []
+    of_all = alike.pop(tuple(row.name for row in measured), [])
+    some = [f"{' '.join(f'{one}.' for one in each)} ({', '.join(names)})" for names, each in alike.items()]
+    if not who:
+        return []
+    words = " ".join([f"{MARK} extrapolated beyond the tests:", *(f"{one}." for one in of_all)])
+    more = " More, by material: `--full`." if some else ""
+    whole = Note(" ".join([words, *some]), "legend", LONG if some else Level.ALWAYS)
+    return [whole, *([Note(words + more, "legend", BRIEF)] if some else [])]
 
 
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:

@@ -250,7 +250,7 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
         yield f"{weak[0].name} rolls in its pockets: {said(weak[0], words)}."
     if any(row.extrapolation for row in judged):
-        yield f"Frictions with {MARK} are extrapolated."
+        yield f"{MARK}: extrapolated."
 
 
 def span(rows: Sequence[Part], name: str) -> str:
