@@ -8,13 +8,18 @@ import pytest
 import separatrix
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
+from separatrix.ground.document import Part
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
+from separatrix.verbs.parts.verdict_blocks import deciding
+from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.critical_friction import critical_friction
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.safety_factor import (
     CageLimit,
     SafetyFactor,
+    between,
     cage_limit,
+    ends_of_each,
     hand_estimate,
     safety_factor,
     spread,
@@ -54,6 +59,56 @@ def test_beyond_what_was_searched_only_the_lower_end_is_known():
     ends = {"own_critical_friction_low": 1.0, "own_critical_friction_high": None}
     found = safety_factor(replace(LIMIT, own_critical_friction=None, **ends), 0.2, (0.1, 0.3))
     assert found == SafetyFactor(safety_factor_low=1.0 / 0.3)
+
+
+def test_between_two_stiffnesses_the_critical_friction_is_a_power():
+    """Half way between 0.25 and 0.5 their geometric mean; of ends without a value nothing is said."""
+    stiff = replace(
+        LIMIT, own_critical_friction=0.5, own_critical_friction_low=0.4, critical_ball="one state"
+    )
+    found = between(LIMIT, stiff, 0.5)
+    assert found.own_critical_friction == pytest.approx(math.sqrt(0.25 * 0.5))
+    assert found.own_critical_friction_low == pytest.approx(math.sqrt(0.2 * 0.4))
+    assert (found.own_critical_friction_high, found.critical_ball) == (
+        pytest.approx(0.3),
+        "free and one state",
+    )
+    assert between(LIMIT, stiff, 0.0).own_critical_friction == pytest.approx(0.25)
+    for nothing in (None, 0.0):
+        assert between(LIMIT, replace(stiff, own_critical_friction=nothing), 0.5) is None
+
+
+def test_of_pockets_that_differ_in_stiffness_alone_the_ends_are_computed():
+    """Another mass or clearance is another cage."""
+    soft, middle, stiff = (Pocket(0.02, k, 3e-4, 4e-4) for k in (1e6, 2e6, 3e6))
+    heavy = soft._replace(mass=0.03)
+    assert ends_of_each([stiff, heavy, middle, soft]) == [(soft, stiff), (heavy,)]
+
+
+ROW = {
+    "name": "A", "verdict": "STABLE", "cage_motion": "CENTRED", "friction": 0.2, "extrapolation": [],
+    "own_critical_friction_low": 0.2, "land_clearance": 4e-4, "pocket_clearance": 2.5e-4,
+}  # fmt: skip
+CLEARANCES = {"land_clearance": "m", "pocket_clearance": "m", "wide_land_clearance": "m"}
+
+
+def headline(answer, *rows):
+    """What decides, of a candidate and others that differ from it."""
+    parts = [Part(ROW | row, CLEARANCES) for row in ({}, *rows)]
+    return list(deciding(Part(answer, CLEARANCES), parts))
+
+
+def test_the_headline_says_whether_land_or_pockets_decide():
+    """The land inside the pockets' play, with what would be on a wider one; or the pockets."""
+    wide = {"wide_land_critical_friction": 0.15, "wide_land_critical_friction_low": 0.1, "candidate": "A"}
+    (found,) = headline(wide | {"wide_land_clearance": 6e-4}, {"name": "B", "friction": 0.1})
+    assert found.startswith("The land stops the cage before its pockets can drive it")
+    assert found.endswith(", less than the friction of A.")
+    (found,) = headline({}, {"name": "B", "verdict": "UNSTABLE"})
+    assert found.startswith("The pockets decide, not the land (clearances 250")
+    assert headline({}) == []
+    (found,) = headline({}, {"name": "B", "extrapolation": ["speed"]})
+    assert found == "Some frictions are extrapolated."
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

@@ -120,6 +120,7 @@ class _Question:
     wide: Limit | None  # on a land that leaves the reference cage to its pockets, if its own does not
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
+    beside: Sequence[Asked]  # of those by the paper's, in the bearing's own environment
     runner: Runner
 
 
@@ -161,7 +162,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
         for place in asked.environments
     }
     means = {name: overall(map(one.frictions.get, asked.environments)) for name, one in solved.items()}
-    question = _question(study, asked, solved, [*frictions.values(), means], runner)
+    question = _question(study, asked, solved, [frictions[environment], *frictions.values(), means], runner)
 
     def ranking(found: _Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
@@ -219,7 +220,7 @@ def _question(
     tables: Sequence[Mapping[str, MeanFriction | None]],
     runner: Runner | None,
 ) -> _Question:
-    """What a ranking computes for tables of mean frictions.
+    """What a ranking computes for tables of mean frictions, that of the bearing's own environment first.
 
     The curve of the reference pocket is shown; of the others only the thresholds count.
     """
@@ -230,6 +231,7 @@ def _question(
     reference = pockets[reference_candidate(study, asked).name]
     every = {(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     keys = [Asked(*each) for each in sorted(every)]
+    own = {Asked(pockets[n], f.mean, True) for n, f in tables[0].items() if f is not None}
     runner = runner or Runner()
     empty = {pocket: moving_cage(one, 0.0) for pocket, one in paper.items()}
     tracers = {
@@ -260,6 +262,7 @@ def _question(
         wide=Limit(reference, WIDE * reference.clearance) if is_by_land and not is_paper else None,
         drawn=drawn,
         keys=keys,
+        beside=[] if is_paper else sorted(own),
         runner=runner,
     )
 
@@ -268,9 +271,8 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
     """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
     keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
     nodes = [Knot(pocket, node) for pocket, tracer in question.tracers.items() for node in tracer.first]
-    beside = [] if question.is_paper else [key._replace(is_paper=True) for key in keys]
     limits = _limits(question, {})
-    verdicts: list[Asked | Case] = [*keys, *beside, *cases]
+    verdicts: list[Asked | Case] = [*keys, *question.beside, *cases]
 
     def ranked(results: Mapping[Piece, Found]) -> Ranking:
         points = {k: _points_of(results, k) for k in question.cages}
@@ -293,7 +295,8 @@ def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ra
 
     own = Knot(question.reference, (OWN_DAMPING, None))
     # the longest first, as its runs wait for each other; then verdicts, so that an interrupt leaves some
-    pieces: list[Piece] = [*limits, own, *scattered(keys), *scattered(beside), *scattered(cases), *nodes]
+    judged: list[Piece] = [*scattered(keys), *scattered(question.beside), *scattered(cases)]
+    pieces: list[Piece] = [*limits, own, *judged, *nodes]
     return question.runner.work_out(
         lambda piece: _computed(question, piece),
         pieces,
@@ -440,8 +443,10 @@ def _row(question: _Question, found: _Findings, case: Case, friction: MeanFricti
     row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case))
     threshold = _threshold(found, pocket, friction)
     limit = _limit_of(question, found, pocket)
-    papers = judgement if question.is_paper else found.judgements.get(Asked(pocket, friction.mean, True))
-    if threshold is None or papers is None or (limit is None and not question.is_paper):
+    by_paper = Asked(pocket, friction.mean, True)
+    papers = judgement if question.is_paper else found.judgements.get(by_paper)
+    is_missing = papers is None and by_paper in question.beside
+    if threshold is None or is_missing or (limit is None and not question.is_paper):
         missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
         return replace(row, reason=f"{judgement.reason} Its {missing}: {NOT_FINISHED}.")
     return Ranked(
@@ -451,8 +456,8 @@ def _row(question: _Question, found: _Findings, case: Case, friction: MeanFricti
         restitution_threshold_low=threshold.low,
         restitution_threshold_high=threshold.high,
         margin=threshold.value - eta,
-        paper_verdict=papers.verdict,
-        paper_probability_stable=papers.probability_stable,
+        paper_verdict=None if papers is None else papers.verdict,
+        paper_probability_stable=None if papers is None else papers.probability_stable,
         **_safety(limit, friction, question.spreads.get(row.name, 0.0)),
     )
 

@@ -66,8 +66,8 @@ class Ranked(MeasuredCandidate):
     restitution_threshold_low: Ratio  # lower end of its 95 % interval
     restitution_threshold_high: Ratio  # upper end of its 95 % interval
     margin: Ratio  # threshold less the restitution factor
-    paper_verdict: Verdict  # by the paper's model
-    paper_probability_stable: Ratio  # by the paper's model
+    paper_verdict: Verdict | None  # by the paper's model, in the bearing's own environment; else null
+    paper_probability_stable: Ratio | None  # the same
     own_critical_friction: Ratio | None = None
     """At which half the runs whirl from the worst disturbance, with its own race damping; null in the paper's
     model, and where no friction that was searched is enough."""

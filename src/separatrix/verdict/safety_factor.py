@@ -25,7 +25,7 @@ from separatrix.verdict.which_ball import ENOUGH, transmitted_force, whirl_share
 HAND: Ratio = 0.42
 """Critical friction over sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings, docs/theory/ranking.md)."""
 
-AMPLE: Ratio = 2.0
+AMPLE: Ratio = 1.5
 """Safety factor by balls of one state from which free balls are not asked."""
 
 WIDE: Ratio = 1.6

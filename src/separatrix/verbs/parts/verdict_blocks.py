@@ -244,13 +244,16 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         whose = f", less than the friction of {', '.join(above)}" if above else ""
         yield said(answer, words + "{wide_land_critical_friction}") + f"{whose}."
     elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in judged):
-        yield f"The pockets decide, not the land ({both})."
+        yield said(
+            best, "The pockets decide, not the land (clearances {pocket_clearance}, {land_clearance})."
+        )
     weak = [row for row in judged if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
     if weak:
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
         yield f"{weak[0].name} rolls in its pockets: {said(weak[0], words)}."
-    if any(row.extrapolation for row in judged):
-        yield f"{MARK}: extrapolated."
+    beyond = [row.name for row in judged if row.extrapolation]
+    if beyond:
+        yield f"{'All' if len(beyond) == len(judged) else 'Some'} frictions are extrapolated."
 
 
 def span(rows: Sequence[Part], name: str) -> str:
