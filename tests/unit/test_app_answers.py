@@ -143,14 +143,14 @@ def test_options_are_fields_of_their_types(monkeypatch, page, root):
         "cases": "duty.csv",
         "adaptive": "on",
         "x": "",
-        "ball": "free",
+        "model": "paper",
     }
     expected = {
         "runs": 4,
         "vary": ("a=1", "b=2"),
         "cases": root / "duty.csv",
         "adaptive": True,
-        "ball": "free",
+        "model": "paper",
     }
     assert editing.asked(own, "small.toml", "any", sent) == expected
     with pytest.raises(InputError, match="--runs must be a whole number"):

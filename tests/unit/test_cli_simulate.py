@@ -156,7 +156,7 @@ def swept(time, place, rate):
 def test_whirl_of_the_samples_is_that_of_the_engine(answered):
     """Orbit, cone and offset of the judged part, which the engine sums up step by step.
 
-    Trapezoids over samples of two steps are off by 1.7e-5, 8e-5 and 4e-7 as measured: three times that.
+    Trapezoids over samples of two steps are off by 1.7e-5, 8e-5 and 1.8e-6 as measured: three times that.
     """
     answer = separatrix.simulate(answered.with_suffix(".toml"))
     settings = settings_for(answer.study.stability, answer.cage)
@@ -166,7 +166,7 @@ def test_whirl_of_the_samples_is_that_of_the_engine(answered):
     orbit = swept(run.time[part], run.position[part], run.velocity[part])
     assert run.orbit_speed == engine.orbit_speed[0, 0]
     assert run.orbit_speed == pytest.approx(orbit + turn, abs=5e-5 * turn)
-    assert run.mean_offset == pytest.approx(np.hypot(*run.position[part].T).mean(), rel=1e-6)
+    assert run.mean_offset == pytest.approx(np.hypot(*run.position[part].T).mean(), rel=6e-6)
     if answer.cage.is_in_space:
         cone = swept(run.time[part], run.lean[part], run.lean_rate[part])
         assert run.cone_speed == pytest.approx(cone + turn, abs=2.5e-4 * turn)

@@ -15,6 +15,7 @@ from separatrix.chain.solution import solve
 from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
+from separatrix.study.study import CageModel, with_model
 from separatrix.verdict.judgement import judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import MOST_CASES, sweep
@@ -54,8 +55,9 @@ def test_a_case_is_the_study_with_those_values():
 
 def test_a_verdict_is_that_of_the_whole_ensemble():
     """With its evidence, as `judge` gives it."""
-    (one,) = sweep(QUICK, [{"ball_cage_friction": 0.3}], verdicts=True).cases
-    found = solve(QUICK)
+    study = with_model(QUICK, CageModel.PAPER)
+    (one,) = sweep(study, [{"ball_cage_friction": 0.3}], verdicts=True).cases
+    found = solve(study)
     cage = moving_cage(found, 0.3)
     judged = judge(cage, Runner().whole_ensemble(cage, QUICK.stability), capacity=transmitted_force(found))
     assert (one.verdict, one.reason) == (judged.verdict.name, judged.reason)
