@@ -16,8 +16,8 @@ MOTIONS = ("plane", "space")
 def written(request, tmp_path_factory):
     """The page of a short run."""
     place = tmp_path_factory.mktemp(request.param)
-    moved = STUDY.replace("[cage]", f'[cage]\nmotion = "{request.param}"')
-    (place / "small.toml").write_text(moved, encoding="utf-8")
+    moved = f'[cage]\nmotion = "{request.param}"\n'
+    (place / "small.toml").write_text(STUDY + moved, encoding="utf-8")
     command = [sys.executable, "-m", "separatrix", "simulate", str(place / "small.toml")]
     subprocess.run([*command, "--out", str(place / "out"), "--quiet"], check=True)
     return place / "out" / "moving-cage.html"
@@ -78,10 +78,12 @@ def test_its_own_page_plays_without_a_server(written, browser):
 
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_the_local_page_plays_it(view, server, motion):
-    """From the answer of a run whose motion was chosen in the form; no inline script is needed."""
+    """From the answer of a run whose model was chosen in the form; no inline script is needed."""
+    moved = f'extends = "small.toml"\n[cage]\nmotion = "{motion}"\n'
+    (server.folder / f"{motion}.toml").write_text(moved, encoding="utf-8")
     page = view()
-    page.goto(f"{server.address}/study/small.toml")
-    opened(page, "simulate").get_by_label("motion").select_option(motion)
+    page.goto(f"{server.address}/study/{motion}.toml")
+    opened(page, "simulate").get_by_label("model").select_option("paper")
     run(page, "simulate")
     page.get_by_role("link", name="Show the answer").first.click()  # of the newest job
     page.get_by_role("link", name="The moving cage").click()
