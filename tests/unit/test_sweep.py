@@ -65,6 +65,19 @@ def test_a_verdict_is_that_of_the_whole_ensemble():
         assert getattr(one, name) == getattr(judged, name)
 
 
+@pytest.mark.parametrize("model", list(CageModel))
+def test_a_margin_is_a_safety_factor_in_the_full_model(model):
+    """Critical friction over friction; in the paper's model the threshold less eta. Never both."""
+    (one,) = sweep(with_model(QUICK, model), [{"ball_cage_friction": 0.3}], margins=True).cases
+    if model is CageModel.PAPER:
+        assert one.margin == one.restitution_threshold - one.restitution_factor
+        assert (one.safety_factor_low, one.is_below_margin) == (None, one.margin < 0.0)
+        return
+    assert one.margin is None
+    assert one.safety_factor_low <= one.own_critical_friction / 0.3 == one.safety_factor
+    assert one.is_below_margin is (one.own_critical_friction < 0.3)
+
+
 def test_a_refused_case_is_a_row_with_its_reason():
     """The others are answered; what was known before the refusal stays."""
     found = sweep(STUDY, [{"cage.mass": 0.0035, "bearing.ball_diameter": d} for d in (0.007144, 0.5)])

@@ -32,8 +32,8 @@ NOWHERE: Metre = 1e6
 """Where something is that is never met: finite, so that a difference of two is a number."""
 
 LEAST_PIVOT = 3e-3
-"""Pivoting speed, as a share of the initial disturbance, below which friction would turn round within a
-step."""
+"""Least pivoting speed, as a share of the orbital speed of the balls (of the disturbance, where these are at
+rest): below it friction would turn round within a step."""
 
 GAUSS = 3
 """Strips of a land of some width: they hold its force and moment while all of it touches."""

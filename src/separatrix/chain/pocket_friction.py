@@ -69,7 +69,7 @@ def pocket_conditions(
     ball_cage_stiffness : float
         Linear stiffness of the pocket; Hertz's contact behind it gives the pressure [N/m].
     cage_mass, felt_mass : float
-        Of the cage, with which stiffness and damping ratio are told, and what an impact feels of it where the
+        Of the cage, to which stiffness and damping ratio belong, and what an impact feels of it where the
         cage may turn [kg].
     damping_ratio : float
         Of the impact, from the chain: the races yield and take force from it [-].
