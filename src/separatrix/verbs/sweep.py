@@ -302,7 +302,7 @@ def _panels(answer: Part, way: Way) -> Iterator[Panel]:
         yield panel("Probability that the cage is stable", y, chances)
     safe = [one for one in answer.cases if "safety_factor" in one]
     if safe:
-        found = _over(answer, safe, way, "safety_factor", size=3.0)
+        found = _over(answer, safe, way, "safety_factor", marker="D", size=4.0, colour=BLUE)
         bound = Across(at=1.0, axis="y", line=":")
         yield panel("Safety factor", axis("safety_factor", "-", [], is_log=True), (found, bound))
     whirling = [one for one in answer.cases if one.get("orbit_frequency")]
