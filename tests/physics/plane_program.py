@@ -2,7 +2,8 @@
 
 It shares no code with the engine but the damper of the land, which test_cage_closed_cases judges. Of the
 engine's model it has that a pocket acts in the plane of orbit and axis of its ball, and that friction acts
-along the true sliding and, in a pocket, is in proportion to it below the pivoting speed.
+along the true sliding and, in a pocket, is in proportion to it below the pivoting speed. A fluid that moves
+with the cage is at rest in a frame that turns at its own speed, where it has added mass and damping.
 """
 
 import math
@@ -13,6 +14,7 @@ from scipy.integrate import solve_ivp
 
 from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import rebound_damping
+from separatrix.chain.ball_traction import BallTraction
 from separatrix.ground.units import Array
 from separatrix.study.study import Guidance, PocketShape
 
@@ -63,6 +65,16 @@ class Plane:
         self.reach = cage.pitch_radius if cage.land_radius is None else cage.land_radius
         ring = cage.inner_speed if cage.guidance is Guidance.INNER else cage.outer_speed
         self.ring = ring - cage.cage_speed
+
+    def held(self, law: BallTraction, u: Array, turn: complex) -> Array:
+        """Traction of every ball at its azimuth [N]."""
+        shares = []
+        for waves in (self.cage.capacity_waves, self.cage.slope_waves):
+            pairs = enumerate(zip(waves[1::2], waves[2::2], strict=True), start=1)
+            around = sum(complex(a, -b) * (self.at * turn) ** h for h, (a, b) in pairs)
+            shares.append(np.maximum(waves[0] + np.real(around), 0.02) if waves else np.ones(len(u)))
+        most, slope = shares[0] * law.capacity, shares[1] * law.slope
+        return slope * u / (1.0 + (slope * u / most) ** 4) ** 0.25
 
     def pockets(
         self, s: float, g: complex, vg: complex, turned: float, rate: float, lead: Array, u: Array
@@ -125,9 +137,13 @@ class Plane:
         pressed, moment = self.land_force(s, g, vg, turned, rate)
         force = np.sum((radial + 1j * along) * self.at) + pressed
         moment += moments.sum() - ((e / turn).conjugate() * force).imag
-        pull = force * turn / self.mass + cage.gravity * cage.mass / self.mass
+        F = cage.fluid_speed * s
+        rise = (1.0 - cage.ramp_start) / cage.ramp_time if 0.0 < cage.ramp_time > t else 0.0
+        carried = cage.added_mass * (2j * F * v + (F * F + 1j * cage.fluid_speed * rise) * centre)
+        carried -= s * cage.fluid_damping * (v - 1j * F * centre)
+        pull = (force * turn + carried + cage.gravity * cage.mass) / self.mass
         leads = own - s * along / cage.race_damping if law is None else u
-        slower = [] if law is None else (-along - law.force(y[6 + Z :] / s)) / law.mass
+        slower = [] if law is None else (-along - self.held(law, y[6 + Z :] / s, turn)) / law.mass
         body = [v.real, v.imag, pull.real, pull.imag, spin, moment / cage.moment_of_inertia]
         return np.concatenate([body, leads, slower])
 

@@ -28,6 +28,8 @@ def random_cage(rng: np.random.Generator, space: bool) -> MovingCage:
         unbalance=1e-5 * mass, dynamic_unbalance=1e-4, gravity=draw(0.0, 10.0), axial_gravity=draw(0.0, 10.0),
         added_mass=0.1 * mass, pivot_speed=0.05, groove_damping=700.0, groove_stiffness=4e6,
         orbital_cosines=(draw(-0.02, 0.02),), orbital_sines=(draw(-0.02, 0.02),),
+        capacity_waves=(0.7, draw(-0.3, 0.3), draw(-0.3, 0.3)),
+        slope_waves=(0.6, draw(-0.3, 0.3), 0.0, 0.05, 0.1),
         ramp_time=2e-3, ramp_start=0.3, pocket_spacing_scatter=0.05, ball_diameter_scatter=1e-6,
         pocket_position_scatter=1e-6, axial_kick=0.1, tilt_kick=0.1,
         motion=MotionModel.SPACE if space else MotionModel.PLANE,

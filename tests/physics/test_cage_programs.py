@@ -22,8 +22,12 @@ BODY = {
     "unbalance": 2e-6, "gravity": 300.0, "land_stiffness": 1e7, "land_friction": 0.05,
     "land_restitution": 1.0, "ramp_time": 2e-3, "ramp_start": 0.5,
     "orbital_cosines": (0.15, 0.05), "orbital_sines": (-0.05, 0.1),
+    "capacity_waves": (0.6, 0.35, 0.1, 0.02, -0.05), "slope_waves": (0.5, 0.4, 0.05),
 }  # fmt: skip
-INNER = {"guidance": Guidance.INNER, "land_radius": 0.029, "added_mass": 0.008}
+INNER = {
+    "guidance": Guidance.INNER, "land_radius": 0.029,
+    "added_mass": 0.008, "fluid_speed": 900.0, "fluid_damping": 20.0,
+}  # fmt: skip
 TIME = 3e-3
 CAGES = {
     "damper, outer land": replace(ON_A_LAND, **BODY, land_clearance=3e-4),

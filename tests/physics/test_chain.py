@@ -7,7 +7,8 @@ import pytest
 
 from separatrix.cage.disturbance import free_leads
 from separatrix.cage.moving_cage import moving_cage, turned_forward
-from separatrix.chain.contacts import orbital_waves
+from separatrix.cage.numbers import waves_of
+from separatrix.chain.contacts import waves_around
 from separatrix.chain.impact_restitution import lubrication_curve
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
@@ -104,7 +105,7 @@ def test_as_many_harmonics_as_the_balls_can_tell(count):
     azimuth = 2.0 * np.pi * np.arange(count) / count
     highest = min(4, (count - 1) // 2)
     speeds = 500.0 + 3.0 * np.cos(highest * azimuth) - 2.0 * np.sin(highest * azimuth)
-    waves = orbital_waves(speeds, azimuth, 0.1)
+    waves = waves_around(0.1 * speeds, azimuth)
     assert len(waves.cosines) == len(waves.sines) == highest
     # 1e-11: rounding of the speeds, of which the waves are 3 out of 500
     assert (waves.cosines[-1], waves.sines[-1]) == pytest.approx((0.3, -0.2), rel=1e-11)
@@ -116,11 +117,11 @@ def test_waves_beyond_those_that_hold_nearly_all_are_left_out():
     azimuth = 2.0 * np.pi * np.arange(13) / 13
     for power, kept in ((1e-5, 1), (1e-3, 3)):
         speeds = 500.0 + np.cos(azimuth) + np.sqrt(power) * np.cos(3.0 * azimuth)
-        waves = orbital_waves(speeds, azimuth, 0.1)
+        waves = waves_around(0.1 * speeds, azimuth)
         assert len(waves.cosines) == kept
         # 1e-11: rounding of the speeds, of which the waves are 1 out of 500
         assert waves.share == pytest.approx(1.0 if kept == 3 else 1.0 / (1.0 + power), rel=1e-11)
-    fifth = orbital_waves(500.0 + np.cos(2.0 * azimuth) + np.sin(5.0 * azimuth), azimuth, 0.1)
+    fifth = waves_around(500.0 + np.cos(2.0 * azimuth) + np.sin(5.0 * azimuth), azimuth)
     assert fifth.share == pytest.approx(0.5, rel=1e-11)  # of two waves of equal variance; as above
 
 
@@ -135,3 +136,34 @@ def test_a_bearing_that_turns_backward_is_the_mirror_image_of_one_that_turns_for
     assert mirror.cage_speed == pytest.approx(there.cage_speed, rel=1e-9)
     assert mirror.orbital_cosines == pytest.approx(there.orbital_cosines, abs=1e-7)
     assert mirror.orbital_sines == pytest.approx(there.orbital_sines, abs=1e-7)
+    assert mirror.capacity_waves == pytest.approx(there.capacity_waves, abs=1e-6)
+    assert mirror.slope_waves == pytest.approx(there.slope_waves, abs=1e-6)
+
+
+@pytest.mark.parametrize("change", [{"radial_load": 1000.0}, {"moment": 5.0}])
+def test_every_ball_is_held_by_its_own_loads(change):
+    """Capacity f_BT (Q_i + Q_o) of each; the slope as in an axial bearing whose balls have its inner load."""
+    study = replace(SHIPPED, operation=replace(SHIPPED.operation, **change))
+    state = solve(study)
+    found, cage = state.bearing.equilibrium, moving_cage(state, 0.0)
+    loads = found.load_inner + found.load_outer
+    at = [waves_of(cage)[:, n : n + 2] for n in (2, 4)]
+    means = cage.capacity_waves[0], cage.slope_waves[0]
+    capacity, slope = (
+        mean
+        + sum(
+            a * np.cos(h * found.azimuth) + b * np.sin(h * found.azimuth) for h, (a, b) in enumerate(one, 1)
+        )
+        for mean, one in zip(means, at, strict=True)
+    )
+    # harmonics leave 1e-4 of the variance
+    np.testing.assert_allclose(capacity, loads / loads.max(), atol=5e-3)
+    least = int(np.argmin(loads))
+    axial = replace(
+        SHIPPED.operation,
+        axial_load=13.0 * found.load_inner[least] * np.sin(found.contact_angle_inner[least]),
+    )
+    alone = solve(replace(SHIPPED, operation=axial)).mobility
+    # 6 and 8 % measured, from contact angles a degree apart
+    assert slope[least] * state.mobility.traction.slope == pytest.approx(alone.traction.slope, rel=0.1)
+    assert change != {"radial_load": 1000.0} or min(slope) < 0.45

@@ -141,7 +141,8 @@ def slopes_of_engine(cage):
     step = 1e-5 * np.array([1.0, 1.0 / R, 1.0 / R, 1.0 / R])
     s, a, places = np.zeros(rows.SPACE_STATES), np.zeros(rows.SUMS), np.zeros((1, rows.BALL_ROWS))
     s[rows.RAMP : rows.RAMP + LANES] = a[rows.PER_RAMP : rows.PER_RAMP + LANES] = 1.0
-    places[0, rows.COSINE : rows.COSINE + LANES] = places[0, rows.APART : rows.APART + LANES] = 1.0
+    for row in (rows.COSINE, rows.APART, rows.CAPACITY_SHARE):
+        places[0, row : row + LANES] = 1.0
 
     def rates(speeds):
         state, found = np.repeat([[0.0, *speeds]], LANES, axis=1), np.zeros((1, 5 * LANES))

@@ -4,15 +4,23 @@ import math
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from separatrix.chain.pocket_friction import EFFUSIVITY, flash_temperature
 from separatrix.chain.solution import solve
 from separatrix.study.cautions import beyond_bearings, plausible_cage_masses
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallBearing, Operation, PocketShape, Study
 from separatrix.verbs import restitution
 from separatrix.verbs.verb import NoOptions
-from separatrix.verdict.beyond_models import Moved, beyond_motion, pocket_pressure, transmitted_force
+from separatrix.verdict.beyond_models import (
+    Moved,
+    bending_frequency,
+    beyond_motion,
+    pocket_pressure,
+    transmitted_force,
+)
 
 SHIPPED = read_study("cryogenic-turbopump", "paper")
 CAGE = SHIPPED.cage
@@ -149,6 +157,47 @@ def test_pressure_in_a_pocket_is_hertz_of_a_ball_on_a_flat():
     cubed = 6 * force / sum(each) ** 2 / (math.pi**3 * (bearing.ball_diameter / 2) ** 2)
     # the same law in another form: rounding of two roots
     assert pocket_pressure(bearing, SOFT, force) == pytest.approx(cubed ** (1 / 3), rel=1e-12)
+
+
+def test_heat_of_a_strong_impact_is_noted():
+    """Above 30 N, for the row that gets hottest."""
+    cold, warm = ROW._replace(largest_contact_force=29.0, friction=0.2), ROW._replace(friction=0.09)
+    assert list(beyond_motion(STATE, [cold])) == []
+    (note,) = beyond_motion(STATE, [cold, warm, warm._replace(name="B", friction=0.12)])
+    assert re.search(r"50 N, friction on B heats the ball's surface by up to [4-9]\d\d K", note)
+    assert flash_temperature(0.1, 0.0, 2e-4, 25.0) == flash_temperature(0.1, 50.0, 2e-4, 0.0) == 0.0
+
+
+def test_a_surface_heats_as_a_half_space_under_constant_heat():
+    """One dimension in finite differences: 2 q sqrt(t/pi)/e."""
+    steps, cells, e = 8000, 400, EFFUSIVITY
+    t, rise = 2.0 * 2e-4 / 25.0, np.zeros(cells)
+    h = 8.0 / cells * math.sqrt(t)  # conductivity and heat capacity of e each: diffusivity 1
+    heat = 0.1 * 25.0 * 50.0 / (math.pi * 2e-4**2)
+    for _ in range(steps):
+        flux = np.concatenate([[heat], e * (rise[:-1] - rise[1:]) / h, [0.0]])
+        rise += t / steps * (flux[:-1] - flux[1:]) / (e * h)
+    surface = rise[0] + 0.5 * h * heat / e
+    # second order in cells: 1e-4 of the rise
+    assert flash_temperature(0.1, 50.0, 2e-4, 25.0) == pytest.approx(surface, rel=1e-3)
+
+
+def test_a_ring_that_bends_as_fast_as_it_whirls_is_noted():
+    """Its first bending by Rayleigh's quotient of two waves round: what a ring of E, I and rho A has."""
+    wall = replace(SOFT, elastic_modulus=5e9, density=1500.0)
+    size = {"outer_diameter": 0.070, "inner_diameter": 0.062, "width": 0.014}
+    shaped = replace(SHIPPED.cage, **size, material=wall)
+    radius, thickness = 0.033, 0.004
+    angle = np.linspace(0.0, 2.0 * math.pi, 400, endpoint=False)
+    w, v = np.cos(2 * angle), -0.5 * np.sin(2 * angle)  # outward; along, without stretching
+    curved = (w - 4.0 * w) / radius**2  # w + w''
+    stiff = 5e9 * thickness**3 / 12.0 * np.mean(curved**2)
+    squared = stiff / (1500.0 * thickness * np.mean(w**2 + v**2))
+    found = bending_frequency(shaped, None)
+    assert found == pytest.approx(math.sqrt(squared) / (2.0 * math.pi), rel=1e-12)  # the same by other means
+    notes = list(beyond_motion(replace(STATE, study=replace(SHIPPED, cage=shaped), candidate=None), [ROW]))
+    assert any("first bends at" in note for note in notes)
+    assert bending_frequency(SHIPPED.cage, None) is None
 
 
 def test_a_pocket_that_yields_is_noted_if_its_strength_is_known():

@@ -14,7 +14,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from separatrix.ground.units import Array, Hertz, Joule, Kilogram, Metre, NewtonPerMetre, Ratio, Second
+from separatrix.ground.units import (
+    Array,
+    Hertz,
+    Joule,
+    Kilogram,
+    Metre,
+    NewtonPerMetre,
+    PerSecond,
+    Ratio,
+    Second,
+)
 from separatrix.study.pocket_shape import PocketShape, end_half_play
 
 if TYPE_CHECKING:
@@ -33,7 +43,7 @@ def linear_whirl_frequency(cage: MovingCage) -> Hertz:
 
 def whirl_rate(cage: MovingCage) -> float:
     r""":math:`\omega_0 = \sqrt{Zk/2M}` [rad/s]."""
-    return math.sqrt(cage.ball_count * cage.ball_cage_stiffness / (2.0 * cage.mass))
+    return math.sqrt(cage.ball_count * cage.ball_cage_stiffness / (2.0 * moving_mass(cage)))
 
 
 def linear_critical_friction(cage: MovingCage) -> Ratio:
@@ -43,7 +53,7 @@ def linear_critical_friction(cage: MovingCage) -> Ratio:
     """
     if cage.traction is not None:
         return _inertial_critical_friction(cage, cage.traction)
-    return math.sqrt(2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count) / cage.race_damping
+    return math.sqrt(2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count) / cage.race_damping
 
 
 def _inertial_critical_friction(cage: MovingCage, law: BallTraction) -> Ratio:
@@ -67,8 +77,14 @@ def room(cage: MovingCage) -> Metre:
 
 
 def moving_mass(cage: MovingCage) -> Kilogram:
-    """Mass that moves across the axis: of the cage, and in space of the fluid that moves with it [kg]."""
+    """Mass that moves across the axis: of the cage and of the fluid that moves with it [kg]."""
     return cage.mass + cage.added_mass
+
+
+def centrifugal_stiffness(cage: MovingCage) -> NewtonPerMetre:
+    r"""Pull away from the axis over the offset, :math:`m\Omega^2 + m_a(\Omega - W)^2` in a fluid [N/m]."""
+    fluid = cage.added_mass * (cage.cage_speed - cage.fluid_speed) ** 2
+    return cage.mass * cage.cage_speed**2 + fluid
 
 
 def drive_energy(cage: MovingCage) -> Joule:
@@ -79,15 +95,20 @@ def drive_energy(cage: MovingCage) -> Joule:
 
     with the room :math:`w`: the depth of the centrifugal potential, which is also the energy, in the turning
     frame, of a cage that rests on its land at a place fixed in space; the fall across the room under
-    gravity and unbalance; and an impact of balls that lead and lag at speeds up to V. In space the fluid
-    that moves with the cage counts in the first and the last M; and gravity along the axis and dynamic
-    unbalance act over half the axial clearance :math:`w_z` of the pockets, and the tilt :math:`w_z/R`.
+    gravity and unbalance; and an impact of balls that lead and lag at speeds up to V. The fluid that moves
+    with the cage counts in the first term by its own speed, and in the last M. In space gravity along the
+    axis and dynamic unbalance act over half the axial clearance :math:`w_z` of the pockets, and the tilt
+    :math:`w_z/R`.
     """
     w, M, speed, R = room(cage), moving_mass(cage), cage.cage_speed, cage.pitch_radius
     fall = 2.0 * w * (cage.mass * cage.gravity + cage.unbalance * speed**2)
     pairs = zip(cage.orbital_cosines, cage.orbital_sines, strict=True)
     V = sum(math.hypot(*pair) for pair in pairs)
-    across = 0.5 * M * (speed * w) ** 2 + fall + 0.5 * (M + cage.moment_of_inertia / R**2) * (2.0 * V) ** 2
+    across = (
+        0.5 * centrifugal_stiffness(cage) * w**2
+        + fall
+        + 0.5 * (M + cage.moment_of_inertia / R**2) * (2.0 * V) ** 2
+    )
     if not cage.is_in_space:
         return across
     leaning = abs(cage.moment_of_inertia - cage.transverse) * cage.dynamic_unbalance
@@ -108,19 +129,19 @@ def drifts(cage: MovingCage) -> bool:
     return math.isinf(cage.land_gap) and (cage.cage_speed != 0.0 or cage.gravity > 0.0)
 
 
-def drift_rate_law(cage: MovingCage) -> float:
+def drift_rate_law(cage: MovingCage) -> PerSecond:
     r"""Growth rate of a landless cage's offset in the turning frame, :math:`2M\Omega^2/(ZC_\mu)` [1/s].
 
     The slow root of the polynomial, for :math:`\Omega \ll \omega_0` and a small friction; 0 with a land.
     """
-    law = 2.0 * cage.mass * cage.cage_speed**2 / (cage.ball_count * cage.slow_damping)
+    law = 2.0 * centrifugal_stiffness(cage) / (cage.ball_count * cage.slow_damping)
     return law if math.isinf(cage.land_gap) else 0.0
 
 
 def felt_mass(cage: MovingCage, *, may_turn: bool = True) -> float:
     """Mass that an impact feels: M, or 1/(1/M + R^2/J) where the cage may turn, M/2 for a thin ring [kg]."""
     turning = cage.pitch_radius**2 / cage.moment_of_inertia if may_turn else 0.0
-    return 1.0 / (1.0 / cage.mass + turning)
+    return 1.0 / (1.0 / moving_mass(cage) + turning)
 
 
 LONG = 50.0

@@ -3,6 +3,9 @@ r"""The frame that turns with the ball set, and where the geometric centre and a
 The state is that of the centre of mass and of the principal axis. Contacts act on the geometric ones, which
 unbalance sets apart: the centre by :math:`\varepsilon`, the axis by the angle :math:`\delta`, both in a
 direction fixed to the cage.
+
+A fluid that moves with the cage is at rest in a frame that turns at its own mean speed: there its force is
+:math:`-m_a \ddot z - c \dot z`, and here that with :math:`W` and :math:`\Omega - W` in place of the speeds.
 """
 
 from __future__ import annotations
@@ -55,11 +58,15 @@ def cage_rates(s, d, a, p, space):
         fx, fy = a[FX + l] + a[LX + l], a[FY + l] + a[LY + l]
         fs, radius = a[FS + l] + a[LS + l], p[RADIUS + l]
         fs += p[ECCENTRICITY + l] * p[PER_RADIUS + l] * (fx * n - fy * c)
+        swirl, drag, lag = share * p[SWIRL + l], share * p[FLUID_DECAY + l], share * p[FLUID_LAG + l]
+        pulled, turned = share * share * p[SWIRL_PULL + l], rate * p[SWIRL + l]
+        ax += pulled * x - turned * y - drag * (vx - lag * y)
+        ay += pulled * y + turned * x - drag * (vy + lag * x)
         given = p[MASS + l] * (ax * vx + ay * vy)
         spun_up = -rises * radius
         d[X + l], d[Y + l], d[S + l] = vx, vy, vs
-        d[VX + l] = fx * per_m + TWO * om * vy + ax
-        d[VY + l] = fy * per_m - TWO * om * vx + ay
+        d[VX + l] = fx * per_m + TWO * (om - swirl) * vy + ax
+        d[VY + l] = fy * per_m - TWO * (om - swirl) * vx + ay
         d[TURN_COSINE + l] = -om * s[TURN_SINE + l]
         d[TURN_SINE + l] = om * s[TURN_COSINE + l]
         d[RAMP + l] = rate

@@ -89,9 +89,10 @@ def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
             db[LEAD + l] = u
             a[DRIVE + l] += push * (nz * uz + nt * u) if space else push * nt * u
             if ball == ONE_STATE:
-                v = b[speed + l]
+                v, share = b[speed + l], q[SLOPE_SHARE + l]
                 slope, per = p[SLOPE + l], a[PER_RAMP + l]
-                bent = traction(v * per, slope, p[PER_KNEE + l]) + slope * v * (per - ONE)
+                bent = traction(v * per, slope * share, p[PER_KNEE + l] * q[KNEE_SHARE + l])
+                bent += slope * v * (share * per - ONE)
                 # its linear part at full speed, -HELD_RATE v, is taken exactly by the step
                 db[speed + l] = p[HELD_RATE + l] * REST_SPEED - (ft + bent) * p[PER_BALL_MASS + l]
             if ball == FREE:
@@ -102,11 +103,13 @@ def ball_rates(s, of_balls, rates_of, a, p, places, ball, space, level):
                 turn, side = (dz + w) * per, lever * ot * per
                 fi, zi, ri, ti = race_force(p, INNER, l, v * per, turn, dr * per, side, lever)
                 fo, zo, ro, to = race_force(p, OUTER, l, v * per, turn, dr * per, side, lever)
-                gain = (fi + fo - ft) * per_m
+                held = q[CAPACITY_SHARE + l]
+                gain = (held * (fi + fo) - ft) * per_m
                 base_r, base_t = ramp * p[SPIN_R + l], ramp * p[SPIN_T + l]
                 db[speed + l] = gain
-                db[speed + LANES + l] = (lever * nt * er + zi + zo) * per_j - gain * per_r
+                db[speed + LANES + l] = (lever * nt * er + held * (zi + zo)) * per_j - gain * per_r
                 db[speed + 2 * LANES + l] = (
-                    (lever * (nz * et - nt * ez) + ri + ro) * per_j + (om + w) * ot - om * base_t
+                    (lever * (nz * et - nt * ez) + held * (ri + ro)) * per_j + (om + w) * ot - om * base_t
                 )
-                db[speed + 3 * LANES + l] = (ti + to - lever * nz * er) * per_j - (om + w) * o_r + om * base_r
+                pivoted = held * (ti + to) - lever * nz * er
+                db[speed + 3 * LANES + l] = pivoted * per_j - (om + w) * o_r + om * base_r

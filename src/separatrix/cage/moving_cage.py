@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
@@ -33,6 +34,7 @@ from separatrix.ground.units import (
     NewtonPerMetre,
     NewtonPerMetre1_5,
     NewtonSecondPerMetre,
+    PerSecond,
     Radian,
     RadianPerSecond,
     Ratio,
@@ -55,7 +57,7 @@ LEVER: Metre = 1e-9
 
 _SAME = cage_design.POCKET_AND_LAND
 _SIZE, _AMOUNT, _RADIUS = positive(1e-30, 1e12), between(0.0, 1e12), positive(1e-9, 1e3)
-_TURNS, _SPEEDS = between(-1e7, 1e7), between(-1e12, 1e12)
+_TURNS, _SPEEDS, _AMOUNTS = between(-1e7, 1e7), between(-1e12, 1e12), between(-1e3, 1e3)
 
 
 @record
@@ -110,6 +112,9 @@ class MovingCage:
     gravity: MetrePerSecond2 = key(_AMOUNT, default=0.0)  # across the axis, along azimuth 0
     axial_gravity: MetrePerSecond2 = key(between(-1e6, 1e6), default=0.0)  # gravity along the axis
     added_mass: Kilogram = key(_AMOUNT, default=0.0)  # of fluid that moves along, across the axis
+    fluid_speed: RadianPerSecond = key(_TURNS, default=0.0)  # W, mean speed of that fluid round the axis
+    fluid_damping: NewtonSecondPerMetre = key(_AMOUNT, default=0.0)  # its drag across the axis
+    orbit_by_diameter: PerSecond = key(_TURNS, default=0.0)  # orbital speed over the diameter of a ball
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)  # square, cylindrical or elongated
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
     pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start
@@ -127,6 +132,12 @@ class MovingCage:
     """A_h: a free ball at azimuth p, fixed in space and 0 along the radial load, is faster than the ball set
     by the sum of A_h cos h p + B_h sin h p over h = 1, 2, ..."""
     orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(_SPEEDS, default=())  # B_h
+    capacity_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(_AMOUNTS, default=())
+    """Most that the races hold of a ball at azimuth p, over that of `traction` or `free_ball`: its mean, then
+    pairs of A_h, B_h. Empty: all balls alike."""
+    slope_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(
+        _AMOUNTS, default=()
+    )  # the same of the law's slope
     ramp_time: Second = key(not_negative(1e4), default=0.0)  # in which all speeds rise; 0: none
     ramp_start: Ratio = key(between(0.0, 1.0, open_low=True), default=0.1)  # of the speeds, at its start
     axial_kick: Ratio = key(_AMOUNT, default=0.0)  # of a disturbance, along the axis
@@ -146,8 +157,10 @@ class MovingCage:
 
     @property
     def slow_damping(self) -> NewtonSecondPerMetre:
-        """Damping of a ball that is pushed slowly: C_mu, or the slope of its law of traction [N s/m]."""
-        return self.race_damping if self.traction is None else self.traction.slope
+        """Damping of a ball that is pushed slowly: C_mu, or the mean slope of the law of traction [N s/m]."""
+        if self.traction is None:
+            return self.race_damping
+        return self.traction.slope * (self.slope_waves[0] if self.slope_waves else 1.0)
 
     @property
     def transverse(self) -> KilogramMetre2:
@@ -242,11 +255,20 @@ def turned_forward(cage: MovingCage) -> MovingCage:
         cage,
         cage_speed=0.0 - cage.cage_speed,
         inner_speed=0.0 - cage.inner_speed,
+        fluid_speed=0.0 - cage.fluid_speed,
+        orbit_by_diameter=0.0 - cage.orbit_by_diameter,
         outer_speed=0.0 - cage.outer_speed,
         pocket_angles=tuple(0.0 - a for a in angles[:1]) + tuple(2.0 * math.pi - a for a in angles[:0:-1]),
         orbital_cosines=tuple(0.0 - value for value in cage.orbital_cosines),
+        capacity_waves=_reflected(cage.capacity_waves),
+        slope_waves=_reflected(cage.slope_waves),
         ball_spin=None if spin is None else (0.0 - spin[0], 0.0 - spin[1], spin[2]),
     )
+
+
+def _reflected(waves: tuple[float, ...]) -> tuple[float, ...]:
+    """Waves of a quantity around with the azimuth counted the other way: the sines change their sign."""
+    return tuple(0.0 - value if i and i % 2 == 0 else value for i, value in enumerate(waves))
 
 
 cage_design.share_rules(MovingCage)
@@ -282,6 +304,15 @@ def _harmonics_come_in_pairs(
     elif orbital_cosines and cage_speed == 0.0:
         rule = "must be empty for a ball set at rest: its balls would run apart"
         yield Fault("orbital_cosines", rule, "Give the cage's speed.", str(count))
+
+
+@check(MovingCage)
+def _waves_have_a_mean_and_pairs(
+    capacity_waves: tuple[float, ...], slope_waves: tuple[float, ...], cage_speed: RadianPerSecond
+) -> Faults:
+    for name, waves in (("capacity_waves", capacity_waves), ("slope_waves", slope_waves)):
+        if waves and (len(waves) % 2 == 0 or cage_speed == 0.0):
+            yield Fault(name, "must be a mean and pairs of cosine and sine, of a ball set that turns")
 
 
 @check(MovingCage)
@@ -343,6 +374,12 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
     """
     study, design, body = solution.study, solution.design, solution.inertia
     level, waves = ball or design.ball_model, solution.orbital_waves
+    held: tuple[tuple[float, ...], ...] = ((), ())
+    if waves.cosines and level is not BallModel.DAMPER:
+        held = tuple(
+            (one.mean, *chain.from_iterable(zip(one.cosines, one.sines, strict=True)))
+            for one in solution.held_waves
+        )
     hertz = design.pocket_contact is not PocketContact.LINEAR
     stiffness = solution.restitution.ball_cage_stiffness
     spin = tuple(float(x) for x in solution.bearing.equilibrium.ball_spin.mean(axis=0))
@@ -387,8 +424,12 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
             outer_radius=design.outer_diameter / 2.0 if design.outer_diameter else None,
             orbital_cosines=waves.cosines,
             orbital_sines=waves.sines,
+            capacity_waves=held[0],
+            slope_waves=held[1],
             ramp_time=study.operation.ramp_time,
             ramp_start=study.operation.ramp_start,
+            fluid_speed=_fluid_speed(design, solution),
+            orbit_by_diameter=solution.orbit_by_diameter if design.ball_diameter_scatter else 0.0,
             axial_kick=study.stability.axial_kick,
             tilt_kick=study.stability.tilt_kick,
             motion=design.motion_model,
@@ -400,6 +441,15 @@ def moving_cage(solution: Solution, friction: Ratio, ball: BallModel | None = No
             raise
         raise error.at(f"[cage] {key}", cure=f"It is that of the running cage. {error.cure}") from None
     return cage
+
+
+def _fluid_speed(design: CageDesign, solution: Solution) -> RadianPerSecond:
+    """Mean speed of the fluid round the cage: as stated, or halfway from the cage to the ring beside it."""
+    speed, operation = solution.bearing.cage_speed, solution.study.operation
+    if design.fluid_swirl is not None:
+        return design.fluid_swirl * speed
+    ring = operation.inner_speed if design.guidance is Guidance.INNER else operation.outer_speed
+    return 0.5 * (speed + ring) if design.added_mass else 0.0
 
 
 _OF_THE_CHAIN = {

@@ -114,6 +114,16 @@ def land_strips(cage: MovingCage) -> Array:
     return np.stack([heights, K * share, 2.0 * zeta * math.sqrt(K * moving_mass(cage)) * share], axis=1)
 
 
+def waves_of(cage: MovingCage) -> Array:
+    """Cosines and sines of what balls have around, shape (harmonic, 6): orbital speed, capacity, slope."""
+    orbit = np.array([cage.orbital_cosines, cage.orbital_sines]).T
+    each = [orbit, *(np.reshape(one[1:], (-1, 2)) for one in (cage.capacity_waves, cage.slope_waves))]
+    found = np.zeros((max(map(len, each)), 3, 2))
+    for i, one in enumerate(each):
+        found[: len(one), i] = one
+    return found.reshape(-1, 6)
+
+
 def numbers_of(
     cage: MovingCage, kick: MetrePerSecond, duration: Second, *, least: Second = 0.0, refine: int = 1
 ) -> Numbers:
@@ -128,7 +138,7 @@ def numbers_of(
     step = look / steps
     n, given = np.zeros(of(rows.NUMBERS)), _of_cage(cage, kick, step) | _of_ball(cage, step)
     n[[of(row) for row in given]] = list(given.values())
-    strips, waves = land_strips(cage), np.array([cage.orbital_cosines, cage.orbital_sines]).T.ravel()
+    strips, waves = land_strips(cage), waves_of(cage)
     kind = Kind(
         ball=ball_level(cage),
         space=cage.is_in_space,
@@ -136,14 +146,15 @@ def numbers_of(
         lobes=cage.land_lobes if cage.land_out_of_round > 0.0 else 0,
         balls=cage.ball_count,
         strips=len(strips),
-        harmonics=len(cage.orbital_cosines),
+        harmonics=len(waves),
         steps=steps,
     )
-    return Numbers(kind, n, strips, waves, _limits(cage, kick, duration, least, look))
+    return Numbers(kind, n, strips, waves.ravel(), _limits(cage, kick, duration, least, look))
 
 
 def _of_cage(cage: MovingCage, kick: MetrePerSecond, step: Second) -> dict[int, float]:
     M, R = moving_mass(cage), cage.pitch_radius
+    share = cage.added_mass / M
     side = {Guidance.OUTER: 1.0, Guidance.INNER: -1.0, Guidance.BALL: 0.0}[cage.guidance]
     reach = R if cage.land_radius is None else cage.land_radius
     _, beside, _ = pocket_rectangle(cage)
@@ -171,6 +182,12 @@ def _of_cage(cage: MovingCage, kick: MetrePerSecond, step: Second) -> dict[int, 
         rows.AXIAL_GRAVITY: 0.0 if cage.is_axially_held else cage.axial_gravity,
         rows.ECCENTRICITY: cage.unbalance / M,
         rows.LEAN: cage.dynamic_unbalance,
+        rows.CAPACITY_MEAN: cage.capacity_waves[0] if cage.capacity_waves else 1.0,
+        rows.SLOPE_MEAN: cage.slope_waves[0] if cage.slope_waves else 1.0,
+        rows.SWIRL: share * cage.fluid_speed,
+        rows.SWIRL_PULL: share * cage.fluid_speed * (cage.fluid_speed - 2.0 * cage.cage_speed),
+        rows.FLUID_DECAY: cage.fluid_damping / M,
+        rows.FLUID_LAG: cage.cage_speed - cage.fluid_speed,
         rows.STIFFNESS: cage.ball_cage_stiffness if cage.hertz_coefficient is None else 0.0,
         rows.HERTZ: cage.hertz_coefficient or 0.0,
         rows.BESIDE: beside,

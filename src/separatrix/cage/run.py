@@ -46,9 +46,13 @@ def extreme(row: int) -> int:
     return FIRST_EXTREME + of(row - WATCHED)
 
 
+LEAST_HELD = np.float32(0.02)
+"""Least share of capacity and slope of a ball: a few harmonics of a loaded zone swing below 0 outside it."""
+
+
 @inlined
-def orbit_speeds(s, places, waves, turned):
-    """Speed of every ball's free orbit beyond that of the ball set, at its azimuth in space."""
+def around(s, p, places, waves, turned):
+    """What a ball has at its azimuth: speed of its free orbit beyond the ball set's; how races hold it."""
     power = turned[2 * LANES :]
     for j in range(places.shape[0]):
         q = places[j]
@@ -56,13 +60,20 @@ def orbit_speeds(s, places, waves, turned):
             c, n = s[TURN_COSINE + l], s[TURN_SINE + l]
             turned[l] = power[l] = q[COSINE + l] * c - q[SINE + l] * n
             turned[LANES + l] = power[LANES + l] = q[SINE + l] * c + q[COSINE + l] * n
-            q[OWN_SPEED + l] = ZERO
+            q[OWN_SPEED + l] = q[BY_SIZE + l]
+            q[CAPACITY_SHARE + l], q[SLOPE_SHARE + l] = p[CAPACITY_MEAN + l], p[SLOPE_MEAN + l]
         for h in range(0, waves.size, HARMONIC_NUMBERS):
             for l in range(LANES):
                 c, n = power[l], power[LANES + l]
                 q[OWN_SPEED + l] += waves[h + ORBIT_COSINE + l] * c + waves[h + ORBIT_SINE + l] * n
+                q[CAPACITY_SHARE + l] += waves[h + CAPACITY_COSINE + l] * c + waves[h + CAPACITY_SINE + l] * n
+                q[SLOPE_SHARE + l] += waves[h + SLOPE_COSINE + l] * c + waves[h + SLOPE_SINE + l] * n
                 power[l] = c * turned[l] - n * turned[LANES + l]
                 power[LANES + l] = n * turned[l] + c * turned[LANES + l]
+        for l in range(LANES):
+            capacity = q[CAPACITY_SHARE + l] = max(q[CAPACITY_SHARE + l], LEAST_HELD)
+            slope = q[SLOPE_SHARE + l] = max(q[SLOPE_SHARE + l], LEAST_HELD)
+            q[KNEE_SHARE + l] = slope / capacity
 
 
 @inlined
@@ -352,7 +363,7 @@ def queue(
                 speed_up(s, a, p)
                 for stage in range(4):
                     if waves.size > 0:
-                        orbit_speeds(t, places, waves, turned)
+                        around(t, p, places, waves, turned)
                     rates(t, d, t_balls, d_balls, a, p, places, strips, ball, space, level, lobe_number)
                     if stage == 0:
                         if i == 0:

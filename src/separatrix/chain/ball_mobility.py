@@ -22,6 +22,7 @@ from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.chain.contacts import RaceContact, Rolling, of_both_races
 from separatrix.chain.creep import Creep
 from separatrix.chain.grooved_ball import (
+    LEAST_SHARE,
     Problem,
     contact_friction,
     free_balance,
@@ -421,11 +422,12 @@ def held_ball(asked: Rolling, slip_law: SlipLaw) -> HeldBall:
     ConvergenceError
         The friction of both races does not balance.
     """
-    (bearing, operation, _, film, _), state = asked, asked.state
+    bearing, operation, film, state = asked.bearing, asked.operation, asked.film, asked.state
     ball = state.inner.ball
     if state.equilibrium.orbital_speed[ball] < 0.0:
         turned = replace(operation, inner_speed=-operation.inner_speed, outer_speed=-operation.outer_speed)
-        return held_ball(asked._replace(operation=turned), slip_law)
+        mirrored = None if asked.ball is None else -asked.ball % bearing.ball_count
+        return held_ball(asked._replace(operation=turned, ball=mirrored), slip_law)
     if not (state.inner.load > 0.0 and state.outer.load > 0.0):
         cure = "Raise the axial load or lower the speed."
         raise InputError("[operation] loads and speed", "must press a ball on both races", "", cure)
@@ -540,6 +542,21 @@ def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
         force_law=law.force(speed),
         notes=ball.notes,
     )
+
+
+def shares_of_balls(asked: Rolling) -> tuple[Array, Array]:
+    """Capacity, and slope of its law of traction, of every ball over the most loaded one's, shape (ball,).
+
+    A ball that the inner race hardly touches spins freely and has no slope. Raises as `mobility`.
+    """
+    found, most = asked.state.equilibrium, asked.state.inner.ball
+    loads = found.load_inner + found.load_outer
+    held = found.load_inner > LEAST_SHARE * found.load_outer
+    slopes = np.zeros(loads.size)
+    for ball in np.flatnonzero(held):
+        one = held_ball(asked._replace(ball=int(ball)), SlipLaw.ELASTIC)
+        slopes[ball] = modes(friction_slopes(one), one.masses).held
+    return loads / loads[most], slopes / slopes[most]
 
 
 def linear_mobility(

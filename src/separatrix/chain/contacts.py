@@ -25,7 +25,6 @@ from separatrix.chain.traction_curve import TractionCurve
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     Array,
-    Metre,
     MetrePerSecond,
     Newton,
     Pascal,
@@ -53,7 +52,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RaceContact:
-    """Contact of the most loaded ball with one race."""
+    """Contact of a ball, the most loaded one if nothing else is said, with one race."""
 
     ball: int  # number of the ball, from 0
     contact_angle: Radian  # under load
@@ -102,11 +101,14 @@ class Rolling(NamedTuple):
     kinematics: KinematicModel
     film: Film
     settings: TractionSettings
+    ball: int | None = None  # whose contacts; None: the most loaded
 
     @property
     def state(self) -> BearingState:
         """Equilibrium and contacts."""
-        return bearing_state(self.bearing, self.operation, self.kinematics, self.film.race_friction)
+        return bearing_state(
+            self.bearing, self.operation, self.kinematics, self.film.race_friction, self.ball
+        )
 
     @property
     def tracks(self) -> tuple[RaceTrack, RaceTrack]:
@@ -116,18 +118,28 @@ class Rolling(NamedTuple):
 
 @lru_cache(maxsize=REMEMBERED)
 def bearing_state(
-    bearing: BallBearing, operation: Operation, kinematics: KinematicModel, race_friction: Ratio
+    bearing: BallBearing,
+    operation: Operation,
+    kinematics: KinematicModel,
+    race_friction: Ratio,
+    ball: int | None = None,
 ) -> BearingState:
-    """Equilibrium and contacts of a bearing, remembered by the value of these records."""
-    found = _unchangeable(equilibrium(bearing, operation, kinematics, race_friction))
-    inner, outer = (_race_contact(bearing, found, race) for race in Race)
+    """Equilibrium of a bearing and contacts of a ball, by default of the most loaded one.
+
+    Remembered by the value of these records.
+    """
+    if ball is None:
+        found = _unchangeable(equilibrium(bearing, operation, kinematics, race_friction))
+        ball = found.most_loaded
+    else:
+        found = bearing_state(bearing, operation, kinematics, race_friction).equilibrium
+    inner, outer = (_race_contact(bearing, found, race, ball) for race in Race)
     turns = operation.inner_speed != 0.0 or operation.outer_speed != 0.0
     notes = tuple(beyond_contacts(bearing, found, (inner, outer), turns=turns))
     return BearingState(equilibrium=found, inner=inner, outer=outer, notes=notes)
 
 
-def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race) -> RaceContact:
-    ball = found.most_loaded
+def _race_contact(bearing: BallBearing, found: Equilibrium, race: Race, ball: int) -> RaceContact:
     angle, load, ratio, speed = (
         float(getattr(found, f"{name}_{race.value}")[ball])
         for name in ("contact_angle", "load", "spin_roll_ratio", "rolling_speed")
@@ -185,48 +197,40 @@ ENOUGH: Ratio = 0.9999
 """Share of the variance of those waves at which the others are left out: speeds to 1 % of their spread."""
 
 ALIKE = 1e-9
-"""Orbital speeds that differ by less than this share of their mean do not differ: an axial load."""
+"""Quantities that differ by less than this share of their mean do not differ: an axial load."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OrbitalWaves:
-    """Speed of a ball at azimuth p beyond the mean: the sum of A_h cos h p + B_h sin h p, h = 1, 2, ...
+class Waves:
+    """A quantity of a ball at azimuth p: its mean, and the sum of A_h cos h p + B_h sin h p, h = 1, 2, ...
 
-    Under a radial load or a moment the balls differ in contact angle, and so in orbital speed. Each ball
-    passes every azimuth, so it leads and lags the ball set periodically.
+    Under a radial load or a moment the balls differ in load and contact angle, and so in orbital speed and in
+    how the races hold them. Each ball passes every azimuth.
     """
 
-    cosines: tuple[MetrePerSecond, ...] = ()  # A_h; none where all balls run alike
-    sines: tuple[MetrePerSecond, ...] = ()  # B_h
+    mean: float
+    cosines: tuple[float, ...] = ()  # A_h; none where all balls are alike
+    sines: tuple[float, ...] = ()  # B_h
     share: Ratio | None = None  # of the variance between the balls that these harmonics hold, if there is any
 
 
-def orbital_waves(orbital_speed: Array, azimuth: Array, pitch_radius: Metre) -> OrbitalWaves:
-    """Discrete Fourier transform of the balls' speeds about their mean.
+def waves_around(values: Array, azimuth: Array) -> Waves:
+    """Discrete Fourier transform of a quantity of every ball, at even azimuths, shape (ball,).
 
-    Parameters
-    ----------
-    orbital_speed, azimuth : ndarray
-        Of each ball, at even azimuths, shape (ball,) [rad/s] and [rad].
-    pitch_radius : float
-        R, which makes speeds along the circumference of them [m].
-
-    Notes
-    -----
     Harmonics up to 4, and below half the balls: what Z balls tell; of these the first ones that hold
     `ENOUGH` of their variance. `share` says how much of the whole is kept.
     """
-    mean = float(np.mean(orbital_speed))
-    beyond = pitch_radius * (orbital_speed - mean)
-    if np.max(np.abs(beyond)) <= ALIKE * abs(mean) * pitch_radius:
-        return OrbitalWaves()
+    mean = float(np.mean(values))
+    beyond = values - mean
+    if np.max(np.abs(beyond)) <= ALIKE * abs(mean):
+        return Waves(mean=mean)
     angles = np.outer(np.arange(1, min(HIGHEST, (azimuth.size - 1) // 2) + 1), azimuth)
     cosines, sines = (2.0 / azimuth.size * (wave(angles) @ beyond) for wave in (np.cos, np.sin))
     power = np.cumsum(cosines**2 + sines**2)
     kept = 1 + int(np.searchsorted(power, ENOUGH * power[-1]))
     share = min(1.0, 0.5 * float(power[kept - 1]) / float(np.mean(beyond**2)))
-    return OrbitalWaves(
-        cosines=tuple(cosines[:kept].tolist()), sines=tuple(sines[:kept].tolist()), share=share
+    return Waves(
+        mean=mean, cosines=tuple(cosines[:kept].tolist()), sines=tuple(sines[:kept].tolist()), share=share
     )
 
 

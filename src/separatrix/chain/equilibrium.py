@@ -30,7 +30,7 @@ from separatrix.chain.grooved_ball import (
 from separatrix.chain.hertz import ContactEllipse, contact_ellipse, contact_modulus, race_curvatures
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import ConvergenceError, InputError
-from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Radian, Ratio
+from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, PerSecond, Radian, Ratio
 from separatrix.study.study import BallBearing, KinematicModel, Operation, Race
 
 LIMIT = 80
@@ -44,6 +44,9 @@ LEAST = 1e-6
 
 HEAVY = 1e-5
 """Load of a ball over E* D^2 from which light loads are reached: about a quarter of a GPa."""
+
+LARGER = 1e-5
+"""Share by which a ball is larger where orbits are compared: a tenth of a micrometre, as of a good grade."""
 
 BOLD = 1e4
 """Factor by which one step of the ring may raise the unbalance; monotone steps are the second choice."""
@@ -161,6 +164,54 @@ def equilibrium(
     both ellipses decide (docs/theory/equilibrium.md). Rigid rings, steady speeds, dry Coulomb friction, no
     force of the cage.
     """
+    p, ring, at = _solved(bearing, operation, model, race_friction, cross_moment)
+    return _finished(p, ring, model, at)
+
+
+def orbit_by_diameter(
+    bearing: BallBearing, operation: Operation, model: KinematicModel, race_friction: Ratio
+) -> PerSecond:
+    """How much faster a larger ball runs round its orbit among the others, over what its diameter is larger.
+
+    The rings stay where the other balls hold them, and the grooves as they are: the larger ball is loaded
+    more, and its angles follow. Mean over the balls [m/s of the pitch circle per m]; 0 for a bearing at rest.
+
+    Raises
+    ------
+    InputError, ConvergenceError
+        As `equilibrium`.
+    """
+    p, ring, at = _solved(bearing, operation, model, race_friction, 0.0)
+    kind = FREE if model is KinematicModel.FREE else CONTROLLED
+    orbits = []
+    for ratio in (1.0 - LARGER, 1.0 + LARGER) if p.ball_mass > 0.0 else ():
+        one = p._replace(
+            ball_diameter=ratio * p.ball_diameter,
+            inner_conformity=p.inner_conformity / ratio,
+            outer_conformity=p.outer_conformity / ratio,
+            ball_mass=ratio**3 * p.ball_mass,
+            ball_inertia=ratio**5 * p.ball_inertia,
+        )
+        states, slopes = at.states.copy(), np.zeros((len(at.states), 6, 2))
+        push = np.zeros((len(states), 6))
+        reached, ball = solve_balls(one, at.grooves.copy(), states, kind, ring.force, push, slopes)
+        if reached > SMOOTHING:
+            message = (
+                f"Ball {ball + 1}: its motion did not settle with a diameter {100 * (ratio - 1):+.2g} %."
+            )
+            raise ConvergenceError(message)
+        orbits.append(p.speed * float(states[:, 2].mean()) * 0.5 * p.pitch_diameter)
+    return (orbits[1] - orbits[0]) / (2.0 * LARGER * p.ball_diameter) if orbits else 0.0
+
+
+def _solved(
+    bearing: BallBearing,
+    operation: Operation,
+    model: KinematicModel,
+    race_friction: Ratio,
+    cross_moment: NewtonMetre,
+) -> tuple[Problem, _Ring, _Place]:
+    """The problem, the loads on its ring, and where ring and balls are in balance."""
     free = model is KinematicModel.FREE
     if free and not 0.0 < race_friction < math.inf:
         cure = "Without friction nothing turns the balls; use race control."
@@ -175,7 +226,7 @@ def equilibrium(
         at = _controlled(p, ring, at)
         if free:
             at = _free(p, ring, at)
-    return _finished(p, ring, model, at)
+    return p, ring, at
 
 
 class _Ring(NamedTuple):

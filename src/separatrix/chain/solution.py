@@ -12,19 +12,20 @@ from functools import cached_property
 
 import numpy as np
 
-from separatrix.chain.ball_mobility import Mobility, free_ball, mobility
+from separatrix.chain.ball_mobility import Mobility, free_ball, mobility, shares_of_balls
 from separatrix.chain.ball_traction import FreeBall
 from separatrix.chain.clearances import Clearances, as_it_runs, running_clearances
 from separatrix.chain.contacts import (
     BearingState,
-    OrbitalWaves,
     RaceTraction,
     Rolling,
+    Waves,
     bearing_state,
-    orbital_waves,
     race_traction,
     require_rolling,
+    waves_around,
 )
+from separatrix.chain.equilibrium import orbit_by_diameter
 from separatrix.chain.impact_restitution import (
     LubricationCurve,
     Restitution,
@@ -42,7 +43,7 @@ from separatrix.chain.pocket_friction import (
     pocket_speed,
 )
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, Ratio
+from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, PerSecond, Ratio
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import cage_candidate, environment_of
@@ -291,10 +292,27 @@ class Solution:
         return self.frictions.get(environment) if environment else None
 
     @cached_property
-    def orbital_waves(self) -> OrbitalWaves:
-        """How the balls run faster and slower around, beyond their mean."""
+    def orbital_waves(self) -> Waves:
+        """Speed of the balls along the pitch circle around the bearing [m/s]."""
         found = self.bearing.equilibrium
-        return orbital_waves(found.orbital_speed, found.azimuth, self.study.bearing.pitch_diameter / 2.0)
+        return waves_around(self.study.bearing.pitch_diameter / 2.0 * found.orbital_speed, found.azimuth)
+
+    @cached_property
+    def held_waves(self) -> tuple[Waves, Waves]:
+        """Capacity and slope of the balls' law of traction around, over those of the most loaded ball."""
+        _ = self.mobility  # refused where that ball does not touch both races
+        capacity, slope = (
+            waves_around(share, self.bearing.equilibrium.azimuth) for share in shares_of_balls(self.rolling)
+        )
+        return capacity, slope
+
+    @cached_property
+    def orbit_by_diameter(self) -> PerSecond:
+        """How much faster a larger ball runs round its orbit, over what its diameter is larger."""
+        asked = self.study
+        return orbit_by_diameter(
+            asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction
+        )
 
     @property
     def orbital_share(self) -> Ratio | None:

@@ -35,6 +35,7 @@ from separatrix.ground.units import (
     MetrePerSecond,
     MetrePerSecond2,
     NewtonPerMetre,
+    NewtonSecondPerMetre,
     Radian,
     Ratio,
     format_quantity,
@@ -309,6 +310,17 @@ class CageDesign:
     axial_gravity: MetrePerSecond2 = key(between(-1e4, 1e4), default=0.0)
     added_mass: Kilogram = key(not_negative(1e4), default=0.0)
     """Of the fluid that moves with the cage across its axis."""
+
+    fluid_swirl: Ratio | None = key(
+        between(-10.0, 10.0), default=None, needs=("added_mass", "no fluid moves with the cage"),
+        without="halfway between the cage and the ring of its land, the outer one without a land",
+    )  # fmt: skip
+    """Mean speed of that fluid round the axis, over that of the cage."""
+
+    fluid_damping: NewtonSecondPerMetre = key(
+        not_negative(1e6), default=0.0, needs=("added_mass", "no fluid moves with the cage")
+    )
+    """Drag of that fluid on the cage across the axis, over their difference in speed."""
 
     @property
     def ball_model(self) -> BallModel:

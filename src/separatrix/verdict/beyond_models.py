@@ -7,12 +7,36 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from typing import NamedTuple
 
+from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.disturbance import with_kicks
-from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
-from separatrix.chain.pocket_friction import contact_radius, pocket_speed
+from separatrix.cage.moving_cage import moving_cage
+from separatrix.chain.impact_restitution import (
+    SOLID_LUBRICATION_LIMIT,
+    hertz_coefficient,
+    hertz_coefficient_for,
+)
+from separatrix.chain.pocket_friction import contact_radius, flash_temperature, pocket_speed
 from separatrix.chain.solution import Solution
-from separatrix.ground.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
-from separatrix.study.study import BallBearing, BallModel, Guidance, Material, MotionModel, PocketShape, Study
+from separatrix.ground.units import (
+    Hertz,
+    Kilogram,
+    Metre,
+    Newton,
+    NewtonPerMetre,
+    Pascal,
+    Ratio,
+    format_quantity,
+)
+from separatrix.study.study import (
+    BallBearing,
+    BallModel,
+    CageDesign,
+    Guidance,
+    Material,
+    MotionModel,
+    PocketShape,
+    Study,
+)
 from separatrix.verdict.judgement import Judgement, KickCount, Verdict
 from separatrix.verdict.stability_curve import RestitutionThreshold
 from separatrix.verdict.which_ball import transmitted_force
@@ -23,6 +47,12 @@ STRONG: Ratio = 1.0
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
 
+
+HOT: Newton = 30.0
+"""Pocket force above which friction heats a ball by hundreds of kelvins (docs/theory/friction.md)."""
+
+STIFF: Ratio = 3.0
+"""First bending frequency of a ring over that of the whirl from which it counts as rigid."""
 
 YIELDS: Ratio = 1.6
 """Largest pressure of a ball on a flat over the strength in simple compression, at which the flat begins to
@@ -36,6 +66,7 @@ class Moved(NamedTuple):
     largest_contact_force: Newton
     largest_offset: Metre
     by_kick: tuple[KickCount, ...] = ()
+    friction: Ratio | None = None
 
 
 def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
@@ -54,6 +85,8 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     if design.motion_model is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
         yield from _tilts(solution)
     yield from _beyond_strength(solution.study, rows)
+    yield from _heats(solution, rows)
+    yield from _bends(solution)
     gap = (design.land_clearance or math.inf) / 2.0 if design.guidance is not Guidance.BALL else math.inf
     far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
     if far:
@@ -111,6 +144,60 @@ def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
             f"The largest pocket force presses a ball into a flat pocket wall beyond {YIELDS:g} times its "
             f"compressive strength, where it begins to yield: {', '.join(weak)}. The pocket dents and wears; "
             "its elastic stiffness is outside its range."
+        )
+
+
+def _heats(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
+    """A sentence where friction in the strongest impact makes so much heat that it may change."""
+    hot = [(row.friction, row) for row in rows if row.friction and row.largest_contact_force > HOT]
+    if not hot:
+        return
+    pocket, ball = solution.pocket, solution.study.bearing.ball_diameter
+    K = hertz_coefficient_for(solution.ball_cage_stiffness, solution.inertia.mass, solution.impact_speed)
+    rises = [
+        (
+            flash_temperature(
+                f,
+                row.largest_contact_force,
+                contact_radius(row.largest_contact_force, K, ball),
+                pocket.slip_speed,
+            ),
+            row,
+        )
+        for f, row in hot
+    ]
+    rise, row = max(rises, key=lambda one: one[0])
+    yield (
+        f"In its strongest impact, {format_quantity(row.largest_contact_force, 'N', 2)}, friction on "
+        f"{row.name} heats the ball's surface by up to {format_quantity(rise, 'K', 2)} (a steel "
+        "ball, all heat into it): such a surface may rub at 0.6 to 1.2 times the friction that was measured, which the verdicts take."
+    )
+
+
+def bending_frequency(design: CageDesign, material: Material | None) -> Hertz | None:
+    r"""First bending of the cage's ring in its plane, pockets not counted; None without a shape.
+
+    :math:`\omega^2 = n^2 (n^2 - 1)^2/(n^2 + 1)\, EI/(\rho A R^4)` with n = 2 waves round a thin ring that
+    does not stretch.
+    """
+    outer, inner, wall = design.outer_diameter, design.inner_diameter, material or design.material
+    if outer is None or inner is None or wall is None or wall.density is None:
+        return None
+    thickness, radius = 0.5 * (outer - inner), 0.25 * (outer + inner)
+    squared = 7.2 * wall.elastic_modulus * thickness**2 / (12.0 * wall.density * radius**4)
+    return math.sqrt(squared) / (2.0 * math.pi)
+
+
+def _bends(solution: Solution) -> Iterator[str]:
+    """A sentence where the ring of the cage bends nearly as fast as it would whirl."""
+    material = solution.candidate.material if solution.candidate else None
+    first = bending_frequency(solution.design, material)
+    whirl = linear_whirl_frequency(moving_cage(solution, 0.0))
+    if first is not None and first < STIFF * whirl:
+        yield (
+            f"The ring of the cage first bends at {format_quantity(first, 'Hz', 2)} (solid, without its "
+            f"pockets), less than {STIFF:g} times the {format_quantity(whirl, 'Hz', 2)} of its whirl, and is "
+            "taken as rigid: bending moved the critical friction of a turbopump's cage by -12 to +18 %."
         )
 
 

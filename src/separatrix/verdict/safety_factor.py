@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from separatrix.cage.closed_forms import moving_mass
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Metre, MetrePerSecond, Ratio
@@ -129,7 +130,7 @@ def _ends(found: Crossing | Side) -> tuple[Ratio | None, Ratio, Ratio | None]:
 
 def hand_estimate(cage: MovingCage) -> Ratio:
     """Critical friction by the closed law, 0.42 sqrt(2 k M/Z)/C with C of a slow push [-]."""
-    stiff = 2.0 * cage.ball_cage_stiffness * cage.mass / cage.ball_count
+    stiff = 2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count
     return HAND * math.sqrt(stiff) / cage.slow_damping
 
 
