@@ -115,6 +115,7 @@ class MovingCage:
     fluid_speed: RadianPerSecond = key(_TURNS, default=0.0)  # W, mean speed of that fluid round the axis
     fluid_damping: NewtonSecondPerMetre = key(_AMOUNT, default=0.0)  # its drag across the axis
     orbit_by_diameter: PerSecond = key(_TURNS, default=0.0)  # orbital speed over the diameter of a ball
+    is_at_walls: bool = False  # runs start with each ball at the wall to which its diameter makes it run
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)  # square, cylindrical or elongated
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
     pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start

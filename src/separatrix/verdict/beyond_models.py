@@ -169,8 +169,9 @@ def _heats(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     rise, row = max(rises, key=lambda one: one[0])
     yield (
         f"In its strongest impact, {format_quantity(row.largest_contact_force, 'N', 2)}, friction on "
-        f"{row.name} heats the ball's surface by up to {format_quantity(rise, 'K', 2)} (a steel "
-        "ball, all heat into it): such a surface may rub at 0.6 to 1.2 times the friction that was measured, which the verdicts take."
+        f"{row.name} heats the ball's surface by up to {format_quantity(rise, 'K', 2)} (a "
+        "steel ball, all heat into it): such a surface may rub at 0.6 to 1.2 times the friction that was "
+        "measured, which the verdicts take."
     )
 
 
