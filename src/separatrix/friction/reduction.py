@@ -12,7 +12,8 @@ from scipy.ndimage import median_filter
 
 from separatrix.friction import cycles, steady
 from separatrix.friction.friction_file import in_words
-from separatrix.friction.logs.log import Conditions, RawLog, of_log
+from separatrix.friction.logs.conditions import Conditions, of_log
+from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.steady import LONG, METHOD, RunIn, run_in
 from separatrix.ground.errors import InputError

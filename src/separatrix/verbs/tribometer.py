@@ -155,10 +155,9 @@ OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "metad
 
 
 def _file(log: RawLog) -> Document:
-    from separatrix.friction.logs import described
     from separatrix.ground.plain_data import plain
 
-    return {name: plain(getattr(log, name)) for name in OF_A_LOG} | {"described": described(log)}
+    return {name: plain(getattr(log, name)) for name in OF_A_LOG}
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
