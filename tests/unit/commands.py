@@ -12,9 +12,11 @@ from pathlib import Path
 
 import pytest
 
+from separatrix.friction.friction_file import FrictionFile, FrictionTest
 from separatrix.front import main
 from separatrix.front.page.worker import work
 from separatrix.ground.errors import InputError
+from separatrix.ground.reader import read
 from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
@@ -86,6 +88,11 @@ def refusal_line(path: str | Path, read=read_study) -> str:
     message = refusal(path, read)
     assert "\n" not in message
     return message
+
+
+def read_friction(path: Path) -> tuple[FrictionTest, ...]:
+    """Return the tests of a friction file."""
+    return read(FrictionFile, path).value.test
 
 
 def rows_of(table: str) -> list[tuple[str, list[str]]]:

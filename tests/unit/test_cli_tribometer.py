@@ -10,8 +10,8 @@ import time
 
 import numpy as np
 import pytest
+from commands import read_friction
 
-from separatrix.friction.friction_file import read_friction
 from separatrix.friction.logs.column_map import column_map
 from separatrix.front import main
 from separatrix.study.reading import read_study

@@ -5,11 +5,11 @@ import sys
 from subprocess import run
 
 import pytest
-from commands import changed, document, refusal, refusal_line, rows_of, written
+from commands import changed, document, read_friction, refusal, refusal_line, rows_of, written
 
 from separatrix.chain.pocket_friction import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
-from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
+from separatrix.friction.friction_file import FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import TestedFriction, fit_friction
 from separatrix.front import main
 from separatrix.ground.errors import InputError
@@ -78,8 +78,9 @@ def test_only_four_keys_are_needed(tmp_path):
     path = written(tmp_path, SMALL, "friction.toml")
     code = (
         "import sys, json; from pathlib import Path\n"
-        "from separatrix.friction.friction_file import read_friction\n"
-        "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
+        "from separatrix.friction.friction_file import FrictionFile\n"
+        "from separatrix.ground.reader import read\n"
+        "read(FrictionFile, Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     assert json.loads(found.stdout) is False

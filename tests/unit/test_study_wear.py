@@ -2,9 +2,8 @@
 
 import commands
 import pytest
-from commands import document, refusal, refusal_line
+from commands import refusal, refusal_line
 from test_study_refusals import VALID
-from test_workbook import workbook
 
 from separatrix.ground.errors import InputError
 from separatrix.study.keys import with_values
@@ -112,20 +111,3 @@ def test_numbers_of_wear_may_be_uncertain_and_varied(tmp_path):
     assert value_in(whole, "film.wear.width") is None
     with pytest.raises(InputError, match=r"\[film\] has no wear that could vary"):
         varied(whole, {"film.wear.share": 0.1})
-
-
-def test_lists_of_wear_are_typed_into_a_workbook(tmp_path):
-    """In one cell, with their unit beside them; the same film as from text."""
-    heads = ["key", "value", "+-", "unit", "meaning"]
-    places = [["wear.across", "-0.1; 0.1", None, "mm"], ["wear.thicknesses", "0; 0.2", None, "um"]]
-    plain = read_study(written(tmp_path, PLACES))
-    (tmp_path / "study.toml").write_text(VALID)
-    sheets = {"study": [heads, ["extends", "study.toml"]], "film": [heads, *places, ["wear.friction", 0.3]]}
-    assert read_study(commands.written(tmp_path, workbook(sheets), "worn.xlsx")).film == plain.film
-
-
-def test_the_answers_name_the_wear(tmp_path, capsys, monkeypatch):
-    """Where strips leave their range in `traction`."""
-    monkeypatch.chdir(tmp_path)
-    path = str(written(tmp_path, BAND))
-    assert any("across the groove" in one for one in document(capsys, "traction", path)["outside"])

@@ -11,8 +11,8 @@ from commands import document, refused, written
 
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import column_map
-from separatrix.friction.logs.log_tables import is_clock, is_number
-from separatrix.friction.logs.raw import seconds
+from separatrix.friction.logs.log import seconds
+from separatrix.friction.logs.tables import is_clock, is_number
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers
 from separatrix.ground.errors import InputError
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from raw_logs import as_written
 
-from separatrix.friction.logs import described, read_log
+from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, column_map
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
@@ -403,7 +403,7 @@ def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
     columns, friction, note, given = MADE[what]
     log = read(tmp_path, csv({"time [s]": TIME} | columns), given and column_map(given))
     np.testing.assert_allclose(log.friction, friction, rtol=ULP)
-    assert ("divided by the radius of the track" in "\n".join(described(log))) == ("torque" in what)
+    assert ("divided by the radius of the track" in "\n".join(log.notes)) == ("torque" in what)
     assert log.missing == ROWS - len(friction)
     assert any(one.startswith(note) for one in log.notes) or not note
     assert any("negative" in one for one in log.notes) == ("negative" in note)
@@ -435,22 +435,6 @@ def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
         first, second = read_all(tmp_path, one + between + two)
         np.testing.assert_array_equal(first.friction, as_written(FRICTION))
         np.testing.assert_array_equal(second.time, as_written(TIME))
-
-
-def test_a_last_value_that_may_be_cut_off_is_noted(tmp_path):
-    """With fewer digits than all others; a whole file has no such note."""
-    notes = [read(tmp_path, content).notes for content in (csv(), csv()[:-4])]
-    assert [any("may be cut off" in note for note in one) for one in notes] == [False, True]
-
-
-def test_description_shows_columns_units_and_reasons(tmp_path):
-    """What is shown before it is trusted."""
-    text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))
-    assert "Bruker UMT text (utf-8, comma, decimal point), 60 rows, sha256" in text
-    assert 'friction: column "COF" (its layout)' in text
-    assert 'time: column "T" in sec (its layout)' in text
-    assert 'not used: "Z"' in text
-    assert "time from 0 s to 14.75 s" in text
 
 
 def test_no_name_and_unit_have_two_meanings():

@@ -215,10 +215,6 @@ class TestFriction:
     cycles: int  # whole cycles averaged; 0 where none are
     drift_rate: float  # change of friction per SI unit of `run_in_axis`, over the steady part
     drift_error: float  # standard error of `drift_rate`
-    stick_slip_amplitude: Ratio
-    """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
-    stick_slip_frequency: float
-    """Of that oscillation, per SI unit of `run_in_axis`; 0 if none exceeds the noise."""
     flags: tuple[str, ...] = ()  # what a reader has to consider, a sentence each
 
     @property
@@ -271,7 +267,7 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     events = _events(log, along, axis)
     loaded = max((one.row for one in events if not one.is_end), default=0)
     kept = slice(loaded, min((e.row for e in events if e.is_end and e.row > loaded), default=log.rows))
-    done, cycle, notes = cycles.clock(log, along)
+    done, notes = cycles.clock(log)
     rows = cycles.Stretch(
         source=log.source,
         along=along[kept],
@@ -283,10 +279,9 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
     steady_rows = slice(kept.start + first, kept.start + first + friction.size)
-    strongest = cycles.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
-        test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found, strongest),
+        test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found),
         steady_rows=steady_rows,
         stretch=stretch,
         run_in=found,
@@ -305,7 +300,6 @@ def _test(
     spans: cycles.Spans,
     mean: steady.SteadyMean,
     found: RunIn | None,
-    oscillation: cycles.Oscillation,
 ) -> TestFriction:
     """Return the numbers of a test, without its flags."""
     friction, whole = stretch.within(spans), stretch.cycle_means(spans)
@@ -334,8 +328,6 @@ def _test(
         cycles=whole.size,
         drift_rate=mean.change / (high - low),
         drift_error=mean.change_error / (high - low),
-        stick_slip_amplitude=oscillation.amplitude,
-        stick_slip_frequency=oscillation.frequency,
     )
 
 

@@ -7,7 +7,7 @@ as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -43,7 +43,7 @@ from separatrix.ground.units import (
     printable,
     shown,
 )
-from separatrix.study import cage_in_bearing
+from separatrix.study import cage_body
 from separatrix.study.ball_bearing import MOST_BALLS as MOST_BALLS
 from separatrix.study.ball_bearing import BallBearing as BallBearing
 from separatrix.study.ball_bearing import Material as Material
@@ -335,44 +335,12 @@ def stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Fau
         yield Fault(("cage", "ball_cage_stiffness"), rule, "Give the stiffness or the material.", "")
 
 
-check(Study)(cage_in_bearing.bars_are_left)
-check(Study)(cage_in_bearing.lands_between_rings)
-check(Study)(cage_in_bearing.ring_between_rings)
-_SIZES = (cage_in_bearing.bars_are_left, cage_in_bearing.ring_between_rings)
-check(Study, after=_SIZES)(cage_in_bearing.body_that_can_be)
-check(Study)(cage_in_bearing.pockets_for_balls)
-
-
-def chosen_model(model: str) -> CageModel:
-    """Model of a name that the command line has.
-
-    Raises
-    ------
-    InputError
-        The model is not known.
-    """
-    known = {str(one.value): one for one in CageModel}
-    if model not in known:
-        raise InputError("--model", f"must be one of {', '.join(known)}", shown(model))
-    return known[model]
-
-
-def with_model(study: Study, model: CageModel) -> Study:
-    """Return the study with another model of its cage.
-
-    Raises
-    ------
-    InputError
-        The cage cannot have it.
-    """
-    if study.cage is None:
-        raise InputError(study.name, "lacks the section [cage]")
-    origins = {**study.origins, "cage.model": f"--model {model.value}"}
-    content = study.content
-    if content is not None:
-        given = {**content["data"].get("cage", {}), "model": model.value}
-        content = {**content, "data": {**content["data"], "cage": given}, "origins": origins}
-    return replace(study, cage=replace(study.cage, model=model), origins=origins, content=content)
+check(Study)(cage_body.bars_are_left)
+check(Study)(cage_body.lands_between_rings)
+check(Study)(cage_body.ring_between_rings)
+_SIZES = (cage_body.bars_are_left, cage_body.ring_between_rings)
+check(Study, after=_SIZES)(cage_body.body_that_can_be)
+check(Study)(cage_body.pockets_for_balls)
 
 
 ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")

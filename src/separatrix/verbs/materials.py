@@ -30,8 +30,7 @@ from separatrix.verbs.parts.telling import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
-    from separatrix.study.library import Library
-    from separatrix.study.library.records import AnyRecord
+    from separatrix.study.library import AnyRecord, Library
 
 EPILOG = (
     "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
@@ -93,7 +92,7 @@ def read_library(libraries: Sequence[str | Path]) -> Library:
 
 def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
     """Return the records of a kind, in any spelling and in the plural too; without one all of them."""
-    from separatrix.study.library.records import KINDS
+    from separatrix.study.library import KINDS
 
     kinds: tuple[str, ...] = KINDS
     if kind is not None:
@@ -140,7 +139,7 @@ def _document(which: str, **content: object) -> Document:
 
 def _served(library: Library, record: AnyRecord, at: Kelvin | None) -> Document:
     """Return a record; at a temperature with the place of the datum of each property that serves there."""
-    from separatrix.study.library.records import contradictions
+    from separatrix.study.library import contradictions
 
     whole = record.plain()
     if at is None or record.kind == "friction table":

@@ -160,19 +160,27 @@ def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
 
 def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
     """Lines of a sheet, of equal length where there is a number in them; empty where no cell is used."""
+    from openpyxl.cell.read_only import EmptyCell
+
     rows: dict[int, dict[int, str]] = {}
+    empty: set[tuple[int, int]] = set()  # cells that are there, without a value
     for one in (sheet, formulas):  # else each row is filled up to the last column that the sheet declares
         one.reset_dimensions()
     count = 0
-    for number, pair in enumerate(zip(sheet.iter_rows(), formulas.iter_rows(), strict=True), 1):
-        cells = list(zip(*(row[:MOST_COLUMNS] for row in pair), strict=True))
+    for number, row in enumerate(sheet.iter_rows(), 1):
+        cells = [(i, one) for i, one in enumerate(row[:MOST_COLUMNS]) if not isinstance(one, EmptyCell)]
         count += len(cells)
         if number > MOST_ROWS:
             raise ValueError(f"row {number}")
         if count > MOST_CELLS:
             raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
-        if used := {i: text for i, both in enumerate(cells) if (text := _written(*both))}:
+        empty |= {(number, i) for i, one in cells if one.value is None and one.data_type == "n"}
+        if used := {i: text for i, one in cells if (text := _written(one))}:
             rows[number] = used
+    for number, row in enumerate(formulas.iter_rows() if empty else (), 1):
+        unknown = [i for i, one in enumerate(row) if (number, i) in empty and one.data_type == "f"]
+        if unknown:
+            rows[number] = rows.get(number, {}) | dict.fromkeys(unknown, UNCOMPUTED)
     table = [used for used in rows.values() if sum(text[0].isdigit() for text in used.values()) > 1]
     width = max((max(used) for used in table), default=0)
     lines = [""] * max(rows, default=0)
@@ -183,11 +191,11 @@ def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
     return lines
 
 
-def _written(cell: Any, formula: Any) -> str:
+def _written(cell: Any) -> str:
     """Text of a cell, with a sign where it differs from its value."""
     value = cell.value
     if value is None:
-        return UNCOMPUTED if cell.data_type == "n" and formula.data_type == "f" else ""
+        return ""
     if cell.data_type == "e":
         return f"{ERROR}{value}"
     if isinstance(value, (int, float)) and not isinstance(value, bool):
