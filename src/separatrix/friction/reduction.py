@@ -28,7 +28,7 @@ RUN_IN_END = "run_in"
 """Where a given end of running-in is refused."""
 
 Cut = tuple[str, float]
-"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction.file.place`."""
+"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction_file.place`."""
 
 
 # --- events and conditions ----------------------------------------------------------------------
@@ -253,17 +253,13 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     Raises
     ------
     InputError
-        The log runs backwards along its abscissa, lacks the abscissa of the cut, or is too short.
+        The log stands still along its abscissa, lacks the abscissa of the cut, or is too short.
     """
     if cut is not None and cut[0] not in log.abscissae:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
         raise InputError(log.source, f"needs a column of {cut[0]}", "none", cure)
     axis = cut[0] if cut else next(name for name in PREFERRED if name in log.abscissae)
     along = cycles.rising(log, axis)
-    bad = np.flatnonzero(~np.isfinite(log.friction))
-    if bad.size:
-        where = f"{log.source}: friction"
-        raise InputError(where, "must be a finite number in each row", f"none in row {bad[0] + 1}")
     events = _events(log, along, axis)
     loaded = max((one.row for one in events if not one.is_end), default=0)
     kept = slice(loaded, min((e.row for e in events if e.is_end and e.row > loaded), default=log.rows))

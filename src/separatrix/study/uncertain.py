@@ -165,13 +165,7 @@ def _moments(value: dict[str, object], unit: str) -> Normal:
 
 def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Samples:
     """Read equally likely values."""
-    if not 2 <= len(items) <= distribution.MOST_SAMPLES:
-        cure = "Write one value without brackets." if len(items) == 1 else ""
-        rule = f"must have 2 to {distribution.MOST_SAMPLES} samples"
-        raise InputError(where, rule, str(len(items)), cure)
     values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
-    if min(values) == max(values):
-        raise InputError(where, "must differ: there is no spread in them", written(items), _ALONE)
     return _made(Samples, where, values=values, text=text)
 
 

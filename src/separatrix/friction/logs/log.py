@@ -95,31 +95,19 @@ def decimal_of(cells: Sequence[Sequence[str]], separator: str, source: str) -> s
     """The decimal sign of the numbers; empty where none has one. Marks between thousands are refused."""
     if separator == "," and not any("," in cell for column in cells for cell in column):
         return "."
-    found: dict[str, str] = {}
-    certain = False
-    for column in cells:
-        text = "\n".join(column)
-        marks = [mark for mark in ",." if mark in text]
-        is_plain = len(marks) == 1 and not re.search(rf"[{marks[0]}].*[{marks[0]}]", text)
-        for cell in column if marks else ():
-            here = [mark for mark in marks if mark in cell]
-            is_other = not here or tables.is_clock(cell) or cell.casefold() in naming.MISSING
-            if is_other or not cell[-1:].isdigit():
-                continue
-            found |= dict.fromkeys(here, cell)
-            certain = certain or not _GROUPED.fullmatch(cell)
-            if len(found) > 1 or sum(map(cell.count, marks)) > 1:
-                cure = "Export it without marks between thousands, or write below [format]: decimal = ..."
-                got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(found.values()))
-                raise UnfitError(source, "has points and commas in its numbers", got, cure)
-            if certain and is_plain:  # the others are alike
-                break
-    if found and not certain:
-        mark, one = next(iter(found.items()))
+    marked = [one for column in cells for one in column if ("," in one or "." in one) and ":" not in one]
+    marked = [one for one in marked if one[-1:].isdigit()]
+    examples = [next(one for one in marked if mark in one) for mark in ".," if any(mark in m for m in marked)]
+    if len(examples) > 1 or any(one.count(",") + one.count(".") > 1 for one in marked):
+        cure = "Export it without marks between thousands, or write below [format]: decimal = ..."
+        got = " and ".join(f'"{printable(one)}"' for one in dict.fromkeys(examples))
+        raise UnfitError(source, "has points and commas in its numbers", got, cure)
+    mark = next((mark for mark in ".," if any(mark in one for one in marked)), "")
+    if marked and all(_GROUPED.fullmatch(one) for one in marked):
         rule = "does not show whether its marks are decimal signs or between thousands"
         cure = f'Add to the column map, below [format]: decimal = "{mark}".'
-        raise UnfitError(source, rule, f'"{printable(one)}"', cure)
-    return next(iter(found), "")
+        raise UnfitError(source, rule, f'"{printable(marked[-1])}"', cure)
+    return mark
 
 
 def numbers(cells: Sequence[str], decimal: str, missing: frozenset[str]) -> tuple[Array, list[int]]:
