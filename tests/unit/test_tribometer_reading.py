@@ -261,7 +261,6 @@ CONDITIONS = {
     "a stroke's greatest speed is not its sliding speed": (STROKES, {}, {"slip_speed": None}),
     "UMT keys without units": (UMT, {}, {"slip_speed": None}),
     "Rtec": (RTEC, {"test": {"track_radius": "20 mm", "material": "Armalon"}}, TURNING),
-    "Rtec, two keys": (b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC, {}, {"sample": "disk 7"}),
     "Rtec, one key is no table": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
     "Rtec, a bare carriage return": (RTEC.replace(b"e\r\ndisk", b"e\rdisk"), {}, {"sample": "disk 7"}),
     "a speed in rpm": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), {}, {"cycle_time": 1.0}),

@@ -101,9 +101,6 @@ class TextFormat:
     units_below: bool = key(default=False)
     """Whether the line below the names is that of the units."""
 
-    keys_above: bool = key(default=False)
-    """Whether a line of keys stands above one of their values, even of two."""
-
     missing: tuple[str, ...] = key(default=())
     """Texts that mean a missing value, besides the usual ones."""
 

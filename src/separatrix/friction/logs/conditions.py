@@ -118,17 +118,17 @@ def conditions_of(
     return conditions, frozenset(measured & known.keys()), (*sentences, *notes)
 
 
-def metadata_of(lines: Sequence[str], *, keys_above: bool = False) -> dict[str, str]:
+def metadata_of(lines: Sequence[str]) -> dict[str, str]:
     """Pairs in the lines: ``key: value``, ``key = value``, or a row of keys over one of values.
 
-    Two lines of two fields are taken as two pairs, unless the layout is known for its row of keys.
+    Two lines of two fields are two pairs, not a row of keys and one of values.
     """
     pairs: dict[str, str] = {}
     skip = False
     for line, below in zip(lines, [*lines, ""][1:], strict=True):
         if skip:
             skip = False
-        elif rows := _keys_over_values(line, below, 1 if keys_above else 2):
+        elif rows := _keys_over_values(line, below):
             pairs |= rows
             skip = True
         elif found := _NUMBERED.match(line) or _PAIR.match(line):
@@ -136,11 +136,11 @@ def metadata_of(lines: Sequence[str], *, keys_above: bool = False) -> dict[str, 
     return {key[:100]: value[:200] for key, value in list(pairs.items())[:MOST_PAIRS]}
 
 
-def _keys_over_values(line: str, below: str, least: int) -> dict[str, str]:
+def _keys_over_values(line: str, below: str) -> dict[str, str]:
     """Two rows of as many commas, semicolons or tabs, the upper of words alone."""
     for separator in "\t;,":
         count = line.count(separator)
-        if line.rstrip(separator).count(separator) >= least and below.count(separator) == count:
+        if line.rstrip(separator).count(separator) >= 2 and below.count(separator) == count:
             keys, values = line.split(separator), below.split(separator)
             if not any(re.match(r"\s*[+-]?\d", key) for key in keys):
                 pairs = [(_clean(key), _clean(value)) for key, value in zip(keys, values, strict=True)]

@@ -311,12 +311,12 @@ def _decide(draft: Draft, options: Options) -> None:
             _choose(draft, meaning, chosen, is_needed=meaning in needed or meaning == "time")
             draft.used |= {one.index for one in chosen}
         elif rest and meaning in needed:
-            _ask_unit(draft, meaning, _best(rest)[0])
+            _ask(draft, meaning, _best(rest))
         elif rest and meaning in ("temperature", "wear_depth", "normal_force", "distance"):
             head, words = printable(draft.block.heads[rest[0].index].strip()), meaning.replace("_", " ")
             draft.notes.append(f'column "{head}" has no known unit and is not used as {words}')
     for meaning in sorted(needed - draft.columns.keys()):
-        _ask_column(draft, meaning)
+        _ask(draft, meaning, [])
     _shapes(draft, options)
 
 
@@ -363,44 +363,34 @@ def _choose(draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: 
     draft.columns[meaning] = line
 
 
-def _ask_unit(draft: Draft, meaning: str, option: Option) -> None:
-    """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
-    i = option.index
-    if meaning == "tangential_force" and naming.looks_like_torque(draft.block.heads[i], draft.block.below[i]):
-        _ask_torque(draft, i)
-        return
-    unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
-    said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
-    line = _line(draft, meaning, option, unit)
-    draft.columns[meaning] = draft.ask(line, f"column {draft.head(i)}: {said}")
-
-
-def _ask_torque(draft: Draft, i: int) -> None:
-    written = (draft.block.below[i], naming.header_parts(draft.block.heads[i])[0][1])
-    unit = next((one for one in written if naming.torque_scale(one)), UNKNOWN)
-    line = _line(draft, "tangential_force", Option(0, i), unit)
-    question = "a torque: write the radius of its track below [test]"
-    draft.columns["tangential_force"] = draft.ask(line, question)
-    if "track_radius" not in draft.stated:
-        draft.test.append('track_radius = "... mm"')
-
-
-def _ask_column(draft: Draft, meaning: str) -> None:
-    """The line of a column that is needed and that no name shows."""
-    heads = draft.block.heads
-    torque = [i for i, head in enumerate(heads) if naming.looks_like_torque(head, draft.block.below[i])]
+def _ask(draft: Draft, meaning: str, options: Sequence[Option]) -> None:
+    """The line of a column that is needed: of the first option, whose unit is not certain, or of none."""
+    heads, below = draft.block.heads, draft.block.below
+    torques = [i for i, head in enumerate(heads) if naming.looks_like_torque(head, below[i])]
     near = [i for i, head in enumerate(heads) if naming.looks_like_friction(head)]
-    if meaning == "normal_force":
+    i = options[0].index if options else torques[0] if torques else 0
+    if i in torques and (meaning == "tangential_force" if options else meaning == "friction" and not near):
+        units = (below[i], naming.header_parts(heads[i])[0][1])
+        unit = next((one for one in units if naming.torque_scale(one)), UNKNOWN)
+        line = _line(draft, "tangential_force", Option(0, i), unit)
+        question = "a torque: write the radius of its track below [test]"
+        draft.columns["tangential_force"] = draft.ask(line, question)
+        if "track_radius" not in draft.stated:
+            draft.test.append('track_radius = "... mm"')
+        if meaning == "friction" and "normal_force" not in draft.columns:
+            _ask(draft, "normal_force", [])
+    elif options:  # an unknown unit is left open, a usual one is offered
+        one = options[0]
+        unit = UNKNOWN if one.unit else "mm:ss" if one.question else USUAL.get(meaning, "N")
+        said = f'the file writes "{one.unit}"' if one.unit else one.question or "the file states no unit"
+        line = _line(draft, meaning, one, unit)
+        draft.columns[meaning] = draft.ask(line, f"column {draft.head(i)}: {said}")
+    elif meaning == "normal_force":
         if "normal_force" not in draft.stated:
             draft.test.append(draft.ask('normal_force = "... N"', "the log has no normal force"))
-    elif meaning == "friction" and torque and not near:
-        _ask_torque(draft, torque[0])
-        if "normal_force" not in draft.columns:
-            _ask_column(draft, "normal_force")
     elif meaning == "friction" and near:
-        line = _line(draft, meaning, Option(0, near[0]), "-")
         question = f"the friction by its name? There are {', '.join(map(draft.head, near[:4]))}"
-        draft.columns[meaning] = draft.ask(line, question)
+        draft.columns[meaning] = draft.ask(_line(draft, meaning, Option(0, near[0]), "-"), question)
     else:
         line = f"{meaning} = {as_toml({'name': UNKNOWN if any(heads) else 1, 'unit': UNKNOWN})}"
         draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")

@@ -376,7 +376,7 @@ def raw_log(
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
-    metadata = metadata_of(block.above, keys_above=columns.format.keys_above)
+    metadata = metadata_of(block.above)
     useful = _without_stroke_speed(metadata, read, arrays)
     is_text = block.word == "line"
     decimal = read.decimal if is_text else ""
