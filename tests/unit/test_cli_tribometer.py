@@ -10,9 +10,8 @@ import time
 
 import numpy as np
 import pytest
-from commands import read_friction
+from commands import column_map, read_friction
 
-from separatrix.friction.logs.column_map import column_map
 from separatrix.front import main
 from separatrix.study.reading import read_study
 from separatrix.verbs.tribometer import file_name

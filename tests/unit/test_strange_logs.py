@@ -8,8 +8,9 @@ import re
 import numpy as np
 import openpyxl
 import pytest
+from commands import column_map
 
-from separatrix.friction.logs import UnmappedError, column_map, read_column_map, read_log
+from separatrix.friction.logs import UnmappedError, read_column_map, read_log
 from separatrix.front import main
 from separatrix.ground.errors import InputError
 

@@ -7,10 +7,9 @@ from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
-from commands import document, refused, written
+from commands import column_map, document, refused, written
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import column_map
 from separatrix.friction.logs.log import seconds
 from separatrix.friction.logs.tables import is_clock, is_number
 from separatrix.friction.reduction import reduce_log, reduction, with_outliers

@@ -8,12 +8,13 @@ import math
 import numpy as np
 import pytest
 import raw_logs
+from commands import column_map
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from raw_logs import as_written
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import ColumnMap, column_map
+from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
 from separatrix.ground.errors import InputError

@@ -5,11 +5,10 @@ import io
 import numpy as np
 import openpyxl
 import pytest
-from commands import refusal_line
+from commands import column_map, refusal_line
 from minimal_xlsx import Fault, Formula, Shown, workbook, zipped
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import column_map
 
 HEAD = [["Time", "COF", "Wear"], ["s", "-", "um"]]
 NUMBERS = [[0.1 * i, 0.1 + 0.001 * (i % 7), float(i)] for i in range(40)]

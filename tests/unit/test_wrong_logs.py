@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import raw_logs
-from commands import refusal_line, written
+from commands import column_map, refusal_line, written
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import column_map, read_column_map
+from separatrix.friction.logs.column_map import read_column_map
 
 TIME = np.arange(20) * 0.5
 FRICTION = 0.1 + 0.001 * np.arange(20)

@@ -16,7 +16,6 @@ import numpy as np
 
 from separatrix.friction.logs.column_map import (
     ColumnMap,
-    column_map,
     column_map_of,
     read_column_map,
     shipped_maps,
@@ -28,7 +27,7 @@ from separatrix.friction.logs.tables import Block, Content, blocks_of, cells_of,
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable, shown
 
-__all__ = ["UnmappedError", "column_map", "read_column_map", "read_log"]
+__all__ = ["UnmappedError", "read_column_map", "read_log"]
 
 
 class UnmappedError(InputError):

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal
 from separatrix.friction.friction_file import Place, place
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, SHAPES, known_units, scale_of
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import Document, read_document, read_text
+from separatrix.ground.reader import read_text
 from separatrix.ground.schema import Fault, Faults, between, check, key, keys_of, positive, record
 from separatrix.ground.toml import Kind, label_of, nearest, parsed
 from separatrix.ground.toml import read_text as text_of
@@ -260,12 +260,6 @@ def column_map_of(text: str, label: str) -> ColumnMap:
     """Column map of the text of a file."""
     made = read_text(ColumnMap, text, label).value
     return replace(made, source=label, as_written=parsed(text, label, ColumnMap.FILE)[0])
-
-
-def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
-    """Column map of a parsed TOML document."""
-    made = read_document(ColumnMap, Document(source, document, {})).value
-    return replace(made, source=source, as_written=document)
 
 
 @cache

@@ -174,7 +174,7 @@ def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
     for condition in conditions:
         scale = scale_in(unit, QUANTITIES[condition])
         if match and scale is not None:
-            size = float(match[1].replace(",", ".")) * scale.factor / scale.divisor + scale.offset
+            size = float(match[1].replace(",", ".")) * scale.factor + scale.offset
             if size > 0.0:
                 found.setdefault(condition, (size, reason))
                 return ""

@@ -348,8 +348,9 @@ def _scaled(
             cure = f'In a column map: {line} below [columns], and track_radius = "... mm" below [test].'
             raise UnfitError(where, "is a torque, not a force", cure=cure)
         notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
-        size = naming.Scale(factor=size.factor / radius)
-    found = size.of(values) * (-1.0 if columns.columns[meaning].sign < 0 and meaning != "time" else 1.0)
+        size = naming.Scale(size.factor / radius)
+    sign = -1.0 if columns.columns[meaning].sign < 0 and meaning != "time" else 1.0
+    found = (values * size.factor + size.offset) * sign
     if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
         got = f"{float(values[below[0]]):g}"
         line = f'temperature = {{ name = {shown(head)}, unit = "..." }}'
