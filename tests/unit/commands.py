@@ -37,7 +37,7 @@ ball_cage_friction = 0.1
 kicks = ["0.5 m/s"]
 runs = 4
 duration = "4 ms"
-restitution_factors = { from = 0.3, to = 0.9, count = 3 }
+restitution_factors = [0.3, 0.6, 0.9]
 
 [ranking]
 friction = "pin-on-disk-77K"

@@ -109,15 +109,6 @@ def test_logs_that_do_not_say_what_slid_on_what_are_shown_but_not_written(logs, 
     assert names(logs) == ["a.csv", "b.csv", "map.toml"]
 
 
-def test_jobs_do_not_change_the_answer(logs, capsys):
-    """One thread or three: the same document to the last letter."""
-    answers = []
-    for jobs in ("1", "3"):
-        assert main([*BOTH, "--json", "--jobs", jobs]) == 0
-        answers.append(capsys.readouterr().out)
-    assert answers[0] == answers[1]
-
-
 WRONG = {  # what follows the verb, and the words of the line
     "no such file": ("nofile.csv", "nofile.csv cannot be read"),
     "a folder without logs": ("more2", "more2 is a folder without a log"),

@@ -206,9 +206,7 @@ def _ask(**question):
     return lambda kept: kept["command"].update(question=question)
 
 
-PROFILE = {"friction": 0.4, "profile": "/etc/passwd"}
 HOSTILE = {
-    "profile outside": (_study("film", wear=PROFILE), "does not name a file"),
     "friction outside": (_study("ranking", friction="../../f.toml"), "names no file beside the study"),
     "a wrong study": (_study("cage", mass="-1 g"), "[cage] mass must be > 0"),
     "a library that is none": (

@@ -422,12 +422,6 @@ def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units
         np.testing.assert_array_equal(log.time, as_written(TIME))
 
 
-def test_forces_of_compend_make_a_friction(tmp_path):
-    """Row by row, where no coefficient is logged."""
-    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
-    np.testing.assert_allclose(log.friction, as_written(FRICTION * 20.0) / 20.0, rtol=ULP)
-
-
 def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
     """Without a line between, or with one that names the test."""
     one, two = (raw_logs.plain_csv({"time [s]": TIME, "COF": f}) for f in (FRICTION, FRICTION + 0.1))

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from enum import Enum
 from itertools import pairwise
-from pathlib import Path
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT
-from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.reader import Elsewhere, Reading
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -27,59 +22,10 @@ from separatrix.ground.schema import (
     positive,
     record,
 )
-from separatrix.ground.toml import KeyPath, Kind, path_text, text
-from separatrix.ground.units import Metre, Pascal, Ratio, format_quantity, parse, shown
+from separatrix.ground.units import Metre, Pascal, Ratio, format_quantity, shown
 from separatrix.study.ball_bearing import MODULI, MODULUS, POISSON, Material
 
 MOST_PLACES = 10_000
-HEADS = ("y", "thickness")
-_CURE = 'Write its first row like "y [mm],thickness [um]".'
-_HEAD = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
-PROFILE = Kind(noun="a profile of a film", most_bytes=5_000_000, empty=_CURE)
-
-
-class Profile(NamedTuple):
-    """Thickness of a film at places across its track."""
-
-    across: tuple[Metre, ...]
-    thicknesses: tuple[Metre, ...]
-
-
-def read_profile(raw: Any, path: KeyPath, reading: Reading) -> Profile:
-    """Profile of the file that a study names."""
-    name = text(raw, "")
-    content = reading.document.file(path, name, PROFILE)
-    if content is None:
-        cure = "It is looked for in the folder of the study."
-        raise InputError("", "does not name a file", shown(Path(name).name), cure)
-    try:
-        return profile_of(content, path_text(Path(name)))
-    except InputError as error:
-        raise Elsewhere(error) from None
-
-
-def profile_of(content: str, label: str) -> Profile:
-    """Profile of the text of a table of two columns."""
-    lines = enumerate(content.splitlines(), start=1)
-    rows = [(n, row) for n, line in lines if (row := next(csv.reader([line]), []))]
-    heads = [_HEAD.fullmatch(cell) for cell in rows[0][1]] if rows else []
-    found = {head[1].casefold(): (i, head[2]) for i, head in enumerate(heads) if head is not None}
-    if set(found) != set(HEADS) or len(heads) != len(HEADS):
-        raise InputError(f"{label}, line 1", "must name two columns, y and thickness", cure=_CURE)
-    if len(rows) - 1 > MOST_PLACES:
-        raise InputError(label, f"must have at most {MOST_PLACES} rows", f"{len(rows) - 1}")
-    columns: dict[str, list[float]] = {name: [] for name in HEADS}
-    problems: list[InputError] = []
-    for line, row in rows[1:]:
-        with noted(problems):
-            at = f"{label}, line {line}"
-            if len(row) != len(HEADS):
-                raise InputError(at, "must have two cells", f"{len(row)}")
-            for name, (i, unit) in found.items():
-                columns[name].append(parse(f"{row[i].strip()} {unit}", "m", f"{at}: {name}"))
-    if problems:
-        raise together(problems)
-    return Profile(tuple(columns["y"]), tuple(columns["thickness"]))
 
 
 class Worn(Spelled):
@@ -100,7 +46,7 @@ class Wear:
     """
 
     RULES: ClassVar = (
-        one_of("width", "share", ("across", "thicknesses"), "profile", required=True),
+        one_of("width", "share", ("across", "thicknesses"), required=True),
         all_or_none("across", "thicknesses"),
     )
 
@@ -122,20 +68,17 @@ class Wear:
     thicknesses: tuple[Metre, ...] = key(default=(), certain=True)
     """At these places."""
 
-    profile: Profile | None = key(default=None, read=read_profile)
-    """The same as a CSV file beside the study, two columns with their units in the head."""
-
     races: Worn = key(default=Worn.BOTH)
 
     @property
-    def places(self) -> Profile:
+    def places(self) -> tuple[tuple[Metre, ...], tuple[Metre, ...]]:
         """Places and thicknesses of a measured profile; empty of a band."""
-        return self.profile or Profile(self.across, self.thicknesses)
+        return self.across, self.thicknesses
 
     @property
     def is_band(self) -> bool:
         """Whether it is a band; else a measured profile."""
-        return not self.places.across
+        return not self.across
 
     def touches(self, race: Enum) -> bool:
         """Whether the film of this race is worn."""
@@ -143,17 +86,14 @@ class Wear:
 
 
 @check(Wear)
-def _profile_is_one(
-    across: tuple[Metre, ...], thicknesses: tuple[Metre, ...], profile: Profile | None
-) -> Faults:
+def _profile_is_one(across: tuple[Metre, ...], thicknesses: tuple[Metre, ...]) -> Faults:
     """A profile has a thickness at each place; two equal places make a step."""
-    y, h = profile or (across, thicknesses)
-    names = ("across", "thicknesses") if profile is None else ("profile", "profile")
+    y, h = across, thicknesses
     if len(y) != len(h) or len(y) > MOST_PLACES or len(y) == 1:
         rule = f"must have as many values as thicknesses, 2 to {MOST_PLACES}"
-        yield Fault(names[0], rule, got=f"{len(y)} and {len(h)}")
+        yield Fault("across", rule, got=f"{len(y)} and {len(h)}")
         return
-    for name, values, low in ((names[0], y, -1.0), (names[1], h, 0.0)):
+    for name, values, low in (("across", y, -1.0), ("thicknesses", h, 0.0)):
         wrong = [one for one in values if not is_number(one) or not low <= one <= 1.0]
         if wrong:
             yield Fault(name, f"must each be a finite number from {low:g} to 1 [m]", got=shown(wrong[0]))
@@ -161,13 +101,13 @@ def _profile_is_one(
     for before, after in pairwise(y):
         if after < before:
             got = f"{format_quantity(after, 'm')} after {format_quantity(before, 'm')}"
-            yield Fault(names[0], "must not fall", got=got)
+            yield Fault("across", "must not fall", got=got)
             return
 
 
 @check(Wear)
-def _thickness_of_a_band(thickness: Metre, across: tuple[Metre, ...], profile: Profile | None) -> Faults:
-    if (across or profile) and thickness != 0.0:
+def _thickness_of_a_band(thickness: Metre, across: tuple[Metre, ...]) -> Faults:
+    if across and thickness != 0.0:
         yield Fault("thickness", "is that of a band; thicknesses gives a profile its own")
 
 

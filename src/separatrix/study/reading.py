@@ -32,7 +32,6 @@ DERIVED = (
     ("bearing.radial_clearance", "radial_clearance", ("bearing.contact_angle",)),
     ("bearing.contact_angle", "contact_angle", ("bearing.radial_clearance",)),
     ("film.elastic_modulus", "elastic_modulus", ("film.material",)),
-    ("film.wear.profile", "profile", ("film.wear.across", "film.wear.thicknesses")),
 )
 """A key, its name, and what follows from it where it is given."""
 

@@ -14,8 +14,7 @@ from typing import Any, ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.friction.prediction import Friction as Friction
-from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.reader import Reading
+from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -30,7 +29,7 @@ from separatrix.ground.schema import (
     record,
 )
 from separatrix.ground.sheet import is_workbook
-from separatrix.ground.toml import KeyPath, Kind, Reader, nearest, ratio, whole
+from separatrix.ground.toml import Kind
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
@@ -40,8 +39,6 @@ from separatrix.ground.units import (
     RadianPerSecond,
     Ratio,
     Second,
-    printable,
-    shown,
 )
 from separatrix.study import cage_body
 from separatrix.study.ball_bearing import MOST_BALLS as MOST_BALLS
@@ -155,34 +152,6 @@ def _something_presses_the_balls(
         yield Fault("axial_load", rule, "Give the preload.")
 
 
-def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
-    """`count` numbers from `low` to `high`, both included, rounded to 12 decimals so that 0.15 is 0.15."""
-    steps = count - 1
-    return tuple(round((low * (steps - i) + high * i) / steps, 12) for i in range(count))
-
-
-def read_factors(raw: Any, path: KeyPath, reading: Reading) -> tuple[float, ...]:
-    """Numbers of a list, or those of ``{ from = 0.05, to = 0.95, count = 19 }``."""
-    if isinstance(raw, dict):
-        readers: dict[str, Reader[float]] = {"from": ratio, "to": ratio, "count": whole}
-        problems, given = list[InputError](), dict[str, Any]()
-        for name, value in raw.items():
-            with noted(problems):
-                if name not in readers:
-                    cure = nearest(name, readers)
-                    raise InputError(f".{printable(name)}", "is not a key of this table", cure=cure)
-                given[name] = readers[name](value, f".{name}")
-        if missing := [name for name in readers if name not in raw]:
-            problems.append(InputError("", f"lacks: {', '.join(missing)}"))
-        if problems:
-            raise together(problems)
-        if not 2 <= given["count"] <= 1000:
-            raise InputError("", "needs a count from 2 to 1000", shown(given["count"]))
-        return evenly_spaced(given["from"], given["to"], given["count"])
-    one = keys_of(StabilitySettings)["restitution_factors"]
-    return reading.list_of(float, one, raw, path)
-
-
 @record
 class StabilitySettings:
     """The ensemble behind every verdict, and the curve's restitution factors; without any they are chosen.
@@ -226,7 +195,6 @@ class StabilitySettings:
         between(0.0, 1.0, open_low=True, open_high=True),
         default=(),
         certain=True,
-        read=read_factors,
         length=(0, 1000),
         rising=True,
         without="chosen where the curve bends",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -118,7 +118,7 @@ def list_records(options: ListOptions) -> Document:
     """Every record of the library, or those of a kind."""
     library = read_library(options.library)
     records = [one.plain() for one in records_of(library, options.kind)]
-    return _document("list", libraries=[file.plain() for file in library.files], materials=records)
+    return _document("list", libraries=[asdict(file) for file in library.files], materials=records)
 
 
 def show_records(options: ShowOptions) -> Document:

@@ -189,33 +189,27 @@ def _from_metadata(key: str, text: str, found: Found, decimal: str) -> str:
 
 def _derive(found: Found, source: str) -> None:
     """Add what follows from other conditions; a given one must agree, unless it is measured."""
-
-    def number(key: str) -> float | None:
-        value = found.get(key, (None, ""))[0]
-        return value if isinstance(value, float) else None
-
-    def settle(key: str, value: float, reason: str) -> None:
-        there = number(key)
-        if there is None:
-            found[key] = (value, reason)
-        elif found[key][1] != MEDIAN and abs(there - value) > AGREE * abs(value):
-            ways = ((there, found[key][1]), (value, reason))
-            got = " and ".join(f"{format_quantity(one, QUANTITIES[key])} ({way})" for one, way in ways)
-            rule = f"has two values of {key.replace('_', ' ')} that differ"
-            raise InputError(source, rule, got, "Leave out the wrong one.")
-
-    rotation, radius = number("rotational_speed"), number("track_radius")
-    if rotation is not None and radius is not None:
-        settle("slip_speed", rotation * radius, TURNED)
-    if rotation is None and radius is not None and (speed := number("slip_speed")) is not None:
-        settle("cycle_time", 2.0 * math.pi * radius / speed, "2 pi radius / slip speed")
+    at = {key: value for key, (value, _) in found.items() if isinstance(value, float)}
+    rotation, radius, area, diameter = map(
+        at.get, ("rotational_speed", "track_radius", "contact_area", "pin_diameter")
+    )
+    follows: list[tuple[str, float, str]] = []
     if rotation is not None:
-        settle("cycle_time", 2.0 * math.pi / rotation, "one turn")
-    area, diameter, force = (number(key) for key in ("contact_area", "pin_diameter", "normal_force"))
+        follows += [("slip_speed", rotation * radius, TURNED)] if radius is not None else []
+        follows.append(("cycle_time", 2.0 * math.pi / rotation, "one turn"))
+    elif radius is not None and "slip_speed" in at:
+        time = 2.0 * math.pi * radius / at["slip_speed"]
+        follows.append(("cycle_time", time, "2 pi radius / slip speed"))
     if area is not None and diameter is not None:
         rule = "cannot have both a contact_area and a pin_diameter"
         raise InputError(source, rule, cure="Give the one that is measured.")
-    if diameter is not None:
-        area = math.pi / 4.0 * diameter**2
-    if area is not None and force is not None:
-        settle("pressure", force / area, OVER_AREA)
+    area = area if diameter is None else math.pi / 4.0 * diameter**2
+    if area is not None and "normal_force" in at:
+        follows.append(("pressure", at["normal_force"] / area, OVER_AREA))
+    for name, value, reason in follows:
+        there, why = at.get(name), found.setdefault(name, (value, reason))[1]
+        if there is not None and why != MEDIAN and abs(there - value) > AGREE * abs(value):
+            ways = ((there, why), (value, reason))
+            got = " and ".join(f"{format_quantity(one, QUANTITIES[name])} ({way})" for one, way in ways)
+            rule = f"has two values of {name.replace('_', ' ')} that differ"
+            raise InputError(source, rule, got, "Leave out the wrong one.")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Generic, Literal, NamedTuple, TypeVar, cast
@@ -262,15 +262,11 @@ def _has_a_record(content: Content) -> Faults:
 class LibraryFile:
     """The file that a record was read from."""
 
-    label: str
-    checksum: str
-    """SHA-256 of the file."""
+    file: str
+    """Its name."""
 
+    sha256: str
     shipped: bool
-
-    def plain(self) -> dict[str, object]:
-        """Return it as plain data."""
-        return {"file": self.label, "sha256": self.checksum, "shipped": self.shipped}
 
 
 Thing = TypeVar("Thing", bound=Solid | Fluid | FrictionTable, covariant=True)
@@ -299,7 +295,7 @@ class Record(Generic[Thing]):
 
     def plain(self) -> dict[str, object]:
         """Return the whole record as plain data."""
-        content, words = self.content, {"kind": self.kind, "name": self.name, "library": self.file.plain()}
+        content, words = self.content, {"kind": self.kind, "name": self.name, "library": asdict(self.file)}
         if isinstance(content, FrictionTable):
             return {
                 **words,
@@ -496,7 +492,7 @@ def read_library(path: Path, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
 def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
     """Records of the text of a library file."""
     loaded = reader.read_text(Content, text, label)
-    file = LibraryFile(label=label, checksum=hashlib.sha256(text.encode()).hexdigest(), shipped=shipped)
+    file = LibraryFile(file=label, sha256=hashlib.sha256(text.encode()).hexdigest(), shipped=shipped)
     return tuple(
         Record(kind=kind, name=name, content=content, file=file, place=loaded.sources[section, name].place)
         for kind, section in ((kind, kind.replace(" ", "_")) for kind in KINDS)
