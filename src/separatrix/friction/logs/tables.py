@@ -333,12 +333,10 @@ def separator_of(lines: Sequence[str], missing: Iterable[str] = MISSING) -> tupl
     if not scores[best]:
         return "", []
     others = [sign for sign, count in scores.items() if sign != best and 2 * count > scores[best]]
-    return best, [sign for sign in others if sign != " " and not (sign == "," and _has_decimals(lines, best))]
-
-
-def _has_decimals(lines: Sequence[str], separator: str) -> bool:
-    """True where commas are in numbers of fields between another separator."""
-    return any("," in one and is_number(one) for line in lines[:HEAD] for one in fields_of(line, separator))
+    fields = (one for line in lines[:HEAD] if "," in line for one in fields_of(line, best))
+    if "," in others and any("," in one and is_number(one) for one in fields):
+        others.remove(",")  # it is in numbers between another separator
+    return best, [sign for sign in others if sign != " "]
 
 
 # --- from lines to tables -------------------------------------------------------------------------
@@ -415,10 +413,6 @@ def blocks_of(content: Content, columns: ColumnMap) -> list[Block]:
     return found
 
 
-def _needed_in(heads: Sequence[str], needed: Needed) -> bool:
-    return all(matching(names, heads) for names in needed)
-
-
 def separator_in(part: Part, form: TextFormat) -> tuple[str, list[str]]:
     """The separator that is stated, or that a text shows, with others that it may be; empty for none."""
     if part.sheet or form.separator:
@@ -479,7 +473,7 @@ def _names_in(
 ) -> list[str]:
     """Names in a line that has those needed, as many as the first line below has fields if it can be."""
     width = next((len(fields_of(line, separator)) for line in below if line.strip()), 0)
-    ways = [one for one in names_of(lines[place], separator) if _needed_in(one, needed)]
+    ways = [one for one in names_of(lines[place], separator) if all(matching(names, one) for names in needed)]
     return next((one for one in ways if len(one) == width), ways[0] if ways else [])
 
 
