@@ -47,7 +47,6 @@ ASKED = [
     ("restitution", "sub/variant.toml"),
     ("check", "sub/variant.toml"),
     ("check", "book.xlsx"),
-    ("bearing", "worn.toml"),
     ("check", "tested.toml"),
     ("simulate", "sub/variant.toml", "--kick", "0.3 m/s", "--run", "3", "--model", "paper"),
     ("stability", "sub/variant.toml"),
@@ -66,10 +65,6 @@ def home(folder: Path) -> Path:
     (far / "mine.toml").write_text(LIBRARY)
     (own / "base.toml").write_bytes((BASE + FEW).replace("\n", "\r\n").encode())
     (own / "sub" / "variant.toml").write_text(f"extends = '../base.toml'\nlibrary = '{far / 'mine.toml'}'\n")
-    (own / "worn.toml").write_text(
-        "extends = 'cryogenic-turbopump'\n[film]\nwear = { friction = 0.4, profile = 'worn.csv' }\n"
-    )
-    (own / "worn.csv").write_text("y [mm],thickness [um]\n-0.5,1\n0,0.2\n0.5,1\n")
     (own / "book.xlsx").write_bytes(template_workbook())
     (own / "tested.toml").write_text(
         "extends = 'cryogenic-turbopump'\n[ranking]\nfriction = 'friction.toml'\n"
@@ -277,7 +272,6 @@ def test_an_answer_has_the_texts_that_its_study_names(stored):
     assert kept["data"]["title"] == "Base \u00b5"
     assert kept["data"]["stability"]["runs"] == 2
     assert set(kept["files"]) == {"library 1: mine.toml"}
-    assert set(stored["bearing", "worn.toml"]["provenance"]["study"]["files"]) == {"worn.csv"}
     assert "/far/" not in json.dumps(kept)
 
 
