@@ -59,21 +59,6 @@ def xlsx(folder: Path, log: RawLog, cycle: float) -> Path:
     return folder / "log.xlsx"
 
 
-def tdms(folder: Path, log: RawLog, cycle: float) -> Path:
-    """LabVIEW TDMS."""
-    from nptdms import ChannelObject, TdmsWriter
-
-    columns = {"time": (log.time, "s"), "cycles": (log.time / cycle, ""), "COF": (log.friction, "")}
-    with TdmsWriter(folder / "log.tdms") as writer:
-        writer.write_segment(
-            [
-                ChannelObject("test", name, data, {"unit_string": unit})
-                for name, (data, unit) in columns.items()
-            ]
-        )
-    return folder / "log.tdms"
-
-
 TEXTS: dict[str, Callable[[RawLog, float], bytes]] = {
     "anton_paar": lambda log, cycle: raw_logs.anton_paar(
         log.friction, log.time, laps=log.time / cycle, decimal=","
@@ -107,7 +92,6 @@ def text(name: str, folder: Path, log: RawLog, cycle: float) -> Path:
 FORMATS: dict[str, Writer] = {
     **{name: partial(text, name) for name in TEXTS},
     "xlsx": xlsx,
-    "tdms": tdms,
 }
 CYCLES = {"compend": 0.5}
 """Time of a cycle that a format's writer fixes [s]."""

@@ -99,7 +99,7 @@ def test_a_job_is_cancelled_resumed_and_outlives_a_killed_server(view, folder, r
     place.mkdir()
     text = (folder / "small.toml").read_text(encoding="utf-8")
     text = text.replace("runs = 4", "runs = 16").replace(
-        "[0.3, 0.6, 0.9]", "{ from = 0.2, to = 0.9, count = 40 }"
+        "[0.3, 0.6, 0.9]", str([round(0.2 + 0.0175 * i, 4) for i in range(41)])
     )
     (place / "long.toml").write_text(text, encoding="utf-8")
     first = Server(place)

@@ -71,7 +71,7 @@ transverse_inertia J_t; cage_frequency f_c; shaft_frequency f_i
 """.replace("\n", " ").split(";")
 )
 """Symbols that the paper or the theory has for a name, where the table of quantities does not show one."""
-UNSTATED = {"run_in_end": "s", "steady_end": "s", "stick_slip_frequency": "1/s", "effective_count": "-"}
+UNSTATED = {"run_in_end": "s", "steady_end": "s", "effective_count": "-"}
 """Units that no field states: places along a test are in the SI unit of `run_in_axis`, here of a time."""
 LEFT_OUT = frozenset({study.Study, Solution})
 """Records that a document does not repeat: the study has its own place, the chain is in `chain`."""
@@ -162,7 +162,6 @@ ANSWERS = (("path", "where it is"), ("title", "that of its study"), ("complete",
 TRIBOMETER = (
     Line("files", meaning="a row for each log"),
     Line("rows", meaning="rows that were read"),
-    Line("described", meaning="what was read, in words"),
     Line("tests", meaning="a row for each test; in `fits` the number of tests"),
     Line("course", meaning="friction along the test, and what the log has beside it"),
     Line("friction_low", "-", meaning="lower end of the 95 % interval of the friction"),

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter
 
-from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.logs.conditions import Conditions
+from separatrix.friction.logs.log import RawLog
 
 SPEED = 0.5
 """Slip speed [m/s]."""

@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
+from separatrix.friction.friction_file import FrictionFile, FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import fit_friction
+from separatrix.ground.reader import read
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)
@@ -38,7 +39,7 @@ def test_what_is_written_is_read(tmp_path_factory, material, sample, flag, frict
     )  # fmt: skip
     path = tmp_path_factory.mktemp("friction") / "friction.toml"
     path.write_text(friction_text([test]), encoding="utf-8")
-    assert read_friction(path) == (test,)
+    assert read(FrictionFile, path).value.test == (test,)
 
 
 @given(TESTS, st.floats(0.2, 5.0), POSITIVE)

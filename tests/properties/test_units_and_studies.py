@@ -26,7 +26,7 @@ def refused_in_one_line(call):
         return call()
     except InputError as error:
         refusal = str(error)
-    assert refusal.isprintable()
+    assert all(line.isprintable() for line in refusal.split("\n"))
     assert len(refusal) < 400
     return None
 

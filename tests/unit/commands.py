@@ -7,14 +7,18 @@ import pickle
 import re
 import sqlite3
 import sys
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 import pytest
 
+from separatrix.friction.friction_file import FrictionFile, FrictionTest
+from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.front import main
 from separatrix.front.page.worker import work
 from separatrix.ground.errors import InputError
+from separatrix.ground.reader import Document, read, read_document
 from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
@@ -33,7 +37,7 @@ ball_cage_friction = 0.1
 kicks = ["0.5 m/s"]
 runs = 4
 duration = "4 ms"
-restitution_factors = { from = 0.3, to = 0.9, count = 3 }
+restitution_factors = [0.3, 0.6, 0.9]
 
 [ranking]
 friction = "pin-on-disk-77K"
@@ -86,6 +90,17 @@ def refusal_line(path: str | Path, read=read_study) -> str:
     message = refusal(path, read)
     assert "\n" not in message
     return message
+
+
+def column_map(document: dict, source: str = "column map") -> ColumnMap:
+    """Return the column map of a parsed TOML document."""
+    made = read_document(ColumnMap, Document(source, document, {})).value
+    return replace(made, source=source, as_written=document)
+
+
+def read_friction(path: Path) -> tuple[FrictionTest, ...]:
+    """Return the tests of a friction file."""
+    return read(FrictionFile, path).value.test
 
 
 def rows_of(table: str) -> list[tuple[str, list[str]]]:

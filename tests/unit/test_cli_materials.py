@@ -110,41 +110,6 @@ def test_a_fluid_is_shown_by_its_other_name(folder, ask):
     assert "Note: gaseous nitrogen: at 40 K it is solid" in ask("show", "GN2", "--temperature", "40 K")
 
 
-def test_a_library_named_on_the_command_line_is_read_too(folder, ask, tmp_path_factory):
-    """From another folder, as a file or as a folder."""
-    other = tmp_path_factory.mktemp("team")
-    (other / "more.toml").write_text(OURS.replace("Our film", "Their film"))
-    for path in (other, other / "more.toml"):
-        assert "Their film" in ask("list", "--kind", "film", "--library", str(path))
-
-
-def test_a_later_change_of_the_library_changes_no_old_result(folder, capsys):
-    """A saved answer has the whole record inside it; a new answer differs."""
-    assert main(["restitution", "case.toml", "--quiet", "--out", "old"]) == 0
-    capsys.readouterr()
-    before = {path.name: path.read_bytes() for path in (folder / "old").iterdir()}
-    document = json.loads(before["restitution.json"])
-    record = document["study"]["film"]["material"]["record"]
-    assert record["data"]["elastic_modulus"][0]["source"] == "fitted to test 12"
-    assert len(record["library"]["sha256"]) == 64
-    (folder / "materials.toml").write_text(OURS.replace('"2 GPa"', '"3 GPa"').replace("Batch 7", "Batch 8"))
-    assert main(["restitution", "case.toml", "--json"]) == 0
-    new = json.loads(capsys.readouterr().out)
-    assert new["restitution_factor"] != document["restitution_factor"]
-    assert new["study"]["film"]["material"]["record"]["library"]["sha256"] != record["library"]["sha256"]
-    (folder / "materials.toml").unlink()
-    assert {path.name: path.read_bytes() for path in (folder / "old").iterdir()} == before
-    saved = separatrix.load(folder / "old" / "restitution.json")
-    assert "fitted to test 12" in json.dumps(dict(saved.attrs), default=str)
-
-
-def test_check_of_a_study_names_the_library_of_a_material(folder, capsys):
-    """And says that the datum without a temperature was taken all the same."""
-    assert main(["check", "case.toml", "--full"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
-    assert "Poisson's ratio: its source states no temperature, taken at 77 K" in text
-
-
 def test_nothing_calls_out_and_help_stays_light(folder):
     """No socket is opened; numba is not imported for a list."""
     code = (

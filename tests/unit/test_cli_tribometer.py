@@ -10,9 +10,8 @@ import time
 
 import numpy as np
 import pytest
+from commands import column_map, read_friction
 
-from separatrix.friction.friction_file import read_friction
-from separatrix.friction.logs.column_map import column_map
 from separatrix.front import main
 from separatrix.study.reading import read_study
 from separatrix.verbs.tribometer import file_name
@@ -108,15 +107,6 @@ def test_logs_that_do_not_say_what_slid_on_what_are_shown_but_not_written(logs, 
     assert line.startswith("separatrix: a.csv does not state: material, counterface, medium.")
     assert line.endswith("--map map.toml. 1 other file is refused too.\n")
     assert names(logs) == ["a.csv", "b.csv", "map.toml"]
-
-
-def test_jobs_do_not_change_the_answer(logs, capsys):
-    """One thread or three: the same document to the last letter."""
-    answers = []
-    for jobs in ("1", "3"):
-        assert main([*BOTH, "--json", "--jobs", jobs]) == 0
-        answers.append(capsys.readouterr().out)
-    assert answers[0] == answers[1]
 
 
 WRONG = {  # what follows the verb, and the words of the line

@@ -112,7 +112,7 @@ def test_a_normal_distribution_that_reaches_zero_has_a_log_normal_one_in_its_pla
         (lambda: Uniform(low=2.0, high=1.0), "Uniform.high must be above its lower bound; got 2 and 1."),
         (lambda: Uniform(low=-math.inf, high=1.0), "Uniform.low must be a finite number"),
         (lambda: LogUniform(low=0.0, high=1.0), "LogUniform.low must be > 0"),
-        (lambda: Samples(values=(1.0,)), "Samples.values must hold 2 to 10000 values; got 1."),
+        (lambda: Samples(values=(1.0,)), "Samples.values must have 2 to 10000 samples; got 1."),
         (lambda: Samples(values=(1.0, math.inf)), "Samples.values must be a finite number"),
         (lambda: Samples(values=(2.0, 2.0)), "Samples.values must differ"),
     ],

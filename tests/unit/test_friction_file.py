@@ -5,12 +5,12 @@ import sys
 from subprocess import run
 
 import pytest
-from commands import changed, document, refusal, refusal_line, rows_of, written
+from commands import changed, document, read_friction, refusal, refusal_line, rows_of, written
 
 from separatrix.chain.pocket_friction import PocketConditions, friction_in_pocket
 from separatrix.chain.solution import solve
-from separatrix.friction.friction_file import FrictionTest, Place, friction_text, read_friction
-from separatrix.friction.friction_fit import TestedFriction, fit_friction
+from separatrix.friction.friction_file import FrictionTest, Place, friction_text
+from separatrix.friction.friction_fit import TestedFriction
 from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
@@ -78,8 +78,9 @@ def test_only_four_keys_are_needed(tmp_path):
     path = written(tmp_path, SMALL, "friction.toml")
     code = (
         "import sys, json; from pathlib import Path\n"
-        "from separatrix.friction.friction_file import read_friction\n"
-        "read_friction(Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
+        "from separatrix.friction.friction_file import FrictionFile\n"
+        "from separatrix.ground.reader import read\n"
+        "read(FrictionFile, Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     assert json.loads(found.stdout) is False
@@ -276,19 +277,3 @@ def test_a_study_that_asks_wrongly_for_friction_is_refused_in_one_line(tmp_path,
     line = refusal_line(written(tmp_path, f'extends = "cryogenic-turbopump"\n[ranking]\n{ranking}\n'))
     assert line.startswith("study.toml")
     assert [word for word in WRONG_STUDIES[ranking] if word not in line] == [], line
-
-
-@pytest.mark.parametrize(
-    ("ask", "words"),
-    [
-        (lambda _: fit_friction([]), "holds no test"),
-        (lambda t: fit_friction([t], 0.0), "friction_scatter must lie between"),
-        (lambda t: fit_friction([t], 9.0), "got 9"),
-        (lambda t: fit_friction([t]).of("B", "air, 440C"), 'holds no test of "B" in "air, 440C"'),
-    ],
-)
-def test_a_fit_that_cannot_be_is_refused(ask, words):
-    """No test, no such scatter, no such material."""
-    test = FrictionTest(material="A", counterface="440C", medium="air", friction=0.1)
-    with pytest.raises(InputError, match=words):
-        ask(test)

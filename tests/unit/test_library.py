@@ -11,8 +11,7 @@ from commands import refusal, written
 from separatrix.ground.errors import DataError
 from separatrix.ground.schema import keys_of
 from separatrix.study import library
-from separatrix.study.library import Library
-from separatrix.study.library.records import Datum, choose, contradictions
+from separatrix.study.library import Datum, Library, choose, contradictions
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 
@@ -313,12 +312,10 @@ def test_the_library_on_the_page_is_right_and_the_page_names_every_key():
     """The documentation of the contract is complete."""
     from pathlib import Path
 
-    from separatrix.study.library import records
-
     page = (Path(__file__).parents[2] / "docs" / "reference" / "materials.md").read_text(encoding="utf-8")
     block = page.split("```toml\n")[1].partition("```")[0]
     content = library.joined([library.library_of_text(block, "page")])
     assert content.material("cage material", "Our compound", 77.0).elastic_modulus == 9e9
-    schemas = (records.Datum, records.Solid, records.Fluid, records.FrictionTable, records.Measured)
-    for key in (*records.CONFIDENCES, *(key for schema in schemas for key in keys_of(schema))):
+    schemas = (library.Datum, library.Solid, library.Fluid, library.FrictionTable, library.Measured)
+    for key in (*library.CONFIDENCES, *(key for schema in schemas for key in keys_of(schema))):
         assert f"`{key}`" in page, key

@@ -20,7 +20,6 @@ from separatrix.study.study import (
     Material,
     RankingQuestion,
     StabilitySettings,
-    with_model,
 )
 from separatrix.verdict.beyond_models import Pocket, reason
 from separatrix.verdict.draws import Case
@@ -213,7 +212,8 @@ def test_a_missing_measurement_is_shown_as_missing():
 
 def test_a_row_carries_the_judgement_behind_its_verdict():
     """That of its friction, as it is."""
-    study = with_model(quick_study(ranking=asked(("A", Friction(mean=0.1)))), CageModel.PAPER)
+    study = quick_study(ranking=asked(("A", Friction(mean=0.1))))
+    study = replace(study, cage=replace(study.cage, model=CageModel.PAPER))
     (a,) = rank(study).environments[0].materials
     assert a.margin == a.restitution_threshold - a.restitution_factor
     solution = solve(study)

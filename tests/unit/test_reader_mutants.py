@@ -13,9 +13,9 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from commands import read_friction
 from rich_studies import SPACE
 
-from separatrix.friction.friction_file import read_friction
 from separatrix.ground.errors import InputError
 from separatrix.study.library import read_library
 from separatrix.study.reading import read_study

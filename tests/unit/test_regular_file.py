@@ -6,7 +6,6 @@ import pytest
 from commands import refused
 
 import separatrix
-from separatrix.friction.logs.binary import tdms_groups
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of
 from separatrix.ground.sheet import refuse_unsafe
@@ -44,8 +43,8 @@ def test_no_verb_waits_for_a_pipe(capsys, call):
 
 @pytest.mark.parametrize(
     "read",
-    [separatrix.load, refuse_unsafe, tdms_groups],
-    ids=["load", "refuse_unsafe", "read_tables"],
+    [separatrix.load, refuse_unsafe],
+    ids=["load", "refuse_unsafe"],
 )
 def test_a_reader_that_is_called_by_itself_refuses_a_pipe_too(folder, read):
     """Those that the verbs reach only after a check of their own."""

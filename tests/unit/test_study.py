@@ -26,7 +26,6 @@ from separatrix.study.study import (
     RankingQuestion,
     StabilitySettings,
     Study,
-    evenly_spaced,
     shipped_studies,
 )
 from separatrix.study.template import template
@@ -101,12 +100,6 @@ def test_balls_fit_up_to_touching():
     )  # cancellation
     with pytest.raises(InputError, match="at most 11"):
         bearing(ball_diameter=touching * (1 + 1e-9))
-
-
-def test_evenly_spaced_numbers_are_round():
-    """0.15 is 0.15, not 0.15000000000000002; exact."""
-    assert evenly_spaced(0.05, 0.95, 19)[2] == 0.15
-    assert evenly_spaced(0.05, 0.95, 19) == tuple(round(0.05 * i, 2) for i in range(1, 20))
 
 
 def test_the_paper_like_example_has_the_numbers_of_its_class():
@@ -188,18 +181,6 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     text = [line for line in lines if not line.startswith("friction =")]
     with_own = read("\n".join([*text, f"[[{candidates}".replace("# name", "name").replace("\n# ", "\n")]))
     assert [one.name for one in with_own.ranking.candidates] == ["My compound"]
-
-
-def test_absent_keys_have_the_documented_defaults(read):
-    """The defaults of the study file."""
-    given = read(BASE)
-    assert given.kinematics.model is KinematicModel.FREE
-    work, cage = given.operation, given.cage
-    assert (work.outer_speed, work.radial_load, work.moment, work.is_tilt_held) == (0.0, 0.0, None, True)
-    assert (cage.land_friction, cage.land_stiffness, cage.land_restitution) == (0.1, 1e7, 0.5)
-    assert (cage.unbalance, cage.gravity, cage.moment_of_inertia) == (0.0, 0.0, None)
-    assert given.stability == StabilitySettings()
-    assert given.ranking is None
 
 
 ANGLE, FILM = 'contact_angle = "25 deg"', 'material = "PTFE transfer film"\n'

@@ -49,7 +49,7 @@ land_restitution = 0.5
 [stability]
 kicks = ["0.1 m/s", "0.5 m/s", "2 m/s"]
 runs = 64
-restitution_factors = { from = 0.05, to = 0.95, count = 19 }
+restitution_factors = [0.05, 0.5, 0.95]
 
 [ranking]
 friction = "pin-on-disk-77K"
@@ -66,11 +66,6 @@ TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\
 
 EDITS = r"""
 model = "free" => model = "jones" :: "outer race control" ; got "jones"
-runs = 64 => duration = "-1 s" :: [stability] duration must be > 0
-runs = 64 => seed = -1 :: [stability] seed must be a whole number from 0
-[film] => [traction]\npressure = "own"\n[film] :: [traction] pressure must be "hertz" or "coated"
-mass = "25 g" => mass = "25 g"\npocket_contact = "soft" :: must be "linear" or "hertz"; got "soft"
-mass = "25 g" => mass = "25 g"\nball_diameter_scatter = "-1 um" :: ball_diameter_scatter must be >= 0
 bore = "50 mm" => axial_load = "3 N" :: line 10 ; [bearing] axial_load ; belongs in [operation]
 title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
 [operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]
@@ -79,7 +74,6 @@ pitch_diameter = "65 mm" => pitch_diameter = 65 mm :: line 5 ; Put quantities in
 model = "free" => model = free :: line 19 ; Put text in quotes.
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
-ball_count = 13 => ball_count = 13.0 :: whole number ; Write 13.
 race_friction = 0.1 => race_friction = 0 :: [film] race_friction must be > 0 ; race control
 contact_angle = "25 deg" => contact_angle = "25 deg"\nradial_clearance = "10 um"
     :: radial_clearance and contact_angle exclude each other
@@ -89,17 +83,12 @@ ball_material = "440C" => ball_material = "404C"
 "300 daN" => "0 N" :: [operation] axial_load ; nothing presses the balls
 axial_load = "300 daN" => axial_load = "300 daN"\nmoment = "1 N m"\ntilt = "1 mrad"
     :: [operation] tilt and moment exclude each other
-axial_load = "300 daN" => axial_load = "300 daN"\ntemperature = "-300 degC"
-    :: [operation] temperature must be > 0; ; "-300 degC"
 material = "PTFE transfer film"\n =>  :: [film] material is missing
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
 guidance = "outer"\n =>  :: [cage] land_clearance needs guidance ; guidance =
-runs = 64 => ball_scatter = 1.5 :: [stability] ball_scatter must lie between 0 and 1
-to = 0.95 => to = 1.0 :: [stability] restitution_factors ; < 1
-from = 0.05 => from = 0.99 :: [stability] restitution_factors must be strictly increasing
-count = 19 => count = 1 :: restitution_factors ; count from 2 ; got 1
-, count = 19 =>  :: restitution_factors lacks: count
+0.95] => 1.0] :: [stability] restitution_factors ; < 1
+[0.05, => [0.99, :: [stability] restitution_factors must be strictly increasing
 "Vespel SP 211" => "Armalon" :: [ranking] candidates ; "Armalon" twice
 TABLE =>  :: [ranking] lacks: friction (or candidates)
 TABLE => TABLEIN_PLACE :: exclude each other

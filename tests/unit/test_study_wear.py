@@ -2,9 +2,8 @@
 
 import commands
 import pytest
-from commands import document, refusal, refusal_line
+from commands import refusal_line
 from test_study_refusals import VALID
-from test_workbook import workbook
 
 from separatrix.ground.errors import InputError
 from separatrix.study.keys import with_values
@@ -41,38 +40,6 @@ def test_each_form_of_wear_is_read(section, wear, tmp_path):
     assert found["wear.races"]["value"] == wear.races.value
     assert found["wear.friction"]["value"] == 0.3
     assert found["wear.friction"]["origin"].startswith("study.toml, line ")
-
-
-def test_a_profile_is_read_from_the_folder_of_the_study(tmp_path):
-    """Two columns with units, in either order; a variant in another folder finds it, too."""
-    path = written(tmp_path, '[film.wear]\nprofile = "track.csv"\nfriction = 0.3\n')
-    (tmp_path / "track.csv").write_text("thickness [nm],y [mm]\n500,-0.2\n0,-0.1\n0,0.1\n500,0.2\n")
-    wear = read_study(path).film.wear
-    assert wear.places.across == pytest.approx((-2e-4, -1e-4, 1e-4, 2e-4))
-    assert wear.places.thicknesses == pytest.approx((5e-7, 0.0, 0.0, 5e-7))
-    other = tmp_path / "elsewhere"
-    other.mkdir()
-    (other / "variant.toml").write_text('extends = "../study.toml"\n[film]\nrace_friction = 0.2\n')
-    assert read_study(other / "variant.toml").film.wear == wear
-
-
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        (None, ["wear.profile does not name a file", '"track.csv"', "folder of the study"]),
-        ("a,b\n1,2\n", ["line 1 must name two columns, y and thickness", "y [mm],thickness [um]"]),
-        ("y [mm],thickness [K]\n1,2\n", ["line 2: thickness", "needs a unit of length"]),
-        ("y [mm],thickness [um]\n1\n", ["line 2 must have two cells; got 1"]),
-        ("y [mm],thickness [um]\n0,x\n0.1,1\n", ["line 2: thickness", "x um"]),
-        ("y [mm],thickness [um]\n0.1,0\n0,0\n", ["wear.profile must not fall", "0 mm after 100 um"]),
-    ],
-)
-def test_a_wrong_profile_is_refused(content, words, tmp_path):
-    """With the file, its line and what is due."""
-    if content is not None:
-        (tmp_path / "track.csv").write_text(content)
-    message = refusal(written(tmp_path, '[film.wear]\nprofile = "track.csv"\nfriction = 0.3\n'))
-    assert [word for word in words if word not in message] == [], message
 
 
 NO_SENSE = [
@@ -112,20 +79,3 @@ def test_numbers_of_wear_may_be_uncertain_and_varied(tmp_path):
     assert value_in(whole, "film.wear.width") is None
     with pytest.raises(InputError, match=r"\[film\] has no wear that could vary"):
         varied(whole, {"film.wear.share": 0.1})
-
-
-def test_lists_of_wear_are_typed_into_a_workbook(tmp_path):
-    """In one cell, with their unit beside them; the same film as from text."""
-    heads = ["key", "value", "+-", "unit", "meaning"]
-    places = [["wear.across", "-0.1; 0.1", None, "mm"], ["wear.thicknesses", "0; 0.2", None, "um"]]
-    plain = read_study(written(tmp_path, PLACES))
-    (tmp_path / "study.toml").write_text(VALID)
-    sheets = {"study": [heads, ["extends", "study.toml"]], "film": [heads, *places, ["wear.friction", 0.3]]}
-    assert read_study(commands.written(tmp_path, workbook(sheets), "worn.xlsx")).film == plain.film
-
-
-def test_the_answers_name_the_wear(tmp_path, capsys, monkeypatch):
-    """Where strips leave their range in `traction`."""
-    monkeypatch.chdir(tmp_path)
-    path = str(written(tmp_path, BAND))
-    assert any("across the groove" in one for one in document(capsys, "traction", path)["outside"])

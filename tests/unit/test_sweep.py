@@ -15,7 +15,7 @@ from separatrix.chain.solution import solve
 from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
-from separatrix.study.study import CageModel, with_model
+from separatrix.study.study import CageModel
 from separatrix.verdict.judgement import judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import MOST_CASES, sweep
@@ -55,7 +55,7 @@ def test_a_case_is_the_study_with_those_values():
 
 def test_a_verdict_is_that_of_the_whole_ensemble():
     """With its evidence, as `judge` gives it."""
-    study = with_model(QUICK, CageModel.PAPER)
+    study = replace(QUICK, cage=replace(QUICK.cage, model=CageModel.PAPER))
     (one,) = sweep(study, [{"ball_cage_friction": 0.3}], verdicts=True).cases
     found = solve(study)
     cage = moving_cage(found, 0.3)
@@ -68,7 +68,8 @@ def test_a_verdict_is_that_of_the_whole_ensemble():
 @pytest.mark.parametrize("model", list(CageModel))
 def test_a_margin_is_a_safety_factor_in_the_full_model(model):
     """Critical friction over friction; in the paper's model the threshold less eta. Never both."""
-    (one,) = sweep(with_model(QUICK, model), [{"ball_cage_friction": 0.3}], margins=True).cases
+    study = replace(QUICK, cage=replace(QUICK.cage, model=model))
+    (one,) = sweep(study, [{"ball_cage_friction": 0.3}], margins=True).cases
     if model is CageModel.PAPER:
         assert one.margin == one.restitution_threshold - one.restitution_factor
         assert (one.safety_factor_low, one.is_below_margin) == (None, one.margin < 0.0)

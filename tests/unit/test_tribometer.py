@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from commands import column_map
 
 import separatrix
-from separatrix.friction.logs import column_map
 from separatrix.front import main
 from separatrix.ground.errors import InputError
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
-from commands import document, refused, written
+from commands import column_map, document, refused, written
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import column_map
-from separatrix.friction.logs.log_tables import is_clock, is_number
-from separatrix.friction.logs.raw import seconds
-from separatrix.friction.reduction import reduce_log, reduction, with_outliers
+from separatrix.friction.logs.log import seconds
+from separatrix.friction.logs.tables import is_clock, is_number
+from separatrix.friction.reduction import reduce_log
 from separatrix.ground.errors import InputError
 
 ROWS = 240
@@ -253,19 +251,6 @@ def test_a_test_far_from_its_siblings_is_flagged(tmp_path, monkeypatch, capsys):
         [flag for flag in test["flags"] if "times the median of the other 4 tests" in flag] for test in tests
     ]
     assert [len(one) for one in told] == [0, 0, 0, 1, 0]
-
-
-def test_a_material_far_from_its_neighbours_is_flagged(tmp_path):
-    """One test each of five composites, four of 0.13 to 0.15 and one of 0.445, as in field data."""
-    reductions = []
-    for number, level in enumerate([0.13, 0.135, 0.445, 0.15, 0.14]):
-        rows = "".join(f"{i},{level + NOISE[i]:.5f}\n" for i in range(ROWS))
-        (log,) = read(tmp_path, f"time [s],COF\n{rows}")
-        one = reduction(log)
-        known = replace(one.test.conditions, material=f"composite {number}")
-        reductions.append(replace(one, test=replace(one.test, conditions=known)))
-    flags = [[f for f in one.test.flags if "of all materials" in f] for one in with_outliers(reductions)]
-    assert [len(told) for told in flags] == [0, 0, 1, 0, 0]
 
 
 def test_a_step_that_underflows_is_reduced(tmp_path):

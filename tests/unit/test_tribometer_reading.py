@@ -8,12 +8,13 @@ import math
 import numpy as np
 import pytest
 import raw_logs
+from commands import column_map
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from raw_logs import as_written
 
-from separatrix.friction.logs import described, read_log
-from separatrix.friction.logs.column_map import ColumnMap, column_map
+from separatrix.friction.logs import read_log
+from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ALIASES, MEANINGS, NAMES, ranks, scale_of
 from separatrix.ground.errors import InputError
@@ -261,7 +262,6 @@ CONDITIONS = {
     "a stroke's greatest speed is not its sliding speed": (STROKES, {}, {"slip_speed": None}),
     "UMT keys without units": (UMT, {}, {"slip_speed": None}),
     "Rtec": (RTEC, {"test": {"track_radius": "20 mm", "material": "Armalon"}}, TURNING),
-    "Rtec, two keys": (b"Sample,Operator\ndisk 7,nobody\n" + BARE_RTEC, {}, {"sample": "disk 7"}),
     "Rtec, one key is no table": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
     "Rtec, a bare carriage return": (RTEC.replace(b"e\r\ndisk", b"e\rdisk"), {}, {"sample": "disk 7"}),
     "a speed in rpm": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), {}, {"cycle_time": 1.0}),
@@ -403,7 +403,7 @@ def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
     columns, friction, note, given = MADE[what]
     log = read(tmp_path, csv({"time [s]": TIME} | columns), given and column_map(given))
     np.testing.assert_allclose(log.friction, friction, rtol=ULP)
-    assert ("divided by the radius of the track" in "\n".join(described(log))) == ("torque" in what)
+    assert ("divided by the radius of the track" in "\n".join(log.notes)) == ("torque" in what)
     assert log.missing == ROWS - len(friction)
     assert any(one.startswith(note) for one in log.notes) or not note
     assert any("negative" in one for one in log.notes) == ("negative" in note)
@@ -422,12 +422,6 @@ def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units
         np.testing.assert_array_equal(log.time, as_written(TIME))
 
 
-def test_forces_of_compend_make_a_friction(tmp_path):
-    """Row by row, where no coefficient is logged."""
-    log = read(tmp_path, raw_logs.compend(FRICTION, TIME, coefficient=False))
-    np.testing.assert_allclose(log.friction, as_written(FRICTION * 20.0) / 20.0, rtol=ULP)
-
-
 def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
     """Without a line between, or with one that names the test."""
     one, two = (raw_logs.plain_csv({"time [s]": TIME, "COF": f}) for f in (FRICTION, FRICTION + 0.1))
@@ -435,22 +429,6 @@ def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
         first, second = read_all(tmp_path, one + between + two)
         np.testing.assert_array_equal(first.friction, as_written(FRICTION))
         np.testing.assert_array_equal(second.time, as_written(TIME))
-
-
-def test_a_last_value_that_may_be_cut_off_is_noted(tmp_path):
-    """With fewer digits than all others; a whole file has no such note."""
-    notes = [read(tmp_path, content).notes for content in (csv(), csv()[:-4])]
-    assert [any("may be cut off" in note for note in one) for one in notes] == [False, True]
-
-
-def test_description_shows_columns_units_and_reasons(tmp_path):
-    """What is shown before it is trusted."""
-    text = "\n".join(described(read(tmp_path, raw_logs.umt(FRICTION, TIME))))
-    assert "Bruker UMT text (utf-8, comma, decimal point), 60 rows, sha256" in text
-    assert 'friction: column "COF" (its layout)' in text
-    assert 'time: column "T" in sec (its layout)' in text
-    assert 'not used: "Z"' in text
-    assert "time from 0 s to 14.75 s" in text
 
 
 def test_no_name_and_unit_have_two_meanings():

@@ -7,13 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from commands import refusal_line
-from scipy.signal import lfilter
 from synthetic_friction import Recipe, made
 
 from separatrix.friction import steady
-from separatrix.friction.cycles import oscillation
 from separatrix.friction.friction_file import place
-from separatrix.friction.logs.log import Conditions, RawLog
+from separatrix.friction.logs.conditions import Conditions
+from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log
 
 MEASURED = {"slip_speed": 1.0, "normal_force": 10.0, "temperature": 150.0}
@@ -145,10 +144,7 @@ TOLD = {  # a log, begin of a flag and words in it (None: no such flag), and wha
     ),
     "friction that never varies, without an error and without NaN": (
         *(log(friction=lambda t: np.full(t.size, 0.125)), {"Friction is 0.125 in every row": ""}),
-        lambda test: (
-            (test.friction, test.standard_error, test.half_width, test.stick_slip_frequency)
-            == (0.125, 0.0, 0.0, 0.0)
-        ),
+        lambda test: (test.friction, test.standard_error, test.half_width) == (0.125, 0.0, 0.0),
     ),
     "coarse steps, whose mean is 0.1216": (
         *(COARSE, {}),
@@ -207,46 +203,6 @@ def test_drift_is_told_per_hour_and_per_kilometre():
     assert " per h " in told(test, "Friction drifts by 0.4")
     test = reduce_log(replace(one, distance=0.5 * one.time))
     assert " per km " in told(test, "Friction drifts by 0.2")
-
-
-def test_stick_slip_has_its_frequency_and_amplitude():
-    """A saw-tooth of 0.06 at 2.1 Hz: its first harmonic is 2/pi of that from peak to peak."""
-    one = log(friction=lambda t: 0.12 + 0.06 * (2.1 * t % 1.0 - 0.5) + 0.004 * _noise(t.size))
-    test = reduce_log(one)
-    assert test.stick_slip_frequency == pytest.approx(2.1, rel=0.01)  # a place of the spectrum is 1 %
-    assert test.stick_slip_amplitude == pytest.approx(0.06 * 2 / np.pi, rel=0.1)  # the window's edges
-
-
-def test_the_modulation_of_a_known_cycle_is_no_stick_slip():
-    """What repeats with each turn is the turn's; without the time of a cycle it may be either."""
-    recipe = replace(QUIET, modulation=0.04)
-    assert reduce_log(log(recipe)).stick_slip_amplitude == 0.0
-    assert reduce_log(log(recipe, knows_cycle=False)).stick_slip_amplitude > 0.0
-
-
-def test_stick_slip_is_seen_beside_a_stronger_modulation_by_a_known_cycle():
-    """The turn and its multiples are left out of what is searched."""
-    one = log(replace(QUIET, modulation=0.03, rows_of_a_cycle=20.0))
-    test = reduce_log(replace(one, friction=one.friction + 0.01 * np.sin(2 * np.pi * 1.7 * one.time)))
-    assert test.stick_slip_frequency == pytest.approx(1.7, rel=0.01)  # a place of the spectrum is 1 %
-    assert test.stick_slip_amplitude == pytest.approx(0.02, rel=0.1)  # the window's edges
-
-
-def test_the_foot_of_a_strong_turn_in_slow_noise_is_no_stick_slip():
-    """Slow noise leaves the foot of the turn's line far above it, whatever the length of a turn."""
-    time = np.arange(4000) * 0.1
-    slow = lfilter([0.13], [1.0, -0.9917], _noise(time.size))  # standard deviation 1, 12 s to 1/e
-    for cycle in np.linspace(1.0, 3.0, 40):
-        friction = 0.12 + 0.03 * np.sin(2 * np.pi * time / cycle) + 0.002 * slow
-        assert oscillation(time, friction, cycle).amplitude == 0.0
-
-
-def test_what_repeats_with_the_turn_is_no_stick_slip_above_half_the_logging_rate():
-    """A bump once in 10.3 rows has multiples that are seen mirrored: they are the turn's as well."""
-    cycle = 1.03
-    one = log(friction=lambda t: 0.12 + 0.1 * (np.abs(t / cycle % 1.0 - 0.5) < 0.06) + 0.003 * _noise(t.size))
-    one = replace(one, conditions=replace(one.conditions, cycle_time=cycle))
-    assert reduce_log(one).stick_slip_amplitude < 0.1 * 0.12  # multiples above the 12th are left
 
 
 def test_a_long_correlation_is_told_by_the_weight_of_all_spectra():
@@ -321,38 +277,8 @@ def plain(rows=400, **changes):
     return RawLog(source="test.csv", checksum="0" * 64, format="made", **made)
 
 
-def with_row(row, value):
-    """Return a change of one row of a column that is like the time."""
-
-    def change(time):
-        return np.where(np.arange(time.size) == row, value, time)
-
-    return change
-
-
 LOGS = [
-    ("time that falls", {"time": with_row(7, 0.0)}, None, "time must not fall; got 0 after 3 in row 8"),
-    (
-        "time that is no number",
-        {"time": with_row(7, float("nan"))},
-        None,
-        "must be a finite number in each row",
-    ),
-    ("time without end", {"time": with_row(399, float("inf"))}, None, "none in row 400"),
     ("time that stands", {"time": lambda time: 0.0 * time}, None, "time must rise; got 0 in every row"),
-    (
-        "friction that is no number",
-        {"friction": with_row(7, float("nan"))},
-        None,
-        "friction must be a finite number",
-    ),
-    ("cycles that fall", {"cycles": with_row(7, 0.0)}, None, "cycles must not fall"),
-    (
-        "cycles that are no number",
-        {"cycles": with_row(9, float("nan"))},
-        None,
-        "cycles must be a finite number",
-    ),
     ("too few rows", {"rows": 3}, None, "needs at least 4 rows of steady friction; got 3"),
     ("a cut in what is not there", {}, "20 m", "the log has time"),
     ("a cut in cycles that are not there", {}, "20 cycles", "needs a column of cycles"),

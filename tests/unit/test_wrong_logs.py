@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import raw_logs
-from commands import refusal_line, written
+from commands import column_map, refusal_line, written
 
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import column_map, read_column_map
+from separatrix.friction.logs.column_map import read_column_map
 
 TIME = np.arange(20) * 0.5
 FRICTION = 0.1 + 0.001 * np.arange(20)
@@ -45,13 +45,13 @@ WRONG = {
     "a compressed file": (b"\x1f\x8b\x08" + b"a" * 99, "is compressed (gzip), not text. Unpack it first."),
     "a byte that Windows-1252 lacks": (csv() + b"caf\xe9 \x81\n", "line 22 cannot be read as cp1252 text; got byte 0x81"),
     "no header": (csv().split(b"\n", 1)[1], "has 2 open questions, the first: which column is the friction"),
-    "a row with too few fields": (changed(csv(), 9, "3.5"), "has an open question: line 9 is among the rows and is left out: '3.5'"),
+    "a row with too few fields": (changed(csv(), 9, "3.5"), "line 9 has 1 fields where the rows before it have 2; got \"3.5\". Mend or delete this line."),
     "a last row cut off": (csv() + b"10.0", 'line 22 has 1 fields where the rows before it have 2; got "10.0"'),
     "text in a number column": (changed(csv(), 9, "3.5,abc"), 'line 9, column "COF" must be a number; got "abc"'),
-    "a decimal comma in one row": (changed(csv(separator=";"), 9, "3,5;0,1"), 'has an open question: has points and commas in its numbers: "3.000000" and "3,5"'),
+    "a decimal comma in one row": (changed(csv(separator=";"), 9, "3,5;0,1"), 'has an open question: has points and commas in its numbers: "0.000000" and "3,5"'),
     "marks between thousands": (lines("time [s];COF", *(f"{i},000.5;0.1" for i in range(1, 9))), 'has an open question: has points and commas in its numbers: "1,000.5"'),
     "decimals or thousands": (lines("time [s];COF", *(f"{i},250;{i},125" for i in range(1, 9))), 'has an open question: does not show whether its marks are decimal signs or between thousands: "8,125"'),
-    "a point among decimal commas far below": (csv(separator=";", decimal=",", columns={"time [s]": np.arange(4000), "COF": 0.1 + 0 * np.arange(4000)}) + b"4000,5;1.234\n", 'has an open question: has points and commas in its numbers: "0,100000" and "1.234"'),
+    "a point among decimal commas far below": (csv(separator=";", decimal=",", columns={"time [s]": np.arange(4000), "COF": 0.1 + 0 * np.arange(4000)}) + b"4000,5;1.234\n", 'has an open question: has points and commas in its numbers: "1.234" and "0,000000"'),
     "time running backwards": (csv(columns={"time [s]": BACK, "COF": FRICTION}), "line 14 time must not run backwards; got 1 s after 5.5 s"),
     "the same header twice": (lines("time [s],COF,COF", *(f"{i},0.1,0.2" for i in range(9))), "has an open question: 2 columns that could be the friction: 2 or 3"),
     "no friction": (csv(columns={"time [s]": TIME, "a": FRICTION}), "has an open question: which column is the friction"),
@@ -71,7 +71,7 @@ WRONG = {
     "dates for a time": (lines("time [s];COF;n", *(f"2026-02-{1 + i:02d};0.{100 + i};{i}" for i in range(9))), "has an open question: which column is the time"),
     "a time among times that is none": (lines("time;COF", "10:00:00;0.1", "10:00:01;0.1", "10:00;0.1", "late;0.1"), 'has an open question: column "time": the file writes "..."'),
     "times of two numbers": (lines("time;COF", *(f"10:{i:02d};0.{100 + i}" for i in range(9))), 'has an open question: column "time": minutes and seconds, or hours and minutes (hh:mm)'),
-    "a second table without header": (csv() + b"second run\n" + csv().split(b"\n", 1)[1], "has an open question: line 22 is among the rows and is left out: 'second run'"),
+    "a second table without header": (csv() + b"second run\n" + csv().split(b"\n", 1)[1], 'line 22 breaks the table; got "second run". Delete it, or add below [format] of a column map: skip = ["second run"]'),
 }  # fmt: skip
 
 

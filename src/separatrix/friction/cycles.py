@@ -1,23 +1,14 @@
-"""Means over whole cycles and over equal spans made of them, and oscillations that are not the cycle's.
-
-An oscillation is the strongest line of the spectrum of the rows that exceeds its noise.
-"""
+"""Means over whole cycles, and over equal spans made of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.ndimage import percentile_filter
-from scipy.signal import welch
-from scipy.special import gammaincc
 
 from separatrix.friction.logs.log import RawLog
-from separatrix.friction.steady import ROUNDING
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Array, Ratio, format_number
+from separatrix.ground.units import Array, format_number
 
 MOST = 256  # spans into which a test is divided for its statistics, at most
 FEWEST = 12  # spans, where no cycle is known and there are as many rows
@@ -123,11 +114,10 @@ class Stretch:
         return float(self.along[min(int(np.searchsorted(self.done, ruled)), self.along.size - 1)])
 
 
-def clock(log: RawLog, along: Array) -> tuple[Array | None, float | None, tuple[str, ...]]:
-    """Return the cycles of a log: by its column, or by the time of one cycle.
+def clock(log: RawLog) -> tuple[Array | None, tuple[str, ...]]:
+    """Return the cycles done at each row, shape (row,), by their column or by the time of one; and notes.
 
-    That is: cycles done at each row, shape (row,), if means are over whole ones; the length of a cycle in the
-    unit of the abscissa; notes. None where that is unknown.
+    None where they are not known, or where a cycle has too few rows for means over whole ones.
     """
     done: Array | None = None
     if log.cycles is not None:
@@ -136,31 +126,19 @@ def clock(log: RawLog, along: Array) -> tuple[Array | None, float | None, tuple[
         time = rising(log, "time")
         done = np.asarray((time - time[0]) / log.conditions.cycle_time, dtype=float)
     if done is None or done[-1] <= done[0]:
-        return None, None, ()
-    cycle = float((along[-1] - along[0]) / (done[-1] - done[0]))
+        return None, ()
     rows = float(done.size / max(done[-1] - done[0], 1e-300))
     if rows < ROWS_OF_A_CYCLE:
         count = format_number(rows, 2)
-        note = f"The log has {count} rows a cycle: what changes within a cycle is not averaged out."
-        return None, cycle, (note,)
-    return done, cycle, ()
+        return None, (f"The log has {count} rows a cycle: what changes within a cycle is not averaged out.",)
+    return done, ()
 
 
 def rising(log: RawLog, axis: str) -> Array:
-    """Return an abscissa of a log, shape (row,)."""
+    """Return an abscissa of a log, shape (row,); the reading of the log refuses one that falls."""
     values = np.asarray(getattr(log, axis), dtype=float)
-    where = f"{log.source}: {axis}"
-    if not np.isfinite(values).all():
-        row = int(np.flatnonzero(~np.isfinite(values))[0]) + 1
-        raise InputError(where, "must be a finite number in each row", f"none in row {row}")
-    falls = np.flatnonzero(np.diff(values) < 0.0)
-    if falls.size:
-        i = int(falls[0])
-        got = f"{values[i + 1]:g} after {values[i]:g} in row {i + 2}"
-        cure = "One log holds one test; split it where it begins anew."
-        raise InputError(where, "must not fall", got, cure)
     if values[-1] <= values[0]:
-        raise InputError(where, "must rise", f"{values[0]:g} in every row")
+        raise InputError(f"{log.source}: {axis}", "must rise", f"{values[0]:g} in every row")
     return values
 
 
@@ -182,94 +160,3 @@ def means(abscissa: Array, values: Array, start: float, end: float, count: int) 
         spans = np.arange(count)
         found = np.asarray(np.interp(spans, spans[full], found[full]), dtype=float)
     return Spans(start=start, width=width, means=found)
-
-
-SEGMENTS = 8  # parts of the test whose spectra are averaged, overlapping by half
-LONGEST, SHORTEST = 4096, 64  # rows of a segment
-CHANCE = 1e-4  # probability with which noise alone would show a line as strong somewhere in the spectrum
-BESIDE = 8  # places on each side of a line from which the noise is estimated; the two next to it are left out
-LOWEST = 12
-"""First place of a spectrum where a line is searched: there is no noise to the left of lower ones."""
-
-HARMONICS = 12  # multiples of the cycle that are its own
-
-
-class Oscillation(NamedTuple):
-    """The strongest line of the spectrum of friction; zeros if none exceeds the noise."""
-
-    frequency: float = 0.0  # in cycles per SI unit of the abscissa
-    amplitude: Ratio = 0.0  # peak to peak of the sine with its power [-]
-
-
-def oscillation(along: Array, friction: Array, cycle: float | None) -> Oscillation:
-    """Return the strongest oscillation of rows, shape (row,), that is not one of the cycle's.
-
-    The length of the cycle is in the unit of the abscissa; None where it is not known.
-    """
-    span = float(along[-1] - along[0])
-    if span <= 0.0 or along.size < SHORTEST:
-        return Oscillation()
-    step = span / (along.size - 1)
-    even = np.interp(along[0] + step * np.arange(along.size), along, friction)
-    length = int(np.clip(along.size // SEGMENTS, SHORTEST, LONGEST))
-    frequencies, density = welch(even, 1.0 / step, nperseg=length, detrend="constant")
-    noise = np.maximum(beside(density), 1e-300)
-    other = np.where(_own(frequencies, density, cycle), np.minimum(density, noise), density)
-    line = _line(other, noise, averages=2 * even.size / length - 1)
-    if line is None or np.ptp(even) <= ROUNDING * np.abs(even).max():
-        return Oscillation()
-    reach = 3 + line // 20  # of the places next to the line that belong to it
-    part = slice(max(0, line - reach), line + reach + 1)
-    power = float(np.maximum(other[part] - noise[line], 0.0).sum()) * frequencies[1]
-    frequency = float(np.average(frequencies[line - 1 : line + 2], weights=density[line - 1 : line + 2]))
-    return Oscillation(frequency, float(np.sqrt(8.0 * power)))
-
-
-def beside(density: Array) -> Array:
-    """Return the noise around each place: the larger of the medians of both sides.
-
-    A line is above both. The slope of a red spectrum is below the side of low frequency.
-    """
-    size = BESIDE
-    middle = percentile_filter(density, 50.0, size=size, mode="nearest")
-    reach = size // 2 + 2
-    padded = np.pad(middle, reach, mode="edge")
-    return np.asarray(np.maximum(padded[: -2 * reach], padded[2 * reach :]), dtype=float)
-
-
-def _line(density: Array, noise: Array, averages: float) -> int | None:
-    """Return the place of the strongest line, if noise alone is unlikely to make it.
-
-    The limit is the density over the noise that one of all places exceeds with the probability `CHANCE`. The
-    mean of n overlapping spectra is a chi-square with about 1.9 n degrees of freedom (Welch's window).
-    """
-    half = max(1.0, 0.95 * averages)
-    ratios = np.geomspace(1.0, 60.0, 400)
-    limit = float(ratios[np.argmax(density.size * gammaincc(half, half * ratios) < CHANCE)])
-    ratio = density / noise
-    ratio[:LOWEST] = ratio[-1] = 0.0
-    strongest = int(np.argmax(density * (ratio > limit)))
-    return strongest if ratio[strongest] > limit else None
-
-
-def _own(frequencies: Array, density: Array, cycle: float | None) -> NDArray[np.bool_]:
-    """Return where the lines of the cycle and its multiples are, with their feet.
-
-    A strong line has feet wider than the window; they reach down to where the density stops falling. A
-    multiple above half the logging rate shows itself mirrored below.
-    """
-    own = np.zeros(frequencies.size, dtype=bool)
-    if cycle is None:
-        return own
-    last, spacing = frequencies.size - 1, frequencies[1]
-    for order in range(1, HARMONICS + 1):
-        folded = abs((order / cycle / spacing + last) % (2 * last) - last)
-        left, right = max(0, int(folded) - 2), min(last, int(folded) + 3)
-        peak = left + int(np.argmax(density[left : right + 1]))
-        first, end = peak, peak
-        while first > 0 and density[first - 1] < density[first]:
-            first -= 1
-        while end < last and density[end + 1] < density[end]:
-            end += 1
-        own[min(first, left) : max(end, right) + 1] = True
-    return own

@@ -9,13 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
-from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 from separatrix.friction.prediction import FRICTION_LIMIT, LEAST_FRICTION
 from separatrix.ground import units
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import read
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -222,17 +220,6 @@ HEADER = """\
 # of its whole cycles. Tests of one specimen name the same sample. Change or add what you know; a test that
 # should not count is removed, or commented out.
 """
-
-
-def read_friction(path: Path) -> tuple[FrictionTest, ...]:
-    """Tests of a friction file, in its order.
-
-    Raises
-    ------
-    InputError
-        Everything that is wrong with it, a line each: place, rule, value, cure.
-    """
-    return read(FrictionFile, path).value.test
 
 
 _WRITTEN = {"slip_speed": (1.0, "m/s"), "pressure": (1e6, "MPa"), "temperature": (1.0, "K")}

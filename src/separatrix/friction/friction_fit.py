@@ -32,14 +32,12 @@ from separatrix.friction.scatter import (
     posteriors,
     variance_components,
 )
-from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
 """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess. A 25 %
 repeatability limit over 2.8, borrowed from ASTM D2981, which states it for wear life and not for friction."""
 
-LEAST_SCATTER, MOST_SCATTER = 1e-3, 1.0
 GroupKey = tuple[str, str]  # material and environment
 
 
@@ -142,9 +140,6 @@ class FrictionFit:
 
     def of(self, material: str, environment: str) -> MaterialFit:
         """Fit of one material in one environment."""
-        if (material, environment) not in self.groups:
-            rule = f'holds no test of "{material}" in "{environment}"'
-            raise InputError("The friction file", rule)
         return self.groups[material, environment]
 
 
@@ -153,11 +148,6 @@ def fit_friction(tests: Sequence[FrictionTest], default_scatter: Ratio = DEFAULT
 
     An unrepeated test is assumed to have the default scatter, a relative standard deviation [-].
     """
-    if not tests:
-        raise InputError("The friction file", "holds no test")
-    if not LEAST_SCATTER <= default_scatter <= MOST_SCATTER:
-        rule = f"must lie between {LEAST_SCATTER:g} and {MOST_SCATTER:g} [-]"
-        raise InputError("friction_scatter", rule, f"{default_scatter:g}", "0.09 is 9 %.")
     return _fit(tuple(tests), default_scatter)
 
 

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
+
+import numpy as np
 
 from separatrix.friction.friction_file import CONDITIONS, NAMES, FrictionTest, Place, place
 from separatrix.friction.friction_fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
 from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.log import RawLog, in_order, joined, of_log
+from separatrix.friction.logs.conditions import Conditions, of_log
+from separatrix.friction.logs.log import RawLog
+from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
 from separatrix.friction.prediction import FRICTION_LIMIT
 from separatrix.friction.reduction import RUN_IN_END, Cut, Reduction, TestFriction, reduction, with_outliers
 from separatrix.ground.errors import InputError, together
-from separatrix.ground.units import printable
+from separatrix.ground.units import format_number, format_quantity, printable, unit_of
 
 _T = TypeVar("_T")
 _S = TypeVar("_S")
@@ -227,3 +233,76 @@ def friction_test(test: TestFriction) -> FrictionTest:
             where = "below [columns] of a column map"
             refused.cure = f"If a force was read as friction, map it as tangential_force {where}."
         raise refused from None
+
+
+# --- parts of one test ---------------------------------------------------------------------------
+ALIKE = 0.1  # share by which measured conditions of parts may differ; beyond it they are of different tests
+LISTED = 12  # parts whose friction is listed
+
+
+def in_order(name: str) -> list[tuple[int, str]]:
+    """Key that sorts ``part 2`` before ``part 10``."""
+    return [(int(part or 0), "") if part.isdigit() else (0, part) for part in re.split(r"(\d+)", name)]
+
+
+def joined(parts: Sequence[RawLog]) -> RawLog:
+    """Return one log of the parts of a test, one after the other; time goes on from one to the next."""
+    if len(parts) == 1:
+        return parts[0]
+    parts = sorted(parts, key=lambda part: in_order(part.source))
+    source = f"{parts[0].source} and {len(parts) - 1} more"
+    columns: dict[str, Any] = {}
+    for name in (f.name for f in fields(RawLog) if f.name in MEANINGS):
+        pieces = [getattr(part, name) for part in parts]
+        if any(piece is None for piece in pieces):
+            columns[name] = None
+            continue
+        for i in range(1, len(pieces) if name in ABSCISSAE else 0):  # one that begins anew goes on
+            last, piece = pieces[i - 1][-1], pieces[i]
+            if piece[0] < last:
+                pieces[i] = piece + (last - piece[0] + float(np.median(np.diff(piece))))
+        columns[name] = np.concatenate(pieces)
+    if all(columns[name] is None for name in ABSCISSAE):
+        raise InputError(source, "have no column of time, distance or cycles in common to be joined by")
+    if len({part.series for part in parts}) == 1 and parts[0].series and columns["cycles"] is None:
+        # a cycle is a stroke there and the one back
+        strokes = [(k + np.arange(part.rows) / part.rows) / 2.0 for k, part in enumerate(parts)]
+        columns["cycles"] = np.concatenate(strokes)
+    means = [format_number(float(part.friction.mean()), 3) for part in parts]
+    more = "" if len(means) <= LISTED else f" and {len(means) - LISTED} more"
+    note = (
+        f"{len(parts)} parts of one test are joined, {parts[0].source} to {parts[-1].source}; "
+        f"their frictions: {', '.join(means[:LISTED])}{more}"
+    )
+    return replace(
+        parts[0],
+        source=source,
+        checksum=hashlib.sha256("".join(part.checksum for part in parts).encode()).hexdigest(),
+        missing=sum(part.missing for part in parts),
+        conditions=_common_conditions(parts, source),
+        measured=frozenset.intersection(*(part.measured for part in parts)),
+        notes=(note, *parts[0].notes),
+        series="",
+        **columns,
+    )
+
+
+def _common_conditions(parts: Sequence[RawLog], source: str) -> Conditions:
+    """Conditions of all parts: words that agree, and the middle of measured values that are alike."""
+    found: dict[str, Any] = {}
+    for f in fields(Conditions):
+        values = [value for part in parts if (value := getattr(part.conditions, f.name)) is not None]
+        numbers = [value for value in values if isinstance(value, float)]
+        if numbers:
+            found[f.name] = float(np.median(numbers))
+            differs = max(numbers) - min(numbers) > ALIKE * found[f.name]
+        else:
+            found[f.name] = values[0] if values else None
+            differs = len(set(values)) > 1
+        if differs:
+            unit = unit_of(Conditions, f.name)
+            ends = (min(values), max(values))
+            texts = [format_quantity(v, unit) if unit else printable(str(v)) for v in ends]
+            rule = f"cannot be one test: their {f.name.replace('_', ' ')} differs"
+            raise InputError(source, rule, " and ".join(texts), "Name the parts of one test only.")
+    return Conditions(**found)

@@ -12,7 +12,8 @@ from scipy.ndimage import median_filter
 
 from separatrix.friction import cycles, steady
 from separatrix.friction.friction_file import in_words
-from separatrix.friction.logs.log import Conditions, RawLog, of_log
+from separatrix.friction.logs.conditions import Conditions, of_log
+from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.steady import LONG, METHOD, RunIn, run_in
 from separatrix.ground.errors import InputError
@@ -27,7 +28,7 @@ RUN_IN_END = "run_in"
 """Where a given end of running-in is refused."""
 
 Cut = tuple[str, float]
-"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction.file.place`."""
+"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction_file.place`."""
 
 
 # --- events and conditions ----------------------------------------------------------------------
@@ -214,10 +215,6 @@ class TestFriction:
     cycles: int  # whole cycles averaged; 0 where none are
     drift_rate: float  # change of friction per SI unit of `run_in_axis`, over the steady part
     drift_error: float  # standard error of `drift_rate`
-    stick_slip_amplitude: Ratio
-    """Peak to peak, of the strongest oscillation that is not the cycle's; 0 if none exceeds the noise."""
-    stick_slip_frequency: float
-    """Of that oscillation, per SI unit of `run_in_axis`; 0 if none exceeds the noise."""
     flags: tuple[str, ...] = ()  # what a reader has to consider, a sentence each
 
     @property
@@ -256,21 +253,17 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     Raises
     ------
     InputError
-        The log runs backwards along its abscissa, lacks the abscissa of the cut, or is too short.
+        The log stands still along its abscissa, lacks the abscissa of the cut, or is too short.
     """
     if cut is not None and cut[0] not in log.abscissae:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
         raise InputError(log.source, f"needs a column of {cut[0]}", "none", cure)
     axis = cut[0] if cut else next(name for name in PREFERRED if name in log.abscissae)
     along = cycles.rising(log, axis)
-    bad = np.flatnonzero(~np.isfinite(log.friction))
-    if bad.size:
-        where = f"{log.source}: friction"
-        raise InputError(where, "must be a finite number in each row", f"none in row {bad[0] + 1}")
     events = _events(log, along, axis)
     loaded = max((one.row for one in events if not one.is_end), default=0)
     kept = slice(loaded, min((e.row for e in events if e.is_end and e.row > loaded), default=log.rows))
-    done, cycle, notes = cycles.clock(log, along)
+    done, notes = cycles.clock(log)
     rows = cycles.Stretch(
         source=log.source,
         along=along[kept],
@@ -282,10 +275,9 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     mean = steady.steady_mean(spans.means)
     friction, first = stretch.within(spans), int(np.searchsorted(stretch.ruler, spans.start))
     steady_rows = slice(kept.start + first, kept.start + first + friction.size)
-    strongest = cycles.oscillation(stretch.along[first : first + friction.size], friction, cycle)
     one = Reduction(
         log=log,
-        test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found, strongest),
+        test=_test(log, steady_conditions(log, steady_rows), axis, stretch, spans, mean, found),
         steady_rows=steady_rows,
         stretch=stretch,
         run_in=found,
@@ -304,7 +296,6 @@ def _test(
     spans: cycles.Spans,
     mean: steady.SteadyMean,
     found: RunIn | None,
-    oscillation: cycles.Oscillation,
 ) -> TestFriction:
     """Return the numbers of a test, without its flags."""
     friction, whole = stretch.within(spans), stretch.cycle_means(spans)
@@ -333,8 +324,6 @@ def _test(
         cycles=whole.size,
         drift_rate=mean.change / (high - low),
         drift_error=mean.change_error / (high - low),
-        stick_slip_amplitude=oscillation.amplitude,
-        stick_slip_frequency=oscillation.frequency,
     )
 
 

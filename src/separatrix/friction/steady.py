@@ -216,7 +216,7 @@ def run_in(values: Array) -> RunIn:
     straight = _Tails(line, _without_line)
     if even and straight.first(straight.noise) == 0:
         return straight.from_place(0)
-    tails = _Tails(values, _without_level)
+    tails = _Tails(values, lambda tail: tail - tail.mean())
     # differences for which nothing is cut, shape (place, later place)
     part = 1.0 - tails.left[None, :] / tails.left[:, None]
     worth = np.minimum(WORTH, SEEN * part) * np.abs(tails.means)
@@ -261,10 +261,6 @@ class _Tails:
         square = (self.difference[place] ** 2 - NOISE * self.variance[place])[place:]
         rest = float(np.sqrt(max(0.0, float(square.max()))))
         return RunIn(end=float(self.share[place]), rest=rest, ends=place < self.starts.size - 1)
-
-
-def _without_level(values: Array) -> Array:
-    return np.asarray(values - values.mean())
 
 
 def _without_line(values: Array) -> Array:

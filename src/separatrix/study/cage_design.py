@@ -41,8 +41,8 @@ from separatrix.ground.units import (
     format_quantity,
 )
 from separatrix.study.ball_bearing import Material
-from separatrix.study.helper import helper_of, temperature_of
 from separatrix.study.pocket_shape import Pocket, PocketShape, end_half_play, half_play
+from separatrix.study.uncertain import helper_of, temperature_of
 
 SIGMAS = 3.0
 """Standard deviations at which normal scatter is cut."""

@@ -19,10 +19,8 @@ from separatrix.ground.toml import KeyPath, folded, label_of, nearest
 from separatrix.ground.units import Kelvin, Ratio, shown
 from separatrix.study.ball_bearing import NAMELESS, Material
 from separatrix.study.distribution import Normal
-from separatrix.study.helper import helper_of, temperature_of
-from separatrix.study.library import Library
-from separatrix.study.library.records import FrictionTable
-from separatrix.study.uncertain import deviation_of, number
+from separatrix.study.library import FrictionTable, Library
+from separatrix.study.uncertain import deviation_of, helper_of, number, temperature_of
 
 if TYPE_CHECKING:
     from separatrix.friction.friction_fit import TestedFriction

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from separatrix.ground.units import Kilogram, format_quantity
-from separatrix.study.library.records import contradictions
+from separatrix.study.library import contradictions
 from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.study import CageDesign, Guidance, MotionModel, Study
 

@@ -152,13 +152,14 @@ class Samples:
 
     def __post_init__(self) -> None:
         if not 2 <= (count := len(self.values)) <= MOST_SAMPLES:
-            raise InputError("Samples.values", f"must hold 2 to {MOST_SAMPLES} values", str(count))
+            cure = "Write one value without brackets." if count == 1 else ""
+            raise InputError("Samples.values", f"must have 2 to {MOST_SAMPLES} samples", str(count), cure)
         for value in self.values:
             _check_magnitude("Samples.values", value)
         values = tuple(sorted(self.values))
         if values[0] == values[-1]:
             cure = "Write the value alone if it is certain."
-            raise InputError("Samples.values", "must differ: there is no spread in them", cure=cure)
+            raise InputError("Samples.values", "must differ: there is no spread in them", self.text, cure)
         mean = math.fsum(values) / count
         deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / count)
         object.__setattr__(self, "values", values)

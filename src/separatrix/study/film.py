@@ -24,7 +24,8 @@ from separatrix.ground.schema import (
 )
 from separatrix.ground.units import Metre, Pascal, Ratio, format_quantity, shown
 from separatrix.study.ball_bearing import MODULI, MODULUS, POISSON, Material
-from separatrix.study.profile import MOST_PLACES, Profile, read_profile
+
+MOST_PLACES = 10_000
 
 
 class Worn(Spelled):
@@ -45,7 +46,7 @@ class Wear:
     """
 
     RULES: ClassVar = (
-        one_of("width", "share", ("across", "thicknesses"), "profile", required=True),
+        one_of("width", "share", ("across", "thicknesses"), required=True),
         all_or_none("across", "thicknesses"),
     )
 
@@ -67,20 +68,17 @@ class Wear:
     thicknesses: tuple[Metre, ...] = key(default=(), certain=True)
     """At these places."""
 
-    profile: Profile | None = key(default=None, read=read_profile)
-    """The same as a CSV file beside the study, two columns with their units in the head."""
-
     races: Worn = key(default=Worn.BOTH)
 
     @property
-    def places(self) -> Profile:
+    def places(self) -> tuple[tuple[Metre, ...], tuple[Metre, ...]]:
         """Places and thicknesses of a measured profile; empty of a band."""
-        return self.profile or Profile(self.across, self.thicknesses)
+        return self.across, self.thicknesses
 
     @property
     def is_band(self) -> bool:
         """Whether it is a band; else a measured profile."""
-        return not self.places.across
+        return not self.across
 
     def touches(self, race: Enum) -> bool:
         """Whether the film of this race is worn."""
@@ -88,17 +86,14 @@ class Wear:
 
 
 @check(Wear)
-def _profile_is_one(
-    across: tuple[Metre, ...], thicknesses: tuple[Metre, ...], profile: Profile | None
-) -> Faults:
+def _profile_is_one(across: tuple[Metre, ...], thicknesses: tuple[Metre, ...]) -> Faults:
     """A profile has a thickness at each place; two equal places make a step."""
-    y, h = profile or (across, thicknesses)
-    names = ("across", "thicknesses") if profile is None else ("profile", "profile")
+    y, h = across, thicknesses
     if len(y) != len(h) or len(y) > MOST_PLACES or len(y) == 1:
         rule = f"must have as many values as thicknesses, 2 to {MOST_PLACES}"
-        yield Fault(names[0], rule, got=f"{len(y)} and {len(h)}")
+        yield Fault("across", rule, got=f"{len(y)} and {len(h)}")
         return
-    for name, values, low in ((names[0], y, -1.0), (names[1], h, 0.0)):
+    for name, values, low in (("across", y, -1.0), ("thicknesses", h, 0.0)):
         wrong = [one for one in values if not is_number(one) or not low <= one <= 1.0]
         if wrong:
             yield Fault(name, f"must each be a finite number from {low:g} to 1 [m]", got=shown(wrong[0]))
@@ -106,13 +101,13 @@ def _profile_is_one(
     for before, after in pairwise(y):
         if after < before:
             got = f"{format_quantity(after, 'm')} after {format_quantity(before, 'm')}"
-            yield Fault(names[0], "must not fall", got=got)
+            yield Fault("across", "must not fall", got=got)
             return
 
 
 @check(Wear)
-def _thickness_of_a_band(thickness: Metre, across: tuple[Metre, ...], profile: Profile | None) -> Faults:
-    if (across or profile) and thickness != 0.0:
+def _thickness_of_a_band(thickness: Metre, across: tuple[Metre, ...]) -> Faults:
+    if across and thickness != 0.0:
         yield Fault("thickness", "is that of a band; thicknesses gives a profile its own")
 
 

@@ -19,12 +19,10 @@ from separatrix.ground.units import printable, shown
 from separatrix.study.candidates import candidate_named, fitting_environment
 from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
-from separatrix.study.helper import StudyHelper
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
-from separatrix.study.library import Library, beside, joined, library_files, library_of_text
-from separatrix.study.library.records import Content
-from separatrix.study.study import Study, chosen_model, shipped_studies, stiffness_is_known, with_model
-from separatrix.study.uncertain import written
+from separatrix.study.library import Content, Library, beside, joined, library_files, library_of_text
+from separatrix.study.study import CageModel, Study, shipped_studies, stiffness_is_known
+from separatrix.study.uncertain import StudyHelper, written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
 LIBRARY = "library "
@@ -34,7 +32,6 @@ DERIVED = (
     ("bearing.radial_clearance", "radial_clearance", ("bearing.contact_angle",)),
     ("bearing.contact_angle", "contact_angle", ("bearing.radial_clearance",)),
     ("film.elastic_modulus", "elastic_modulus", ("film.material",)),
-    ("film.wear.profile", "profile", ("film.wear.across", "film.wear.thicknesses")),
 )
 """A key, its name, and what follows from it where it is given."""
 
@@ -55,18 +52,19 @@ def read_study(study: str | Path, model: str | None = None) -> Study:
         Everything that is wrong with the file, a line each: place, rule, value, cure. Or the model is not
         known, or there is no cage to have it.
     """
-    path = find(study)
-    document = document_of(Study, path)
-    cage = document.data.get("cage")
-    chosen = None if model is None else chosen_model(model)
-    if chosen and isinstance(cage, dict):
-        cage["model"] = chosen.value
+    document = document_of(Study, path := find(study))
+    cage, asked = document.data.get("cage"), {}
+    if model is not None:
+        if model not in (known := [str(one.value) for one in CageModel]):
+            raise InputError("--model", f"must be one of {', '.join(known)}", shown(model))
+        asked = {"cage.model": f"--model {model}"}
+        if isinstance(cage, dict):
+            cage["model"] = model
     # a folder of answers has this name: never dots alone
     name = printable(path.stem if path.stem.strip(".") else path.name, 100)
-    built_study, notes = _study_of(document, name, library_of(document))
-    if chosen:
+    built_study, notes = _study_of(document, name, library_of(document), asked)
+    if model is not None:
         require(built_study, "--model", "cage")
-        built_study = with_model(built_study, chosen)
     return built_with(built_study, notes=(*notes, *cautions(built_study)))
 
 
@@ -82,18 +80,23 @@ def study_again(content: Mapping[str, Any]) -> Study:
     libraries = [(text, name.partition(": ")[2]) for name, text in files.items() if name.startswith(LIBRARY)]
     library = joined([library_of_text(*one) for one in libraries])
     document = Document(content["name"], content["data"], {}, files=dict(files), is_kept=True)
-    study, _ = _study_of(document, content["name"], library)
+    study, _ = _study_of(document, content["name"], library, {})
     return built_with(study, origins=content["origins"])
 
 
-def _study_of(document: Document, name: str, library: Library) -> tuple[Study, tuple[str, ...]]:
-    """Study of a document, and notes on what has no effect in it or is left out."""
+def _study_of(
+    document: Document, name: str, library: Library, asked: Mapping[str, str]
+) -> tuple[Study, tuple[str, ...]]:
+    """Study of a document, and notes on what has no effect in it or is left out.
+
+    `asked` has the origins of values that the command line put into the document.
+    """
     loaded = read_document(Study, document, StudyHelper(library))
     study = loaded.value
     values: dict[str, Any] = {
         "name": name,
         "title": study.title or name,
-        "origins": _origins(loaded, document),
+        "origins": {**_origins(loaded, document), **asked},
     }
     data = {key: one for key, one in document.data.items() if key not in ("extends", "library")}
     values["content"] = {"name": name, "data": data, "files": document.files, "origins": values["origins"]}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields
 from enum import Enum
 from functools import cache
 from importlib.metadata import version
@@ -76,10 +76,8 @@ def _section(study: Study, section: str) -> dict[str, object] | None:
         values["is_bare"] = record.body is None
         if record.wear is not None:
             del values["wear"]
-            names = [name for name in keys_of(Wear) if name != "profile"]
-            across, thicknesses = record.wear.places
-            worn = replace(record.wear, profile=None, across=across, thicknesses=thicknesses)
-            values |= {f"wear.{name}": _value(study, worn, "film.wear", name) for name in names}
+            worn = record.wear
+            values |= {f"wear.{name}": _value(study, worn, "film.wear", name) for name in keys_of(Wear)}
     if isinstance(record, CageDesign):  # whose friction the cage has, where it has not its own
         candidate = None if record.ball_cage_friction is not None else cage_candidate(study)
         values["ball_cage_friction"] = {

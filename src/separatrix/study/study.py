@@ -7,15 +7,14 @@ as text with its unit, ``CageDesign(mass="25 g", ...)``: the record holds it in 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
 from separatrix.friction.prediction import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.friction.prediction import Friction as Friction
-from separatrix.ground.errors import InputError, noted, together
-from separatrix.ground.reader import Reading
+from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,
     Faults,
@@ -30,7 +29,7 @@ from separatrix.ground.schema import (
     record,
 )
 from separatrix.ground.sheet import is_workbook
-from separatrix.ground.toml import KeyPath, Kind, Reader, nearest, ratio, whole
+from separatrix.ground.toml import Kind
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
@@ -40,10 +39,8 @@ from separatrix.ground.units import (
     RadianPerSecond,
     Ratio,
     Second,
-    printable,
-    shown,
 )
-from separatrix.study import cage_in_bearing
+from separatrix.study import cage_body
 from separatrix.study.ball_bearing import MOST_BALLS as MOST_BALLS
 from separatrix.study.ball_bearing import BallBearing as BallBearing
 from separatrix.study.ball_bearing import Material as Material
@@ -155,34 +152,6 @@ def _something_presses_the_balls(
         yield Fault("axial_load", rule, "Give the preload.")
 
 
-def evenly_spaced(low: float, high: float, count: int) -> tuple[float, ...]:
-    """`count` numbers from `low` to `high`, both included, rounded to 12 decimals so that 0.15 is 0.15."""
-    steps = count - 1
-    return tuple(round((low * (steps - i) + high * i) / steps, 12) for i in range(count))
-
-
-def read_factors(raw: Any, path: KeyPath, reading: Reading) -> tuple[float, ...]:
-    """Numbers of a list, or those of ``{ from = 0.05, to = 0.95, count = 19 }``."""
-    if isinstance(raw, dict):
-        readers: dict[str, Reader[float]] = {"from": ratio, "to": ratio, "count": whole}
-        problems, given = list[InputError](), dict[str, Any]()
-        for name, value in raw.items():
-            with noted(problems):
-                if name not in readers:
-                    cure = nearest(name, readers)
-                    raise InputError(f".{printable(name)}", "is not a key of this table", cure=cure)
-                given[name] = readers[name](value, f".{name}")
-        if missing := [name for name in readers if name not in raw]:
-            problems.append(InputError("", f"lacks: {', '.join(missing)}"))
-        if problems:
-            raise together(problems)
-        if not 2 <= given["count"] <= 1000:
-            raise InputError("", "needs a count from 2 to 1000", shown(given["count"]))
-        return evenly_spaced(given["from"], given["to"], given["count"])
-    one = keys_of(StabilitySettings)["restitution_factors"]
-    return reading.list_of(float, one, raw, path)
-
-
 @record
 class StabilitySettings:
     """The ensemble behind every verdict, and the curve's restitution factors; without any they are chosen.
@@ -226,7 +195,6 @@ class StabilitySettings:
         between(0.0, 1.0, open_low=True, open_high=True),
         default=(),
         certain=True,
-        read=read_factors,
         length=(0, 1000),
         rising=True,
         without="chosen where the curve bends",
@@ -335,44 +303,12 @@ def stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Fau
         yield Fault(("cage", "ball_cage_stiffness"), rule, "Give the stiffness or the material.", "")
 
 
-check(Study)(cage_in_bearing.bars_are_left)
-check(Study)(cage_in_bearing.lands_between_rings)
-check(Study)(cage_in_bearing.ring_between_rings)
-_SIZES = (cage_in_bearing.bars_are_left, cage_in_bearing.ring_between_rings)
-check(Study, after=_SIZES)(cage_in_bearing.body_that_can_be)
-check(Study)(cage_in_bearing.pockets_for_balls)
-
-
-def chosen_model(model: str) -> CageModel:
-    """Model of a name that the command line has.
-
-    Raises
-    ------
-    InputError
-        The model is not known.
-    """
-    known = {str(one.value): one for one in CageModel}
-    if model not in known:
-        raise InputError("--model", f"must be one of {', '.join(known)}", shown(model))
-    return known[model]
-
-
-def with_model(study: Study, model: CageModel) -> Study:
-    """Return the study with another model of its cage.
-
-    Raises
-    ------
-    InputError
-        The cage cannot have it.
-    """
-    if study.cage is None:
-        raise InputError(study.name, "lacks the section [cage]")
-    origins = {**study.origins, "cage.model": f"--model {model.value}"}
-    content = study.content
-    if content is not None:
-        given = {**content["data"].get("cage", {}), "model": model.value}
-        content = {**content, "data": {**content["data"], "cage": given}, "origins": origins}
-    return replace(study, cage=replace(study.cage, model=model), origins=origins, content=content)
+check(Study)(cage_body.bars_are_left)
+check(Study)(cage_body.lands_between_rings)
+check(Study)(cage_body.ring_between_rings)
+_SIZES = (cage_body.bars_are_left, cage_body.ring_between_rings)
+check(Study, after=_SIZES)(cage_body.body_that_can_be)
+check(Study)(cage_body.pockets_for_balls)
 
 
 ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")

@@ -84,7 +84,7 @@ EXAMPLES = {
     "cage.gravity": '"9.81 m/s2"',
     "stability.reference_kick": '"0.5 m/s"',
     "stability.kicks": '["0.1 m/s", "0.5 m/s", "2 m/s"]',
-    "stability.restitution_factors": "{ from = 0.05, to = 0.95, count = 19 }",
+    "stability.restitution_factors": "[0.1, 0.3, 0.5, 0.7, 0.9]",
     "ranking.environment": '"liquid nitrogen, 440C"',
     "ranking.materials": '["Armalon", "Vespel SP 211"]',
     f"{CANDIDATES}.material": '{ elastic_modulus = "5 GPa", poisson_ratio = 0.4 }',

@@ -1,19 +1,24 @@
-"""Numbers that may be uncertain: ``"0.8 um +- 30 %"``, ``{ between = [..] }``, ``{ mean = .. }``, ``[..]``.
+"""Values of a study with a form of their own: uncertain numbers, and names of the library.
 
-A refusal has as its path what follows the key: ``.between, item 1,``.
+A number may be ``"0.8 um +- 30 %"``, ``{ between = [..] }``, ``{ mean = .. }`` or ``[..]``. A refusal has as
+its path what follows the key: ``.between, item 1,``.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import Any, TypeVar, cast
 
 from separatrix.ground.errors import InputError
-from separatrix.ground.toml import Reader, nearest, quantity, ratio, truth, whole
-from separatrix.ground.units import NUMBER, parse, printable, shown
+from separatrix.ground.reader import Reading
+from separatrix.ground.schema import Described
+from separatrix.ground.toml import Reader, cut_list, nearest, quantity, ratio, truth, whole
+from separatrix.ground.units import NUMBER, Kelvin, parse, printable, shown
 from separatrix.study import distribution
 from separatrix.study.distribution import Distribution, Normal, Samples
+from separatrix.study.library import Library
 
 Made = TypeVar("Made", bound=Distribution)
 
@@ -160,13 +165,7 @@ def _moments(value: dict[str, object], unit: str) -> Normal:
 
 def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Samples:
     """Read equally likely values."""
-    if not 2 <= len(items) <= distribution.MOST_SAMPLES:
-        cure = "Write one value without brackets." if len(items) == 1 else ""
-        rule = f"must have 2 to {distribution.MOST_SAMPLES} samples"
-        raise InputError(where, rule, str(len(items)), cure)
     values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
-    if min(values) == max(values):
-        raise InputError(where, "must differ: there is no spread in them", written(items), _ALONE)
     return _made(Samples, where, values=values, text=text)
 
 
@@ -214,3 +213,49 @@ def _not_zero(width: float, written_as: object, where: str) -> float:
         cure = _ALONE if width == 0.0 else "A width has no sign."
         raise InputError(where, "must be a width > 0", shown(written_as), cure)
     return width
+
+
+@dataclass(frozen=True, slots=True)
+class StudyHelper:
+    """Reader of uncertain numbers, and of names of a library."""
+
+    library: Library
+
+    def number(self, raw: object, unit: str, one: Described) -> tuple[float, Distribution | None]:
+        """Number of a key or, with an empty unit, whole one; and its distribution, None if it is certain."""
+        if one.key.certain:
+            refuse_distribution(raw)
+        if not unit:
+            return (whole(raw, ""), None) if one.key.certain else count(raw)
+        return number(raw, unit)
+
+    def named(self, raw: object, one: Described, reading: Reading) -> Any:
+        """Material of a name; None if the value is not a name."""
+        if isinstance(raw, dict):
+            return None
+        kind = one.key.named
+        if not isinstance(raw, str):
+            rule = f"must be the name of a {kind}, or its properties elastic_modulus and poisson_ratio"
+            raise InputError("", rule, shown(raw), f'Write it like "{self.library.names(kind)[0]}".')
+        return self.library.material(kind, self.known(raw, kind), temperature_of(reading))
+
+    def known(self, name: str, kind: str, more: str = "") -> str:
+        """Exact name in the library of one in any spelling, or a refusal that lists the names."""
+        found = self.library.named(kind, name)
+        if found is not None:
+            return found
+        names = self.library.names(kind)
+        listed, near = cut_list(f"The library has {', '.join(names)}."), nearest(name, names)
+        cure = f"{near} {listed}{more}" if near.startswith("Did") else f"{listed}{more}"
+        raise InputError("", f"is not a {kind} of the library", shown(name), cure)
+
+
+def helper_of(reading: Reading) -> StudyHelper:
+    """Helper of the reading of a study."""
+    return cast("StudyHelper", reading.helper)
+
+
+def temperature_of(reading: Reading) -> Kelvin | None:
+    """Temperature of the study, by which data of the library are chosen; None where it states none."""
+    operation = reading.done.get("operation")
+    return None if operation is None else operation.temperature

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -30,8 +30,7 @@ from separatrix.verbs.parts.telling import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
-    from separatrix.study.library import Library
-    from separatrix.study.library.records import AnyRecord
+    from separatrix.study.library import AnyRecord, Library
 
 EPILOG = (
     "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
@@ -93,7 +92,7 @@ def read_library(libraries: Sequence[str | Path]) -> Library:
 
 def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
     """Return the records of a kind, in any spelling and in the plural too; without one all of them."""
-    from separatrix.study.library.records import KINDS
+    from separatrix.study.library import KINDS
 
     kinds: tuple[str, ...] = KINDS
     if kind is not None:
@@ -119,7 +118,7 @@ def list_records(options: ListOptions) -> Document:
     """Every record of the library, or those of a kind."""
     library = read_library(options.library)
     records = [one.plain() for one in records_of(library, options.kind)]
-    return _document("list", libraries=[file.plain() for file in library.files], materials=records)
+    return _document("list", libraries=[asdict(file) for file in library.files], materials=records)
 
 
 def show_records(options: ShowOptions) -> Document:
@@ -140,7 +139,7 @@ def _document(which: str, **content: object) -> Document:
 
 def _served(library: Library, record: AnyRecord, at: Kelvin | None) -> Document:
     """Return a record; at a temperature with the place of the datum of each property that serves there."""
-    from separatrix.study.library.records import contradictions
+    from separatrix.study.library import contradictions
 
     whole = record.plain()
     if at is None or record.kind == "friction table":

@@ -67,7 +67,7 @@ class Options:
 
 UNITS = {"time": ("s", "1/s"), "distance": ("m", "1/m"), "cycles": ("-", "-")}
 ALONG = ("run_in_end", "steady_end", "along", "span_along")
-RATES = ("drift_rate", "drift_error", "stick_slip_frequency")
+RATES = ("drift_rate", "drift_error")
 """Quantities whose unit is that of the abscissa of their test, and one over it."""
 
 FRICTION = Quantity(label="friction", digits=4)
@@ -81,7 +81,7 @@ BESIDE = ("normal_force", "temperature", "slip_speed", "wear_depth")
 LEGEND = "friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
 NUMBERS = (
     "scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. drift: of "
-    "the steady part. oscillation: the strongest that is not the cycle's; 0 if none exceeds the noise."
+    "the steady part."
 )
 FIT_LEGEND = (
     "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
@@ -155,10 +155,9 @@ OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "metad
 
 
 def _file(log: RawLog) -> Document:
-    from separatrix.friction.logs import described
     from separatrix.ground.plain_data import plain
 
-    return {name: plain(getattr(log, name)) for name in OF_A_LOG} | {"described": described(log)}
+    return {name: plain(getattr(log, name)) for name in OF_A_LOG}
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
@@ -292,7 +291,6 @@ def _numbers(tests: Sequence[Part]) -> Table:
         *map(column, ("steady_rows", "rows", "cycles")),
         Column("drift", lambda one: Cell(one.drift_rate, DRIFT, one.unit("drift_rate"))),
         Column("its standard error", lambda one: Cell(one.drift_error, DRIFT, one.unit("drift_error"))),
-        *map(column, ("stick_slip_amplitude", "stick_slip_frequency")),
     )
     return Table("numbers", columns, tuple(tests), NUMBERS, Level.LONG)
 

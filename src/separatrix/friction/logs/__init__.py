@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,20 +16,18 @@ import numpy as np
 
 from separatrix.friction.logs.column_map import (
     ColumnMap,
-    column_map,
     column_map_of,
     read_column_map,
     shipped_maps,
 )
 from separatrix.friction.logs.draft import Draft, draft_of
-from separatrix.friction.logs.log import ColumnRead, RawLog
-from separatrix.friction.logs.log_tables import Block, Content, blocks_of, cells_of, content_of, matching
-from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, time_form
-from separatrix.friction.logs.raw import UnfitError, in_si, raw_log
+from separatrix.friction.logs.log import RawLog, UnfitError, in_si, raw_log
+from separatrix.friction.logs.names import ABSCISSAE, time_form
+from separatrix.friction.logs.tables import Block, Content, blocks_of, cells_of, content_of, matching
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import format_quantity, printable, shown, unit_of
+from separatrix.ground.units import printable, shown
 
-__all__ = ["UnmappedError", "column_map", "described", "read_column_map", "read_log"]
+__all__ = ["UnmappedError", "read_column_map", "read_log"]
 
 
 class UnmappedError(InputError):
@@ -56,12 +54,12 @@ class UnmappedError(InputError):
 
 
 def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[RawLog, ...]:
-    """Logs of one file: one for each table, sheet, channel group or step in it.
+    """Logs of one file: one for each table, sheet or step in it.
 
     Parameters
     ----------
     path : str or Path
-        Text of a tribometer or table in text, ``.xlsx`` or ``.tdms``.
+        Text of a tribometer, or a table in text or ``.xlsx``.
     column_map : ColumnMap, optional
         What the file does not state itself, from `read_column_map`.
 
@@ -159,7 +157,6 @@ def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence
         kept[numbers] = log
     read_from = {part.source for part in parts}
     others = [printable(part.sheet) for part in content.parts if part.source not in read_from]
-    others += [printable(group.name) for group in content.groups if group.source not in read_from]
     unread = (f"without these columns, and not read: {', '.join(others)}",) if others else ()
     yield from (replace(log, notes=(*log.notes, *unread)) for log in kept.values())
 
@@ -179,7 +176,7 @@ def _tests(content: Content, columns: ColumnMap) -> list[Block]:
 def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
     """Whether a table under repeated names goes on where the one before it ends: a page of one test."""
     parts = [(one.source, one.name, one.heads, one.below) for one in (before, block)]
-    if parts[0] != parts[1] or any(line.strip() for line in block.above) or block.columns is not None:
+    if parts[0] != parts[1] or any(line.strip() for line in block.above):
         return False
     abscissae = {name: one for name, one in columns.columns.items() if name in ABSCISSAE}
     rows, lines = before.rows[-1:] + block.rows[:1], [before.lines[-1], block.lines[0]]
@@ -197,7 +194,7 @@ def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
 def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:
     """The table, or one for each step in it; a step of a single row is left out, for it is not a log."""
     place = next((i for name in columns.format.tests for i in matching([name], block.heads)), None)
-    if place is None or block.columns is not None:
+    if place is None:
         yield block
         return
     (texts,) = cells_of(block, [place])
@@ -226,30 +223,3 @@ def _series(block: Block, content: Content, columns: ColumnMap) -> str:
         matches = [match for line in (*reversed(block.above), *head) if (match := re.search(pattern, line))]
         found.append(matches[0][1] if matches else "")
     return " ".join(found).strip() if found and found[0] else ""
-
-
-def described(log: RawLog) -> list[str]:
-    """What was read, in lines: columns with their units and reasons, rows, what is missing, conditions."""
-    lines = [f"{log.source}: {log.format}, {log.rows} rows, sha256 {log.checksum[:12]}"]
-    lines += [f"  {column.meaning}: {_column(column)}" for column in log.columns if column.meaning]
-    rest = [column for column in log.columns if not column.meaning and column.header]
-    lines += [f"  not used: {_column(column)}" for column in rest if column.why != "not needed"]
-    if others := [f'"{printable(column.header)}"' for column in rest if column.why == "not needed"]:
-        lines.append(f"  not used: {', '.join(others)}")
-    for name in log.abscissae:
-        ends = [format_quantity(float(getattr(log, name)[i]), MEANINGS[name]) for i in (0, -1)]
-        lines.append(f"  {name} from {' to '.join(ends)}")
-    known = []
-    for f in fields(log.conditions):
-        value, unit = getattr(log.conditions, f.name), unit_of(type(log.conditions), f.name)
-        if value is not None:
-            text = format_quantity(value, unit) if unit else printable(value, 200)
-            known.append(f"{f.name.replace('_', ' ')} {text}")
-    lines.append(f"  conditions: {'; '.join(known) or 'none known'}")
-    return lines + [f"  note: {note}" for note in log.notes]
-
-
-def _column(column: ColumnRead) -> str:
-    unit = f" in {column.unit}" if column.unit.strip("- ") else ""
-    unit = ", clock times," if column.meaning == "time" and time_form(column.unit) else unit
-    return f'column "{printable(column.header)}"{unit} ({column.why})'

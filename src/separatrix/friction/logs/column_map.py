@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal
 from separatrix.friction.friction_file import Place, place
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, SHAPES, known_units, scale_of
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import Document, read_document, read_text
+from separatrix.ground.reader import read_text
 from separatrix.ground.schema import Fault, Faults, between, check, key, keys_of, positive, record
 from separatrix.ground.toml import Kind, label_of, nearest, parsed
 from separatrix.ground.toml import read_text as text_of
@@ -100,9 +100,6 @@ class TextFormat:
     units_line: int | None = key(LAST, default=None, needs=("header_line", "its place is not known"))
     units_below: bool = key(default=False)
     """Whether the line below the names is that of the units."""
-
-    keys_above: bool = key(default=False)
-    """Whether a line of keys stands above one of their values, even of two."""
 
     missing: tuple[str, ...] = key(default=())
     """Texts that mean a missing value, besides the usual ones."""
@@ -263,12 +260,6 @@ def column_map_of(text: str, label: str) -> ColumnMap:
     """Column map of the text of a file."""
     made = read_text(ColumnMap, text, label).value
     return replace(made, source=label, as_written=parsed(text, label, ColumnMap.FILE)[0])
-
-
-def column_map(document: Mapping[str, Any], source: str = "column map") -> ColumnMap:
-    """Column map of a parsed TOML document."""
-    made = read_document(ColumnMap, Document(source, document, {})).value
-    return replace(made, source=source, as_written=document)
 
 
 @cache

@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import takewhile
 from typing import Any
 
-from separatrix.friction.logs import log_tables as tables
 from separatrix.friction.logs import names as naming
+from separatrix.friction.logs import tables
 from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, given_in
-from separatrix.friction.logs.log import metadata_of, two_ways
-from separatrix.friction.logs.raw import UnfitError, decimal_of, stated_units
+from separatrix.friction.logs.conditions import metadata_of
+from separatrix.friction.logs.log import UnfitError, decimal_of, stated_units
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
@@ -29,7 +28,6 @@ USUAL = {
 }
 """Units that a draft offers where the file states none, to be checked; of others N."""
 
-MOST_BREAKS = 20  # kinds of lines among the rows
 MOST_ROWS = 20_000  # of which a column is looked at in all
 SAMPLE = 50  # rows of a column that are looked at
 _CLOCK = re.compile(r"\d{1,4}:\d{1,2}:\d{1,2}(?:[.,:]\d+)?\s*(?:[AaPp]\.?[Mm]\.?)?")
@@ -101,9 +99,8 @@ def draft_of(content: tables.Content, given: ColumnMap, why: InputError | None) 
     `given` is what the user and a known layout state; `why` is the reason that they do not suffice, if any.
     """
     stated = given.conditions(content.path)
-    drafts = [(one.name, _draft(one, given, stated, TextFormat(), {})) for one in content.groups]
     firsts = ((part.sheet, _first_block(part, given)) for part in content.parts)
-    drafts += [(sheet, _draft(one[0], given, stated, *one[1:])) for sheet, one in firsts if one is not None]
+    drafts = [(sheet, _draft(one[0], given, stated, *one[1:])) for sheet, one in firsts if one is not None]
     if not drafts:
         raise _no_table(content)
     name, chosen = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
@@ -139,47 +136,20 @@ def _first_block(
         return None
     asked = {"separator": f"or {' or '.join(map(as_toml, others))}?"} if others else {}
     form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
-    blocks, form = _blocks(part, form, heads, asked)
-    if not blocks:
+    names = heads.names if heads.line is not None and form.header_line is None else []
+    block = next(tables.blocks_of_part(part, form, [(name,) for name in names if name.strip()]), None)
+    if block is None and names and heads.line is not None:
+        form = replace(form, header_line=heads.line + 1)
+        asked["header_line"] = "its line of names?"
+        block = next(tables.blocks_of_part(part, form, []), None)
+    if block is None:
         return None
-    block = blocks[0]
     if heads.line is None:
         block.heads = [""] * len(block.heads)
     if len(block.rows) > MOST_ROWS:  # the reader looks at all of them
         middle = block.rows[1000 : -1000 : len(block.rows) // 10_000]
         block.rows = [*block.rows[:1000], *middle, *block.rows[-1000:]]
     return block, form, asked
-
-
-def _blocks(
-    part: tables.Part, form: TextFormat, heads: tables.Heads, asked: dict[str, str]
-) -> tuple[list[tables.Block], TextFormat]:
-    """Tables of a text and the format with which they are read, with a question on each line left out."""
-    names = heads.names if heads.line is not None and form.header_line is None else []
-    needed = [(name,) for name in names if name.strip()]
-    for left in range(MOST_BREAKS, -1, -1):
-        try:
-            blocks = list(tables.blocks_of_part(part, form, needed))
-            if blocks or heads.line is None or form.header_line is not None:
-                break
-            form, needed = replace(form, header_line=heads.line + 1), []
-            asked["header_line"] = "its line of names?"
-        except tables.BrokenError as error:
-            line = part.lines[error.line].strip()
-            begin = "".join(takewhile(str.isprintable, line))
-            if not left or not begin:
-                raise
-            if error.names is not None:
-                got = part.lines[error.names].strip()[:60]
-                question = f"{part.word} {error.names + 1} begins another table, which is not read: {got!r}"
-                asked.setdefault("ends", question)
-                form = replace(form, ends=(*form.ends, begin[:60].strip()))
-            else:
-                question = f"{part.word} {error.line + 1} is among the rows and is left out: {line[:60]!r}"
-                asked.setdefault("skip", question)
-                word = re.match(r"\D{0,30}", begin)
-                form = replace(form, skip=(*form.skip, (word and word[0].strip()) or begin[:20].strip()))
-    return blocks, form
 
 
 def _heads(part: tables.Part, separator: str, given: ColumnMap) -> tables.Heads | None:
@@ -202,10 +172,7 @@ def _draft(
     asked: Mapping[str, str],
 ) -> Draft:
     """What each column of a table means: certain by name and unit, or asked."""
-    if block.columns is not None:
-        cells = [[f"{value:.9g}" for value in column[:SAMPLE].tolist()] for column in block.columns]
-    else:
-        cells = tables.cells_of(block, range(len(block.heads)))
+    cells = tables.cells_of(block, range(len(block.heads)))
     draft, options = Draft(given, stated, block, cells), Options()
     for key, value in given_in(form).items():
         line = f"{key} = {as_toml(value)}"
@@ -344,12 +311,12 @@ def _decide(draft: Draft, options: Options) -> None:
             _choose(draft, meaning, chosen, is_needed=meaning in needed or meaning == "time")
             draft.used |= {one.index for one in chosen}
         elif rest and meaning in needed:
-            _ask_unit(draft, meaning, _best(rest)[0])
+            _ask(draft, meaning, _best(rest))
         elif rest and meaning in ("temperature", "wear_depth", "normal_force", "distance"):
             head, words = printable(draft.block.heads[rest[0].index].strip()), meaning.replace("_", " ")
             draft.notes.append(f'column "{head}" has no known unit and is not used as {words}')
     for meaning in sorted(needed - draft.columns.keys()):
-        _ask_column(draft, meaning)
+        _ask(draft, meaning, [])
     _shapes(draft, options)
 
 
@@ -396,44 +363,34 @@ def _choose(draft: Draft, meaning: str, chosen: Sequence[Option], *, is_needed: 
     draft.columns[meaning] = line
 
 
-def _ask_unit(draft: Draft, meaning: str, option: Option) -> None:
-    """The line of a column whose unit is not certain: an unknown one is left open, a usual one is offered."""
-    i = option.index
-    if meaning == "tangential_force" and naming.looks_like_torque(draft.block.heads[i], draft.block.below[i]):
-        _ask_torque(draft, i)
-        return
-    unit = UNKNOWN if option.unit else "mm:ss" if option.question else USUAL.get(meaning, "N")
-    said = f'the file writes "{option.unit}"' if option.unit else option.question or "the file states no unit"
-    line = _line(draft, meaning, option, unit)
-    draft.columns[meaning] = draft.ask(line, f"column {draft.head(i)}: {said}")
-
-
-def _ask_torque(draft: Draft, i: int) -> None:
-    written = (draft.block.below[i], naming.header_parts(draft.block.heads[i])[0][1])
-    unit = next((one for one in written if naming.torque_scale(one)), UNKNOWN)
-    line = _line(draft, "tangential_force", Option(0, i), unit)
-    question = "a torque: write the radius of its track below [test]"
-    draft.columns["tangential_force"] = draft.ask(line, question)
-    if "track_radius" not in draft.stated:
-        draft.test.append('track_radius = "... mm"')
-
-
-def _ask_column(draft: Draft, meaning: str) -> None:
-    """The line of a column that is needed and that no name shows."""
-    heads = draft.block.heads
-    torque = [i for i, head in enumerate(heads) if naming.looks_like_torque(head, draft.block.below[i])]
+def _ask(draft: Draft, meaning: str, options: Sequence[Option]) -> None:
+    """The line of a column that is needed: of the first option, whose unit is not certain, or of none."""
+    heads, below = draft.block.heads, draft.block.below
+    torques = [i for i, head in enumerate(heads) if naming.looks_like_torque(head, below[i])]
     near = [i for i, head in enumerate(heads) if naming.looks_like_friction(head)]
-    if meaning == "normal_force":
+    i = options[0].index if options else torques[0] if torques else 0
+    if i in torques and (meaning == "tangential_force" if options else meaning == "friction" and not near):
+        units = (below[i], naming.header_parts(heads[i])[0][1])
+        unit = next((one for one in units if naming.torque_scale(one)), UNKNOWN)
+        line = _line(draft, "tangential_force", Option(0, i), unit)
+        question = "a torque: write the radius of its track below [test]"
+        draft.columns["tangential_force"] = draft.ask(line, question)
+        if "track_radius" not in draft.stated:
+            draft.test.append('track_radius = "... mm"')
+        if meaning == "friction" and "normal_force" not in draft.columns:
+            _ask(draft, "normal_force", [])
+    elif options:  # an unknown unit is left open, a usual one is offered
+        one = options[0]
+        unit = UNKNOWN if one.unit else "mm:ss" if one.question else USUAL.get(meaning, "N")
+        said = f'the file writes "{one.unit}"' if one.unit else one.question or "the file states no unit"
+        line = _line(draft, meaning, one, unit)
+        draft.columns[meaning] = draft.ask(line, f"column {draft.head(i)}: {said}")
+    elif meaning == "normal_force":
         if "normal_force" not in draft.stated:
             draft.test.append(draft.ask('normal_force = "... N"', "the log has no normal force"))
-    elif meaning == "friction" and torque and not near:
-        _ask_torque(draft, torque[0])
-        if "normal_force" not in draft.columns:
-            _ask_column(draft, "normal_force")
     elif meaning == "friction" and near:
-        line = _line(draft, meaning, Option(0, near[0]), "-")
         question = f"the friction by its name? There are {', '.join(map(draft.head, near[:4]))}"
-        draft.columns[meaning] = draft.ask(line, question)
+        draft.columns[meaning] = draft.ask(_line(draft, meaning, Option(0, near[0]), "-"), question)
     else:
         line = f"{meaning} = {as_toml({'name': UNKNOWN if any(heads) else 1, 'unit': UNKNOWN})}"
         draft.columns[meaning] = draft.ask(line, f"which column is the {meaning.replace('_', ' ')}?")
@@ -455,7 +412,7 @@ def _shapes(draft: Draft, options: Options) -> None:
 def _decimal(draft: Draft) -> None:
     """A question where marks may be decimal signs or between thousands."""
     block = draft.block
-    if block.columns is not None or block.word == "row" or draft.given.format.decimal:
+    if block.word == "row" or draft.given.format.decimal:
         return
     try:
         decimal_of([draft.cells[i] for i in sorted(draft.used)], block.separator, block.source)
@@ -464,16 +421,9 @@ def _decimal(draft: Draft) -> None:
 
 
 def _conditions(draft: Draft) -> None:
-    """A question on each condition above the table that can be read in two ways; names to fill in."""
-    text = "".join("".join(column[:SAMPLE]) for column in draft.cells)
-    decimal = "," if "," in text else "." if "." in text or draft.block.separator == "," else ""
-    known = set(draft.stated)
-    for key, value in metadata_of(draft.block.above).items():
-        meant = naming.conditions_named(key)[:1]
-        known |= set(meant)
-        if meant and meant[0] not in draft.stated and (ways := two_ways(value, decimal)):
-            question = f"{as_toml(key)} is {as_toml(value)}: {' or '.join(ways)}? It is not used as it is"
-            draft.test.append(draft.ask(f'# {meant[0]} = "{UNKNOWN}"', question))
+    """Names that a friction file needs and the log does not state, to fill in."""
+    metadata = metadata_of(draft.block.above)
+    known = {*draft.stated, *(meant for key in metadata for meant in naming.conditions_named(key)[:1])}
     for name, what in NAMED.items():
         if name not in known:
             draft.test.append(f'# {name} = "{UNKNOWN}"  # {what}; the log does not state it')

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 import tomllib
 import unicodedata
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
 
 from separatrix.ground import units
-from separatrix.ground.units import Array
 
 MEANINGS = {
     "friction": "-",
@@ -72,21 +71,11 @@ _UNIT_AT_END = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """From the unit of a column to SI: value times `factor`, or over `divisor`, plus `offset`."""
+class Scale(NamedTuple):
+    """From the unit of a column to SI: value times `factor`, plus `offset`."""
 
     factor: float = 1.0
-    divisor: float = 1.0
     offset: float = 0.0
-
-    def of(self, column: Array) -> Array:
-        """A column in SI units; what is in them already stays as it is, to the last bit."""
-        if self.factor != 1.0:
-            column = column * self.factor
-        if self.divisor != 1.0:
-            column = column / self.divisor
-        return column + self.offset if self.offset != 0.0 else column
 
 
 def plain(name: str) -> str:
@@ -113,7 +102,7 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
     if MEANINGS[meaning] != "-":
         return scale_in(spelling, MEANINGS[meaning])
     if meaning == "friction" and spelling == "%":
-        return Scale(divisor=100.0)
+        return Scale(0.01)
     is_symbol = meaning == "friction" and plain(spelling) in SYMBOLS["friction"]
     known = _NONE | _WORDS["counts"] if meaning == "cycles" else _NONE
     return Scale() if is_symbol or spelling.casefold() in known else None
@@ -132,14 +121,10 @@ def scale_in(unit: str, si: str) -> Scale | None:
         return None
     number, name = size.split(" ", 1)
     if number.startswith("1/"):
-        return Scale(divisor=float(number[2:]))
+        return Scale(1.0 / float(number[2:]))
     offset = units.parse(f"0 {name}", si)
     factor = units.parse(size, si) - offset
-    factor = round(factor, 12) if si == "K" else factor
-    inverse = round(1.0 / factor)
-    if factor < 1.0 and abs(inverse * factor - 1.0) < 1e-12:
-        return Scale(divisor=float(inverse), offset=offset)
-    return Scale(factor=factor, offset=offset)
+    return Scale(round(factor, 12) if si == "K" else factor, offset)
 
 
 def time_form(unit: str) -> str:
@@ -153,7 +138,7 @@ def time_form(unit: str) -> str:
 def torque_scale(unit: str) -> Scale | None:
     """How to bring a torque in that unit to N m; None where the unit is not one of torque."""
     text = re.sub(r"[\s.*\u00b7\u22c5-]+", "", unit.replace("\u00b5", "u").replace("\u03bc", "u"))
-    return Scale(factor=TORQUES[text]) if text in TORQUES else None
+    return Scale(TORQUES[text]) if text in TORQUES else None
 
 
 def known_units(meaning: str) -> str:

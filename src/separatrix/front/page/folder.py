@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 REPORT, LOG = "report", "tribometer"
 """In the place of a verb: the report of a study, and the tool whose question is to a log."""
 
-STUDY_SUFFIXES = (".toml", ".xlsx", ".xlsm", ".ods")
+STUDY_SUFFIXES = (".toml", ".xlsx")
 LOGS, MAP, OF_LOG = "logs", ".map.toml", ".answer"
 """Folder of the logs of tribometers; endings of a column map and of the folder of an answer, beside a log."""
 
@@ -148,9 +148,8 @@ class Folder:
 def _is_study(path: Path) -> bool:
     """Whether a file begins as a study does, or has its sheets; a library or a friction file does not."""
     if path.suffix != ".toml":
-        part = "content.xml" if path.suffix == ".ods" else "xl/workbook.xml"
         try:
-            with zipfile.ZipFile(path) as book, book.open(part) as sheets:
+            with zipfile.ZipFile(path) as book, book.open("xl/workbook.xml") as sheets:
                 return _SHEET.search(sheets.read(_BEGINNING)) is not None
         except (OSError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error):
             return False  # not a workbook

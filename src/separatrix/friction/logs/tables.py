@@ -1,23 +1,32 @@
-"""Tables of a file, whatever holds them: lines of text, sheets of a workbook, groups of a TDMS file.
+"""Tables of a file: of its text, or of the sheets of a workbook.
 
-A sheet is a text with tabs whose row n is line n. Nothing here knows what a column means: a table begins at
-the line with the names that a column map needs, and a line that is not a row of it is refused.
+A sheet is a text with tabs whose row n is line n: it is read by its used cells, wherever the last one is.
+Formulas have the value saved with them; dates and times of day are written as such. Nothing here knows what
+a column means: a table begins at the line with the names that a column map needs, and a line that is not a
+row of it is refused.
 """
 
 from __future__ import annotations
 
 import codecs
+import datetime
 import hashlib
 import re
+import warnings
+import zipfile
+import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from separatrix.friction.logs.column_map import ColumnMap, TextFormat
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
-from separatrix.ground.units import Array, printable
+from separatrix.ground.sheet import SAVE_AGAIN, refuse_unsafe
+from separatrix.ground.toml import as_toml
+from separatrix.ground.units import printable
 
 LARGEST = 2_000_000_000  # bytes that a log may have
 MOST_TABLES = 2000
@@ -31,7 +40,7 @@ _CLOCK = re.compile(
 )
 _WORD = re.compile(rf"[^\W\d_]|{_MOMENT.pattern}")
 _NUMBERED = re.compile(r"\s*(Run|Step)\s*(?:#|No\.?)?\s*(\d+)\s*(?:$|started)", re.IGNORECASE)
-_SEPARATED = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", " ": "blanks"}
+SEPARATED = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", " ": "blanks"}
 
 Needed = Sequence[tuple[str, ...]]  # columns that a table must have, each by one of its names
 STARTS = frozenset("0123456789+-.")
@@ -47,7 +56,7 @@ class Block:
     """One table: its names, the units below them, its rows, the lines above it."""
 
     source: str  # name of the file, and of the sheet
-    name: str  # of the group, the step or the run; empty where the file does not number it
+    name: str  # of the step or the run; empty where the file does not number it
     heads: list[str]
     below: list[str]  # units, as many as names; empty texts where there are none
     above: list[str]
@@ -56,7 +65,6 @@ class Block:
     separator: str = "\t"
     word: str = "line"
     notes: list[str] = field(default_factory=list)
-    columns: list[Array] | None = None  # where they are numbers already (TDMS)
 
     def at(self, row: int, column: int | None = None) -> str:
         """Place of a row, or of a cell, for a refusal."""
@@ -81,15 +89,13 @@ class Content:
     path: Path
     name: str
     checksum: str
-    parts: list[Part] = field(default_factory=list)
-    groups: list[Block] = field(default_factory=list)
-    words: str = ""  # encoding, or kind of the file
+    parts: list[Part]
+    words: str  # encoding, or kind of the file
 
     @property
     def beginning(self) -> str:
         """The first 20 000 characters of each text, by which a layout is recognised."""
-        heads = ("\t".join(group.heads) for group in self.groups)
-        return "\n".join([*("\n".join(part.lines[:2000])[:20_000] for part in self.parts), *heads])
+        return "\n".join("\n".join(part.lines[:2000])[:20_000] for part in self.parts)
 
 
 def content_of(path: Path, form: TextFormat) -> Content:
@@ -103,19 +109,102 @@ def content_of(path: Path, form: TextFormat) -> Content:
         raw = path.read_bytes()
     except OSError as error:
         raise unreadable(name, error) from None
-    checksum = hashlib.sha256(raw).hexdigest()
     if raw.startswith(b"PK\x03\x04"):
-        from separatrix.friction.logs.binary import sheets_as_lines
-
         sheets = sheets_as_lines(path, name).items()
         parts = [Part(f"{name}, sheet {printable(sheet)}", sheet, one, "row") for sheet, one in sheets]
-        return Content(path, name, checksum, parts, words="Excel workbook")
-    if raw.startswith(b"TDSm"):
-        from separatrix.friction.logs.binary import tdms_groups
+        words = "Excel workbook"
+    else:
+        lines, words = text_lines(raw, name, form.encoding)
+        parts = [Part(name, "", lines)]
+    return Content(path, name, hashlib.sha256(raw).hexdigest(), parts, words)
 
-        return Content(path, name, checksum, groups=tdms_groups(path), words="LabVIEW TDMS")
-    lines, encoding = text_lines(raw, name, form.encoding)
-    return Content(path, name, checksum, [Part(name, "", lines)], words=encoding)
+
+# --- workbooks ------------------------------------------------------------------------------------
+MOST_CELLS = 20_000_000  # of a workbook
+MOST_COLUMNS = 1000  # of a sheet: a stray cell beyond them is not of a table
+MOST_ROWS = 1_048_576  # that a sheet can have
+_LITERAL = re.compile(r'"[^"]*"|\\.')
+"""Part of a number format that is shown as it is: a % in it does not make a percentage."""
+
+_BLANKS = str.maketrans("\t\r\n\x01\x02\x03\x04", "       ")
+# what openpyxl raises for a workbook that is damaged or makes no sense
+_DAMAGED = (
+    *(ValueError, TypeError, LookupError, AttributeError, ArithmeticError, SyntaxError, OSError, EOFError),
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError, AssertionError),
+)
+
+
+def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
+    """Return the lines of each sheet with a number in it, by its name."""
+    import openpyxl
+    from openpyxl.utils.exceptions import InvalidFileException
+
+    refuse_unsafe(path, label)
+    try:
+        with warnings.catch_warnings(), path.open("rb") as file:
+            warnings.simplefilter("ignore")
+            book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
+            formulas = openpyxl.load_workbook(file, read_only=True, keep_links=False)
+            found = {one.title: _lines(one, formulas[one.title], label) for one in book.worksheets}
+    except InputError:
+        raise
+    except (*_DAMAGED, InvalidFileException) as error:
+        rule = f"is not a readable workbook: {printable(str(error), 100)}"
+        raise InputError(label, rule, cure=SAVE_AGAIN) from None
+    found = {title: lines for title, lines in found.items() if any(re.search(r"\d", one) for one in lines)}
+    if not found:
+        cure = "Put the names of the columns in one row, and the numbers (not as text) below."
+        raise InputError(label, "has no sheet with rows of numbers under a row of names", cure=cure)
+    return found
+
+
+def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
+    """Lines of a sheet, of equal length where there is a number in them; empty where no cell is used."""
+    from openpyxl.cell.read_only import EmptyCell
+
+    rows: dict[int, dict[int, str]] = {}
+    empty: set[tuple[int, int]] = set()  # cells that are there, without a value
+    for one in (sheet, formulas):  # else each row is filled up to the last column that the sheet declares
+        one.reset_dimensions()
+    count = 0
+    for number, row in enumerate(sheet.iter_rows(), 1):
+        cells = [(i, one) for i, one in enumerate(row[:MOST_COLUMNS]) if not isinstance(one, EmptyCell)]
+        count += len(cells)
+        if number > MOST_ROWS:
+            raise ValueError(f"row {number}")
+        if count > MOST_CELLS:
+            raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
+        empty |= {(number, i) for i, one in cells if one.value is None and one.data_type == "n"}
+        if used := {i: text for i, one in cells if (text := _written(one))}:
+            rows[number] = used
+    for number, row in enumerate(formulas.iter_rows() if empty else (), 1):
+        unknown = [i for i, one in enumerate(row) if (number, i) in empty and one.data_type == "f"]
+        if unknown:
+            rows[number] = rows.get(number, {}) | dict.fromkeys(unknown, UNCOMPUTED)
+    table = [used for used in rows.values() if sum(text[0].isdigit() for text in used.values()) > 1]
+    width = max((max(used) for used in table), default=0)
+    lines = [""] * max(rows, default=0)
+    for number, used in rows.items():
+        has_numbers = any(text[:1] in f"0123456789-.{ERROR}{UNCOMPUTED}" for text in used.values())
+        last = max(width, *used) if has_numbers or len(used) > 1 else max(used)
+        lines[number - 1] = "\t".join(used.get(i, "") for i in range(last + 1))
+    return lines
+
+
+def _written(cell: Any) -> str:
+    """Text of a cell, with a sign where it differs from its value."""
+    value = cell.value
+    if value is None:
+        return ""
+    if cell.data_type == "e":
+        return f"{ERROR}{value}"
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        is_percentage = "%" in _LITERAL.sub("", cell.number_format)
+        return repr(float(value)) + (PERCENT if is_percentage else "")
+    if isinstance(value, datetime.timedelta):
+        hours, rest = divmod(value.total_seconds(), 3600.0)
+        return f"{hours:.0f}:{rest // 60:02.0f}:{rest % 60:09.6f}"
+    return str(value).translate(_BLANKS)
 
 
 # --- text -----------------------------------------------------------------------------------------
@@ -237,19 +326,17 @@ def matching(names: Sequence[str], heads: Sequence[str]) -> list[int]:
 def separator_of(lines: Sequence[str], missing: Iterable[str] = MISSING) -> tuple[str, list[str]]:
     """The separator with which most lines are rows, empty for none; others with more than half of them."""
     scores = {}
-    for sign in _SEPARATED:
+    for sign in SEPARATED:
         near = (line for line in lines[:HEAD] if sign in line or (sign == " " and "\t" in line))
         scores[sign] = sum(is_row(fields_of(line, sign), missing, blanks=sign == " ") for line in near)
     best = max(scores, key=lambda sign: scores[sign])
     if not scores[best]:
         return "", []
     others = [sign for sign, count in scores.items() if sign != best and 2 * count > scores[best]]
-    return best, [sign for sign in others if sign != " " and not (sign == "," and _has_decimals(lines, best))]
-
-
-def _has_decimals(lines: Sequence[str], separator: str) -> bool:
-    """True where commas are in numbers of fields between another separator."""
-    return any("," in one and is_number(one) for line in lines[:HEAD] for one in fields_of(line, separator))
+    fields = (one for line in lines[:HEAD] if "," in line for one in fields_of(line, best))
+    if "," in others and any("," in one and is_number(one) for one in fields):
+        others.remove(",")  # it is in numbers between another separator
+    return best, [sign for sign in others if sign != " "]
 
 
 # --- from lines to tables -------------------------------------------------------------------------
@@ -261,16 +348,6 @@ class Heads:
     names: list[str]
     below: list[str]
     first: int
-
-
-class BrokenError(InputError):
-    """A line that is not a row, with rows behind it."""
-
-    line: int = 0
-    """From 0."""
-
-    names: int | None = None
-    """Line below it with as many fields as a row, which may be the names of another table."""
 
 
 def first_table(
@@ -329,17 +406,11 @@ def blocks_of(content: Content, columns: ColumnMap) -> list[Block]:
     """All tables of a file that have the columns that the map needs."""
     named = set(columns.format.tables) & {part.sheet for part in content.parts} - {""}
     needed = [one.names for one in columns.columns.values() if one.names and not one.optional]
-    found = [block for block in content.groups if _needed_in(block.heads, needed)]
-    for part in content.parts:
-        if not named or part.sheet in named:
-            found += blocks_of_part(part, columns.format, needed)
+    parts = [part for part in content.parts if not named or part.sheet in named]
+    found = [block for part in parts for block in blocks_of_part(part, columns.format, needed)]
     if len(found) > MOST_TABLES:
         raise InputError(content.name, f"has more than {MOST_TABLES} tables", cure="Split the file.")
     return found
-
-
-def _needed_in(heads: Sequence[str], needed: Needed) -> bool:
-    return all(matching(names, heads) for names in needed)
 
 
 def separator_in(part: Part, form: TextFormat) -> tuple[str, list[str]]:
@@ -402,7 +473,7 @@ def _names_in(
 ) -> list[str]:
     """Names in a line that has those needed, as many as the first line below has fields if it can be."""
     width = next((len(fields_of(line, separator)) for line in below if line.strip()), 0)
-    ways = [one for one in names_of(lines[place], separator) if _needed_in(one, needed)]
+    ways = [one for one in names_of(lines[place], separator) if all(matching(names, one) for names in needed)]
     return next((one for one in ways if len(one) == width), ways[0] if ways else [])
 
 
@@ -455,24 +526,20 @@ def _widths(heads: Sequence[str], separator: str) -> tuple[int, ...]:
 def _check_rest(block: Block, lines: Sequence[str], end: int, stop: int, width: int, *, last: bool) -> None:
     """Refuse lines behind the rows that are like rows: the table is broken there, or a row is damaged."""
     sign = block.separator
-    rest = ((i, fields_of(lines[i], sign)) for i in range(end + 1, stop))
-    row = next((i for i, one in rest if len(one) == width and is_row(one, blanks=sign == " ")), None)
-    for i in range(end, stop if last and row is None else min(end + 1, stop)):
+    rest = (fields_of(lines[i], sign) for i in range(end + 1, stop))
+    goes_on = any(len(one) == width and is_row(one, blanks=sign == " ") for one in rest)
+    for i in range(end, stop if last and not goes_on else min(end + 1, stop)):
         fields = fields_of(lines[i], sign)
         filled = [one for one in fields if one]
-        where, got = f"{block.source}: {block.word} {i + 1}", f'"{printable(lines[i].strip())}"'
-        rule = "breaks the table"
-        cure = "Delete it, or name its beginning below [format] of a map: skip or ends."
+        where, line = f"{block.source}: {block.word} {i + 1}", lines[i].strip()
         if filled and all(map(is_number, filled)):
             rule = f"has {len(fields)} fields where the rows before it have {width}"
-            cure = "Mend or delete this line."
-        if row is not None:
-            error = BrokenError(where, rule, got, cure)
-            names = [k for k in range(end, row) if len(fields_of(lines[k], sign)) == width]
-            error.line, error.names = i, next(iter(names[-2:]), None)
-            raise error
-        if rule.startswith("has"):
-            raise InputError(where, rule, got, cure)
+            raise InputError(where, rule, f'"{printable(line)}"', "Mend or delete this line.")
+        if goes_on:
+            begin = as_toml([re.split(r"[\d\t]", line)[0].strip()[:30] or line[:20]])
+            cure = f"Delete it, or add below [format] of a column map: skip = {begin}"
+            cure += "; or ends, in place of skip, if no row behind it counts."
+            raise InputError(where, "breaks the table", f'"{printable(line)}"', cure)
 
 
 def cells_of(block: Block, places: Sequence[int]) -> list[list[str]]:
@@ -485,8 +552,3 @@ def cells_of(block: Block, places: Sequence[int]) -> list[list[str]]:
         for append, place in pairs:
             append(fields[place].strip() if place < len(fields) else "")
     return found
-
-
-def described_form(separator: str, decimal: str) -> str:
-    """How a text is written, in words."""
-    return f"{_SEPARATED[separator]}, decimal {'comma' if decimal == ',' else 'point'}"
