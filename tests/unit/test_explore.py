@@ -11,8 +11,8 @@ from separatrix.cage import Ensemble, RunOutcome
 from separatrix.study.distribution import LogNormal, Normal
 from separatrix.study.study import Candidate, Friction
 from separatrix.verdict import counting
-from separatrix.verdict.counting import is_plain, settles_more
-from separatrix.verdict.drawn_frictions import Case
+from separatrix.verdict.sensitivity import is_plain, settles_more
+from separatrix.verdict.draws import Case
 from separatrix.verdict.draws import UncertainInput
 from separatrix.verdict.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares
 from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval

@@ -43,7 +43,7 @@ from separatrix.verdict.ranking_records import (
 )
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.stability_curve import RestitutionThreshold
-from separatrix.verdict.which_ball import transmitted_force
+from separatrix.verdict.judgement import transmitted_force
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)
 

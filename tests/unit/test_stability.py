@@ -13,9 +13,9 @@ from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import long_jobs as runner
-from separatrix.verdict.critical_friction import CriticalFriction, critical_friction, own_restitution_factor
+from separatrix.verdict.stability_curve import CriticalFriction, critical_friction, own_restitution_factor
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.response import (
+from separatrix.verdict.crossing import (
     LADDER,
     Count,
     Crossing,

@@ -34,7 +34,7 @@ from separatrix.verdict.map_fill import (
     wrong_side_probability,
 )
 from separatrix.verdict.map_records import MapAxis, MapPoint, MapQuestion, parameters, side, value_in, varied
-from separatrix.verdict.response import cage_at
+from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.stability_map import AGREED, PointFinder, inference, stability_map
 
 KICKS = MapAxis(parameter="kick", unit="m/s", values=(0.1, 0.2))

@@ -19,7 +19,7 @@ from separatrix.study.study import CageModel, with_model
 from separatrix.verdict.judgement import judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import MOST_CASES, sweep
-from separatrix.verdict.which_ball import transmitted_force
+from separatrix.verdict.judgement import transmitted_force
 
 STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))

@@ -13,9 +13,8 @@ from separatrix.chain.pocket_friction import contact_radius, pocket_speed
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Kilogram, Metre, Newton, NewtonPerMetre, Pascal, Ratio, format_quantity
 from separatrix.study.study import BallBearing, BallModel, Guidance, Material, MotionModel, PocketShape, Study
-from separatrix.verdict.judgement import Judgement, KickCount, Verdict
+from separatrix.verdict.judgement import Judgement, KickCount, Verdict, transmitted_force
 from separatrix.verdict.stability_curve import RestitutionThreshold
-from separatrix.verdict.which_ball import transmitted_force
 
 STRONG: Ratio = 1.0
 """Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage.md)."""
