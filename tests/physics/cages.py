@@ -13,8 +13,8 @@ from separatrix.cage.disturbance import Starts
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import settled_in, with_values
 from separatrix.study.study import BallBearing, Guidance, Material, PocketShape, Study
-from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.crossing import GrowthCounter
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import Tracer, rising, threshold_factors
 
 AT_REST = MovingCage(

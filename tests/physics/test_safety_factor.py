@@ -12,7 +12,6 @@ from separatrix.ground.document import Part
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verbs.parts.verdict_blocks import deciding
 from separatrix.verdict.beyond_models import Pocket
-from separatrix.verdict.stability_curve import critical_friction
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.safety_factor import (
     CageLimit,
@@ -24,6 +23,7 @@ from separatrix.verdict.safety_factor import (
     safety_factor,
     spread,
 )
+from separatrix.verdict.stability_curve import critical_friction
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 LIMIT = CageLimit(

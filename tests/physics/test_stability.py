@@ -10,11 +10,16 @@ from cages import threshold_points
 from separatrix.cage import run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
-from separatrix.verdict.stability_curve import critical_friction, linear_limit
+from separatrix.verdict.crossing import GrowthCounter, cage_at
 from separatrix.verdict.judgement import judge, wilson_interval
 from separatrix.verdict.long_jobs import PART, Interrupted, Runner
-from separatrix.verdict.crossing import GrowthCounter, cage_at
-from separatrix.verdict.stability_curve import curve_of_points, restitution_threshold, stability_curve
+from separatrix.verdict.stability_curve import (
+    critical_friction,
+    curve_of_points,
+    linear_limit,
+    restitution_threshold,
+    stability_curve,
+)
 
 SETTINGS = StabilitySettings(kicks=(0.5,), reference_kick=0.5, runs=32, duration=0.1, seed=3)
 

@@ -24,7 +24,7 @@ from separatrix.study.study import (
 )
 from separatrix.verdict.beyond_models import Pocket, reason
 from separatrix.verdict.draws import Case
-from separatrix.verdict.judgement import Judgement, Verdict, judge
+from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.ledger import NAME, Ledger
 from separatrix.verdict.long_jobs import Interrupted, Runner
 from separatrix.verdict.ranking import Asked, _row, rank
@@ -43,7 +43,6 @@ from separatrix.verdict.ranking_records import (
 )
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.stability_curve import RestitutionThreshold
-from separatrix.verdict.judgement import transmitted_force
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)
 

@@ -125,15 +125,6 @@ def test_the_last_search_keeps_one_thread_busy():
     assert work.so_far(4) == (5.0, 25.0)
 
 
-def test_places_that_will_follow_are_expected():
-    """Until the one that they follow from is known."""
-    work = work_of(node=Load(100, follow=0.5))
-    work.spend("node", 5.0, 50)
-    assert work.so_far(1) == (5.0, 15.0)
-    work.finish("node")
-    assert work.so_far(1) == (5.0, 5.0)
-
-
 def test_kept_runs_say_nothing_of_the_others():
     """They took no time; a place that takes longer than expected takes a little longer still."""
     work = work_of(kept=Load(100), new=Load(100), next=Load(100))

@@ -27,9 +27,9 @@ from separatrix.ground.units import (
     Watt,
 )
 from separatrix.verdict.ranking_records import Ranking
-from separatrix.verdict.sensitivity import UncertainStudy
 from separatrix.verdict.stability_curve import StabilityCurve
 from separatrix.verdict.stability_map import StabilityMap
+from separatrix.verdict.uncertain_study import UncertainStudy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -93,7 +93,7 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
     from separatrix.verbs.parts.cage_of_study import reference
     from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
     from separatrix.verdict.long_jobs import made_into
-    from separatrix.verdict.sensitivity import uncertain_study
+    from separatrix.verdict.uncertain_study import uncertain_study
 
     samples = options.samples
     if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:

@@ -38,9 +38,9 @@ from separatrix.verbs.answer_records import (
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.parameter_axes import MapAxis
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
-from separatrix.verdict.sensitivity import NotDrawn, UncertainMaterial
 from separatrix.verdict.stability_map import StabilityMap
 from separatrix.verdict.swept_cases import Sweep
+from separatrix.verdict.uncertain_study import NotDrawn, UncertainMaterial
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -70,7 +70,6 @@ class Load(NamedTuple):
 
     runs: float = 1.0  # of so many; or just one piece of work
     dear: float = 1.0  # time of a run beside that of others
-    follow: float = 0.0  # places like it that will be wanted once it is known, on average
 
 
 class Work:
@@ -104,7 +103,7 @@ class Work:
             self._spent.setdefault(place, (whole, self.loads[place].runs))
 
     def finish(self, place: Hashable) -> None:
-        """Note that a place is finished, and all that follow from it are known."""
+        """Note that a place is finished."""
         with self._lock:
             self._finished.add(place)
 
@@ -131,7 +130,7 @@ class Work:
                 elif made > BEGUN * load.runs:
                     expected = spent * load.runs / made
                 rest = max(expected, MORE * spent) - spent
-                left, longest = left + rest + load.follow * expected, max(longest, rest)
+                left, longest = left + rest, max(longest, rest)
         return done, done + max(left, threads * longest) if rate else math.inf
 
 

@@ -151,12 +151,12 @@ def stability_map(question: MapQuestion, *, runner: Runner | None = None) -> Sta
     if FRICTION not in (question.x.parameter, question.y.parameter):
         require_friction(question.study)
     runner, (xs, ys) = runner or Runner(), (question.x.values, question.y.values)
-    point = PointFinder(question, runner)
+    point, report = PointFinder(question, runner), runner.progress
     return runner.work_out(
         lambda place: point(xs[place[0]], ys[place[1]]),
         scattered(product(range(len(xs)), range(len(ys)))),
         into=lambda found: _assembled(question, found),
-        progress=runner.progress,
+        progress=report and (lambda done, _: report(done, len(xs) * len(ys))),
     )
 
 
