@@ -27,7 +27,7 @@ from separatrix.verdict.crossing import (
 )
 from separatrix.verdict.long_jobs import Load, Runner
 
-FACTORS: tuple[Ratio, ...] = (0.0, *(i / 32 for i in (1, 2, 4, 8, 12, 16, 20, 24, 28, 30)), 1.0)
+FACTORS: tuple[Ratio, ...] = (0.0, 1 / 16, *(i / 8 for i in range(1, 8)), 15 / 16, 1.0)
 """Restitution factors of a curve, unless a study states them: closer where it bends. Towards 0 the damping
 ratio, which the linear limit follows, rises steeply; before 1, where balls gripped by their races damp
 nothing, the critical friction falls to zero."""
