@@ -91,29 +91,29 @@ def work_of(**loads):
 
 
 def test_what_is_left_goes_on_at_the_pace_of_what_was_made():
-    """Nothing is known before the first run; a finished place counts whole, a dear one twice."""
+    """Nothing is known before the first run; a run of a finished place counts four times one under way."""
     work = work_of(a=Load(100), b=Load(100), c=Load(100, dear=2.0))
     assert work.so_far(1) == (0.0, math.inf)
     work.spend("a", 3.0, 70)
     work.finish("a")
     assert work.so_far(1) == (3.0, 3.0 + 3.0 + 6.0)
     work.spend("b", 1.0, 50)
-    assert work.so_far(1) == (4.0, pytest.approx(4.0 + 250.0 * 4.0 / 150.0))
+    assert work.so_far(1) == (4.0, pytest.approx(4.0 + 250.0 * 4.0 / 112.5))
 
 
 def test_a_place_that_outlasts_its_load_is_not_taken_for_done():
     """A search of 100 runs that has made 300: a fifth of its load is left."""
     work = work_of(search=Load(100))
     work.spend("search", 5.0, 300)
-    assert work.so_far(1) == (5.0, pytest.approx(6.0))
+    assert work.so_far(1) == (5.0, pytest.approx(9.0))
 
 
 def test_the_last_search_keeps_one_thread_busy():
     """The others wait: the time that is left is its own, however many they are."""
     work = work_of(search=Load(100))
     work.spend("search", 5.0, 50)
-    assert work.so_far(1) == (5.0, 10.0)
-    assert work.so_far(4) == (5.0, 25.0)
+    assert work.so_far(1) == (5.0, 25.0)
+    assert work.so_far(4) == (5.0, 85.0)
 
 
 def test_kept_runs_say_nothing_of_the_others():
@@ -124,7 +124,7 @@ def test_kept_runs_say_nothing_of_the_others():
     work.finish("kept")
     assert work.so_far(1)[1] == math.inf
     work.spend("new", 6.0, 50)
-    assert work.so_far(1)[1] == pytest.approx(0.001 + 6.0 + 6.0 + 12.0)
+    assert work.so_far(1)[1] == pytest.approx(0.001 + 6.0 + 72.0)
 
 
 def test_the_first_tenth_of_scattered_places_resembles_all():

@@ -58,6 +58,9 @@ NAMES = tuple(field.name for field in fields(Ensemble))
 AT_WORK: list[Stop] = []
 """Flags of the jobs of this process that are at work."""
 
+UNDER_WAY = 0.25
+"""What a run of a place under way counts, beside one of a finished place: short runs end first."""
+
 LEAST_LEFT = 0.2
 """Share of its load that a place under way takes at least before it ends."""
 
@@ -112,7 +115,7 @@ class Work:
                 if place not in self._finished:
                     left.append(load.dear * max(load.runs - runs, LEAST_LEFT * load.runs))
                 if place not in self._kept:
-                    whole = load.runs if place in self._finished else min(runs, load.runs)
+                    whole = load.runs if place in self._finished else UNDER_WAY * min(runs, load.runs)
                     made, spent_there = made + load.dear * whole, spent_there + spent
             if spent_there == 0.0:
                 return done, math.inf
