@@ -34,8 +34,8 @@ from separatrix.ground.units import Array
 from separatrix.present.draw import NOTHING, PAGE, STYLE
 from separatrix.present.figure import BLUE, GREEN, GREY, PURPLE, VERMILION
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.critical_friction import critical_friction, linear_limit
-from separatrix.verdict.response import LADDER, Crossing, GrowthCounter
+from separatrix.verdict.crossing import LADDER, Crossing, GrowthCounter
+from separatrix.verdict.stability_curve import critical_friction, linear_limit
 
 MASS, RADIUS, HALF_PLAY, STIFFNESS = 0.05, 0.03, 0.3e-3, 3e6
 CAGE = MovingCage(

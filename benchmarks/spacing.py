@@ -16,7 +16,7 @@ from dataclasses import replace
 
 from chi_law import CAGE, CHI_MIDDLE, KICK, settings_at
 
-from separatrix.verdict.critical_friction import CriticalFriction, critical_friction
+from separatrix.verdict.stability_curve import CriticalFriction, critical_friction
 
 FACTORS = (0.9, 0.8, 0.6)
 KICKS = (0.1, 0.5)

@@ -6,10 +6,10 @@ from separatrix.cage import moving_cage
 from separatrix.chain.contacts import bearing_state, race_traction
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
-from separatrix.verdict.critical_friction import critical_friction
+from separatrix.verdict.crossing import GrowthCounter
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
-from separatrix.verdict.response import GrowthCounter
+from separatrix.verdict.stability_curve import critical_friction
 
 
 @pytest.fixture(scope="module")

@@ -143,7 +143,6 @@ COUNTS = tuple(
         ("UNSTABLE", "with this decision"),
         ("UNDECIDED", "with this decision"),
         ("refused", "that are not a bearing"),
-        ("inferred", "whose decision is that of their neighbours"),
         ("not_run", "that an interrupt left out"),
     )
 )

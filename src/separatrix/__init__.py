@@ -42,8 +42,7 @@ _PUBLIC = {
     "present.dataset": "dataset",
     "verbs.answer_files": "document",
     "verbs.shapes": "to_dataframe to_xarray",
-    "verdict.critical_friction": "critical_friction",
-    "verdict.stability_curve": "StabilityCurve restitution_threshold stability_curve",
+    "verdict.stability_curve": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Kinematics Material MotionModel Operation PocketContact PocketShape PressureSlip Race "
     "RankingQuestion StabilitySettings Study TractionModel TractionSettings Wear Worn shipped_studies",

@@ -13,9 +13,9 @@ from separatrix.cage.disturbance import Starts
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import settled_in, with_values
 from separatrix.study.study import BallBearing, Guidance, Material, PocketShape, Study
+from separatrix.verdict.crossing import GrowthCounter
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.response import GrowthCounter
-from separatrix.verdict.stability_curve import Tracer, rising, threshold_factors
+from separatrix.verdict.stability_curve import critical_friction, threshold_factors
 
 AT_REST = MovingCage(
     mass=0.05, moment_of_inertia=0.05 * 0.0325**2, ball_count=11, pitch_radius=0.0325, cage_speed=0.0,
@@ -144,9 +144,12 @@ def ensemble(rows: object, balls: int = AT_REST.ball_count, **evidence: object) 
 def threshold_points(cage, settings, jobs=1):
     """Critical frictions, without their band, from a restitution factor of 0 to 1, where they are wanted."""
     runner = Runner(jobs=jobs)
-    tracer = Tracer(GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False)
-    found = runner.work_out(tracer.point, tracer.first, into=dict, more=tracer.more)
-    return rising(found.values())
+    counter, factors = GrowthCounter(cage, settings, runner), threshold_factors(settings)
+    return runner.work_out(
+        lambda eta: critical_friction(cage, eta, settings, counter=counter, band=False),
+        factors,
+        into=lambda found: [found[eta] for eta in factors],
+    )
 
 
 def follow(

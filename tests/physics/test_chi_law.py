@@ -13,7 +13,7 @@ from cages import whirl_probability
 
 from separatrix.cage import linear_critical_friction, run_ensemble
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.response import cage_at
+from separatrix.verdict.crossing import cage_at
 
 MASS, STIFFNESS, HALF_PLAY = CAGE.mass, CAGE.ball_cage_stiffness, CAGE.half_play
 CROSSINGS = 250

@@ -12,8 +12,7 @@ from separatrix.chain.solution import solve
 from separatrix.study.distribution import Normal, Samples, Uniform
 from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction
-from separatrix.verdict.drawn_frictions import Case, drawn_bearings
-from separatrix.verdict.draws import sample
+from separatrix.verdict.draws import Case, drawn_bearings, sample
 from separatrix.verdict.judgement import Verdict, judge
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -12,18 +13,18 @@ from separatrix.ground.document import Part
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verbs.parts.verdict_blocks import deciding
 from separatrix.verdict.beyond_models import Pocket
-from separatrix.verdict.critical_friction import critical_friction
 from separatrix.verdict.long_jobs import Runner
+from separatrix.verdict.ranking import Limit, _limits
 from separatrix.verdict.safety_factor import (
     CageLimit,
     SafetyFactor,
     between,
     cage_limit,
-    ends_of_each,
     hand_estimate,
     safety_factor,
     spread,
 )
+from separatrix.verdict.stability_curve import critical_friction
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 LIMIT = CageLimit(
@@ -79,10 +80,15 @@ def test_between_two_stiffnesses_the_critical_friction_is_a_power():
 
 
 def test_of_pockets_that_differ_in_stiffness_alone_the_ends_are_computed():
-    """Another mass or clearance is another cage."""
+    """Another mass or clearance is another cage; all are, where an end has no value to go between."""
     soft, middle, stiff = (Pocket(0.02, k, 3e-4, 4e-4) for k in (1e6, 2e6, 3e6))
     heavy = soft._replace(mass=0.03)
-    assert ends_of_each([stiff, heavy, middle, soft]) == [(soft, stiff), (heavy,)]
+    asked = SimpleNamespace(is_paper=False, wide=None, cages=dict.fromkeys((stiff, heavy, middle, soft)))
+    ends = [Limit(one) for one in (soft, stiff, heavy)]
+    assert _limits(asked, {}) == ends
+    assert _limits(asked, dict.fromkeys(ends, LIMIT)) == ends
+    open_end = {**dict.fromkeys(ends, LIMIT), ends[1]: replace(LIMIT, own_critical_friction=None)}
+    assert _limits(asked, open_end) == [Limit(one) for one in (soft, middle, stiff, heavy)]
 
 
 ROW = {

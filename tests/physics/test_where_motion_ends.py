@@ -14,9 +14,9 @@ from separatrix.cage.rows import LOOK_COLUMNS, of
 from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance, StabilitySettings
+from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.judgement import Judgement, Verdict, judge
 from separatrix.verdict.reasons import CageMotion, largest_room
-from separatrix.verdict.response import cage_at
 
 RUNS, DURATION = 8, 0.1
 KICKS = (0.1, 0.5, 2.0, 4.0)

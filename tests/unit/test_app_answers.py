@@ -131,7 +131,7 @@ def test_everything_is_downloaded_at_once(page):
 
 def test_options_are_fields_of_their_types(monkeypatch, page, root):
     """A number in digits, a line each, a file beside the study, a flag; empty ones are left out."""
-    kinds = {"runs": int, "vary": tuple[str, ...], "cases": Path | None, "adaptive": bool, "x": str | None}
+    kinds = {"runs": int, "vary": tuple[str, ...], "cases": Path | None, "full": bool, "x": str | None}
     shown = {name: (kind, Option("", ""), None) for name, kind in kinds.items()}
     verb = type("V", (), {"shown_options": lambda _: shown, "moves_a_cage": True})()
     monkeypatch.setattr(editing, "verb_named", lambda _: verb)
@@ -141,7 +141,7 @@ def test_options_are_fields_of_their_types(monkeypatch, page, root):
         "runs": "4",
         "vary": "a=1\n b=2 \n",
         "cases": "duty.csv",
-        "adaptive": "on",
+        "full": "on",
         "x": "",
         "model": "paper",
     }
@@ -149,7 +149,7 @@ def test_options_are_fields_of_their_types(monkeypatch, page, root):
         "runs": 4,
         "vary": ("a=1", "b=2"),
         "cases": root / "duty.csv",
-        "adaptive": True,
+        "full": True,
         "model": "paper",
     }
     assert editing.asked(own, "small.toml", "any", sent) == expected

@@ -24,9 +24,9 @@ from separatrix.study.study import (
     StabilitySettings,
 )
 from separatrix.verbs.parts.answer_page import command
+from separatrix.verdict.crossing import cage_at
 from separatrix.verdict.ledger import Ledger
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.response import cage_at
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6), seed=1)
 SHAPE = {"inner_diameter": 0.058, "outer_diameter": 0.072, "width": 0.014}

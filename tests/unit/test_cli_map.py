@@ -32,14 +32,11 @@ ball_cage_friction = 0.1
 kicks = ["0.5 m/s"]
 duration = "2 ms"
 """
-KEYS = (
-    "x y kick stopping inference duration ball_scatter adaptive counts changes points chain cage complete "
-    "seed study"
-)
+KEYS = "x y kick stopping duration ball_scatter counts changes points chain cage complete seed study"
 OF_A_POINT = (
     "x y state decision probability_whirl probability_low probability_high runs whirling growth_rate "
     "largest_offset drift_rate largest_contact_force "
-    "restitution_factor margin inferred_decision reason"
+    "restitution_factor margin reason"
 )
 QUICK = ["--points", "4", "--runs", "3", "--quiet"]
 

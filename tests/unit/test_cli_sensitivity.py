@@ -13,7 +13,7 @@ import pytest
 from commands import document, refused
 
 from separatrix.front import main
-from separatrix.verdict import input_shares as uncertain
+from separatrix.verdict import uncertain_study as uncertain
 
 SMALL = """
 extends = "cryogenic-turbopump"

@@ -10,12 +10,11 @@ from scipy.special import expit, ndtr
 from separatrix.cage import Ensemble, RunOutcome
 from separatrix.study.distribution import LogNormal, Normal
 from separatrix.study.study import Candidate, Friction
-from separatrix.verdict import counting
-from separatrix.verdict.counting import is_plain, settles_more
-from separatrix.verdict.drawn_frictions import Case
-from separatrix.verdict.draws import UncertainInput
+from separatrix.verdict import uncertain_study
+from separatrix.verdict.draws import Case, UncertainInput
 from separatrix.verdict.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares
 from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval
+from separatrix.verdict.uncertain_study import is_plain, settles_more
 
 CASE = Case("A", "air")
 NAMES = ["x", "y", "z"]
@@ -163,20 +162,20 @@ class Judged:
     worst_kick: float
 
 
-def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space():
+def test_a_kick_that_is_left_out_leaves_every_column_of_runs_in_space(monkeypatch):
     """The second block runs the worst kick alone; columns that only space has are as long as the others."""
 
     def ensemble(_case, kicks, places, _runner, **_):
         columns = {f.name: np.zeros((len(kicks), len(places))) for f in fields(Ensemble)}
         return Ensemble(**columns | {"kicks": np.array(kicks), "duration": 0.1})
 
-    total = 2 * counting.BLOCK
+    total = 2 * uncertain_study.BLOCK
     looks = [judged(Verdict.UNDECIDED, 60, 20), judged(Verdict.UNDECIDED, 20), judged(Verdict.UNDECIDED, 40)]
     looks = iter([Judged(**vars(one)) for one in looks])
-    bearings = SimpleNamespace(
-        runs=range(total), kicks=(0.1, 0.2), ensemble=ensemble, judged=lambda *_: next(looks)
-    )
-    _, found = counting.counted_among(bearings, None, None, None)
+    monkeypatch.setattr(uncertain_study, "judge", lambda *_, **__: next(looks))
+    monkeypatch.setattr(uncertain_study, "transmitted_force", lambda _: 1.0)
+    bearings = SimpleNamespace(runs=range(total), kicks=(0.1, 0.2), ensemble=ensemble, central={"A": None})
+    _, found = uncertain_study.counted_among(bearings, CASE, None, SimpleNamespace(free_ball=None))
     assert found.largest_tilt.shape == found.outcome.shape == (1, total)
 
 
@@ -186,7 +185,9 @@ def test_early_ends_decide_as_all_bearings_would():
     other = 0
     for p in random.random(1000):
         runs = random.random(512) < p
-        ends = [_verdict(int(runs[:n].sum()), n) for n in range(counting.BLOCK, 513, counting.BLOCK)]
+        ends = [
+            _verdict(int(runs[:n].sum()), n) for n in range(uncertain_study.BLOCK, 513, uncertain_study.BLOCK)
+        ]
         stopped = next((end for end, plain in ends if plain), ends[-1][0])
         other += stopped is not ends[-1][0]
     assert other <= 5  # 7 looks at 1e-3 each, of the tenth of the cases that lie near a limit: 1 expected
@@ -207,4 +208,4 @@ def test_outcomes_are_counted_where_they_settle_or_roll():
     """From the worst kick alone."""
     ends = [RunOutcome.WHIRLS, RunOutcome.SETTLES, RunOutcome.ROLLS]
     found = SimpleNamespace(kicks=np.array([0.1, 0.5]), outcome=np.array([[0, 0, 0], ends]))
-    assert counting.settles(found, SimpleNamespace(worst_kick=0.5)).tolist() == [0.0, 1.0, 1.0]
+    assert uncertain_study.settles(found, SimpleNamespace(worst_kick=0.5)).tolist() == [0.0, 1.0, 1.0]

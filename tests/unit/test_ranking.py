@@ -23,7 +23,7 @@ from separatrix.study.study import (
 )
 from separatrix.verdict.beyond_models import Pocket, reason
 from separatrix.verdict.draws import Case
-from separatrix.verdict.judgement import Judgement, Verdict, judge
+from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.ledger import NAME, Ledger
 from separatrix.verdict.long_jobs import Interrupted, Runner
 from separatrix.verdict.ranking import Asked, _row, rank
@@ -42,7 +42,6 @@ from separatrix.verdict.ranking_records import (
 )
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.stability_curve import RestitutionThreshold
-from separatrix.verdict.which_ball import transmitted_force
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)
 
@@ -232,11 +231,11 @@ def test_one_state_decides_alone_where_it_is_enough():
 
 
 def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
-    """Thresholds need the critical friction; the kicks' own frictions are those of the point in hand."""
+    """Thresholds need the critical friction alone."""
     curve = rank(quick_study(ranking=asked(("A", Friction(mean=0.1))))).stability
     assert curve.band is False
-    assert {value for point in curve.curve for value in point.kick_low} == {None}
-    assert any(value is not None for value in (*curve.here.kick_low, *curve.here.kick_high))
+    assert {point.critical_friction_low for point in curve.curve} == {None}
+    assert (curve.here.critical_friction_low, curve.here.critical_friction_high) != (None, None)
 
 
 def test_scatter_of_the_friction_widens_the_threshold():
@@ -326,7 +325,7 @@ def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     pocket = Pocket(0.02, 1e6, 1e-4, 0.0)
     question = SimpleNamespace(pockets={"A": pocket}, cages={pocket: SimpleNamespace(restitution=eta)})
     evidence = judgement(largest_contact_force=float(bad))
-    found = SimpleNamespace(judgements={Asked(pocket, 0.1): evidence}, points={})
+    found = {Asked(pocket, 0.1): evidence}
     row = _row(question, found, Case("A", "air"), MeanFriction(0.1, 0.01))
     assert isinstance(row, NotFinished)
     assert row.judgement is None

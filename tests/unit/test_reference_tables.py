@@ -43,7 +43,7 @@ ASKED = {
     "restitution": lambda: separatrix.restitution(WORN),
     "mobility": lambda: separatrix.mobility(SMALL),
     "stability": lambda: separatrix.stability(SMALL, jobs=1),
-    "map": lambda: separatrix.map(SMALL, points=2, runs=1, adaptive=True, jobs=1),
+    "map": lambda: separatrix.map(SMALL, points=2, runs=1, jobs=1),
     "simulate": lambda: separatrix.simulate(SMALL),
     "rank": lambda: separatrix.rank(SMALL, jobs=1),
     "sensitivity": lambda: separatrix.sensitivity(SMALL, samples=64, jobs=1),

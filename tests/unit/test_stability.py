@@ -1,8 +1,8 @@
-"""Counting, crossing, tracing and inverting, without any cage: a counter that knows its probabilities."""
+"""Counting, crossing and inverting, without any cage: a counter that knows its probabilities."""
 
 import math
 import re
-from itertools import accumulate, pairwise
+from itertools import accumulate
 
 import numpy as np
 import pytest
@@ -13,9 +13,8 @@ from separatrix.chain.solution import solve
 from separatrix.study.reading import read_study
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict import long_jobs as runner
-from separatrix.verdict.critical_friction import CriticalFriction, critical_friction, own_restitution_factor
-from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.response import (
+from separatrix.verdict import stability_curve
+from separatrix.verdict.crossing import (
     LADDER,
     Count,
     Crossing,
@@ -25,12 +24,13 @@ from separatrix.verdict.response import (
     cage_at,
     cell_of,
 )
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.stability_curve import (
-    COARSE,
-    FINEST,
-    Tracer,
-    bends,
-    finer,
+    FACTORS,
+    CriticalFriction,
+    critical_friction,
+    own_restitution_factor,
+    own_threshold,
     restitution_threshold,
     threshold_factors,
 )
@@ -130,7 +130,6 @@ def test_the_runs_of_an_end_go_to_the_kick_that_sets_it():
     # A ladder step of 10 % is 0.8 of P's width, 1/8: where the runs fall on it makes 21 % here. A third of
     # the runs, those of the first look, would make an interval 70 % wider.
     assert math.log(upper) == pytest.approx(math.log(lower), rel=0.3)
-    assert point.kick_critical_friction[1] == point.critical_friction
 
 
 USUAL = logistic(0.12, 8.0)
@@ -282,76 +281,29 @@ def test_24_that_agree_are_unanimous():
     assert not Count(0, 0).unanimous(0.5)
 
 
-def traced(height, spread=0.002):
-    """Points of a curve that is followed through a known height."""
+def test_straight_lines_between_the_factors_follow_a_curve_that_bends():
+    """Like the shipped bearing, straight to 0.75, level to 0.9, 0 at 1: within 0.01 of friction."""
 
-    def compute(node):
-        return point(node[0], height(node[0]), spread)
+    def height(eta):
+        return 0.117 - 0.188 * (eta - 0.5) if eta < 0.75 else min(0.07, 0.64 * (1.0 - eta))
 
-    tracer = Tracer(None, (), band=False)
-    found = Runner().work_out(compute, tracer.first, into=dict, more=tracer.more)
-    assert tracer.complete(found)
-    return {node[0]: one for node, one in found.items()}
-
-
-@pytest.mark.parametrize(
-    ("height", "spread"),
-    [
-        (lambda eta: 0.3 - 0.2 * eta, 0.002),
-        (lambda eta: 0.2 + 0.01 * math.sin(40.0 * eta), 0.02),
-        (lambda _: None, 0.002),
-    ],
-    ids=["straight", "bends by less than its scatter", "no boundary"],
-)
-def test_a_curve_that_does_not_bend_has_the_first_points_only(height, spread):
-    """Nothing is halved."""
-    assert sorted(traced(height, spread)) == list(COARSE)
-
-
-def test_points_stand_where_the_curve_bends():
-    """A corner at 0.3: points crowd around it, and none is added beyond one half."""
-    etas = sorted(traced(lambda eta: max(0.3 - 0.8 * eta, 0.06)))
-    assert [eta for eta in etas if eta > 0.5] == [0.75, 0.875, 1.0]
-    assert FINEST in [b - a for a, b in pairwise(etas)]
-    assert len([eta for eta in etas if abs(eta - 0.3) < 0.07]) >= 3
-
-
-def gripped(eta):
-    """Like the shipped bearing: straight through 0, 0.25, 0.5, 0.75, level to 0.9, and 0 at 1."""
-    return 0.117 - 0.188 * (eta - 0.5) if eta < 0.75 else min(0.07 - 0.04 * (eta - 0.75), 0.64 * (1.0 - eta))
-
-
-@pytest.mark.parametrize(
-    ("height", "spread"), [(lambda eta: 0.05 + 0.3 * (1.0 - eta) ** 3, 0.004), (gripped, 0.01)]
-)
-def test_the_followed_curve_is_nowhere_far_from_the_true_one(height, spread):
-    """Straight lines between the points stay within twice the scatter of a curve that bends."""
-    found = traced(height, spread)
-    etas = sorted(found)
     for eta in np.linspace(0.0, 1.0, 1001):
-        line = np.interp(eta, etas, [found[at].critical_friction for at in etas])
-        assert abs(line - height(eta)) < 2.0 * spread
+        assert abs(np.interp(eta, FACTORS, [height(one) for one in FACTORS]) - height(eta)) < 0.01
 
 
-def test_an_end_of_the_boundary_is_followed():
-    """Where the critical friction ceases to exist the points crowd to the finest distance."""
-    etas = sorted(traced(lambda eta: 0.2 if eta < 0.7 else None))
-    assert min(b - a for a, b in pairwise(etas)) == FINEST
+@pytest.mark.parametrize(("friction", "most"), [(0.29, 3), (0.15, 10), (0.05, 11)])
+def test_a_threshold_is_followed_no_further_than_it_can_lie(friction, most, monkeypatch):
+    """The same as on the whole curve, which falls from 0.3 to 0.1, with so many points at most."""
+    asked = []
 
+    def known(_, eta, *__, **___):
+        asked.append(eta)
+        return point(eta, 0.3 - 0.2 * eta, 0.001)
 
-def test_the_order_in_which_points_finish_does_not_matter():
-    """Whatever is known first, the same points are wanted in the end."""
-    heights = {eta: point(eta, 0.3 / (1.0 + 9.0 * eta), 0.002) for eta in (i / 32 for i in range(33))}
-    seen = set()
-    for order in (1, -1):
-        known, queue = {}, list(COARSE)[::order]
-        while queue:
-            eta = queue.pop()
-            known[eta] = heights[eta]
-            queue += [0.5 * (a + b) for a, b in finer(eta, known, bends) if 0.5 * (a + b) not in known]
-        seen.add(tuple(sorted(known)))
-    assert len(seen) == 1
-    assert len(seen.pop()) > len(COARSE)
+    monkeypatch.setattr(stability_curve, "critical_friction", known)
+    found = own_threshold(CAGE, StabilitySettings(), friction, Runner())
+    assert len(asked) <= most
+    assert found == restitution_threshold([known(None, eta) for eta in FACTORS], friction)
 
 
 def point(eta, f, spread=0.01, side=Side.ABOVE):
@@ -395,4 +347,4 @@ def test_thresholds_are_solved_over_all_of_zero_to_one():
     """The points go from 0 to 1, whatever restitution factors the study asks for."""
     factors = threshold_factors(StabilitySettings(restitution_factors=(0.3, 0.5)))
     assert factors == [0.0, 0.3, 0.5, 0.98, 1.0]
-    assert threshold_factors(StabilitySettings()) == []
+    assert threshold_factors(StabilitySettings()) is FACTORS

@@ -10,7 +10,7 @@ from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import ContactPressure, PressureSlip, TractionModel, Wear, Worn
-from separatrix.verdict.map_records import value_in, varied
+from separatrix.verdict.parameter_axes import value_in, varied
 
 BAND = '[film.wear]\nwidth = "0.2 mm"\nfriction = 0.3\n'
 PLACES = '[film.wear]\nacross = ["-0.1 mm", "0.1 mm"]\nthicknesses = ["0 um", "0.2 um"]\nfriction = 0.3\n'

@@ -16,10 +16,9 @@ from separatrix.front import main
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.study import CageModel
-from separatrix.verdict.judgement import judge
+from separatrix.verdict.judgement import judge, transmitted_force
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.swept_cases import MOST_CASES, sweep
-from separatrix.verdict.which_ball import transmitted_force
 
 STUDY = read_study("momentum-wheel")
 QUICK = replace(STUDY, stability=replace(STUDY.stability, runs=4, duration=0.01))

@@ -14,7 +14,7 @@ from separatrix.cage import Cause, RunOutcome
 from separatrix.cage.closed_forms import drive_energy, room
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.study.study import BallModel, Guidance, MotionModel, PocketShape
-from separatrix.verdict import which_ball
+from separatrix.verdict import judgement
 from separatrix.verdict.judgement import Verdict, judge, wilson_interval
 from separatrix.verdict.reasons import CageMotion, force_limit
 
@@ -215,10 +215,10 @@ def test_free_balls_are_asked_before_unstable_is_said(level, first, share, balls
     kinds = {"damper": CAGE, "one state": replace(CAGE, traction=LAW), "free": replace(CAGE, free_ball=FREE)}
     names = {BallModel.DAMPER: "damper", BallModel.FREE: "free"}
     solution = SimpleNamespace(design=SimpleNamespace(ball_model=level))
-    monkeypatch.setattr(which_ball, "transmitted_force", lambda _: 40.0)
-    monkeypatch.setattr(which_ball, "whirl_share", lambda *_: share)
+    monkeypatch.setattr(judgement, "transmitted_force", lambda _: 40.0)
+    monkeypatch.setattr(judgement, "whirl_share", lambda *_: share)
     monkeypatch.setattr(
-        which_ball, "moving_cage", lambda _, _f, ball=level: kinds[names.get(ball, "one state")]
+        judgement, "moving_cage", lambda _, _f, ball=level: kinds[names.get(ball, "one state")]
     )
     ran = []
 
@@ -226,7 +226,7 @@ def test_free_balls_are_asked_before_unstable_is_said(level, first, share, balls
         ran.append(next(name for name, one in kinds.items() if one is cage))
         return ensemble([[SETTLES if len(ran) > 1 else first] * 16])
 
-    found = which_ball.judge_solution(solution, 0.1, run)
+    found = judgement.judge_solution(solution, 0.1, run)
     assert (ran, found.ball) == (balls, balls[-1])
     assert (said is None and found.ball_reason is None) or said in found.ball_reason
 
@@ -235,7 +235,7 @@ def test_the_friction_of_a_whirl_is_that_of_an_impact_at_the_reference():
     """N = 2.5 W c_p sqrt(k m), m = M/2 of a thin ring: 0.5025 m/s, 137.6 N, of 40 N a share of 0.344."""
     cage = replace(GUIDED, traction=LAW)
     force = 2.5 * 670.0 * 3e-4 * math.sqrt(3e6 * 0.025)
-    assert which_ball.whirl_share(cage, 40.0) == pytest.approx(0.1 * force / 40.0, rel=1e-12)  # rounding
+    assert judgement.whirl_share(cage, 40.0) == pytest.approx(0.1 * force / 40.0, rel=1e-12)  # rounding
 
 
 def test_verdict_and_probability_are_those_of_the_worst_kick():

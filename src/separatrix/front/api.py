@@ -255,14 +255,13 @@ def map(
     points: int = 100,
     runs: int = 16,
     kick: str | MetrePerSecond | None = None,
-    adaptive: bool = False,
     jobs: int | None = None,
     folder: str | Path | None = None,
     cluster: str | None = None,
     progress: Progress | None = None,
 ) -> Answer[MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `stability` for the rest."""
-    question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick, "adaptive": adaptive}
+    question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick}
     return _answer("map", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
 
 

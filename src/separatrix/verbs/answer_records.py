@@ -26,10 +26,10 @@ from separatrix.ground.units import (
     Ratio,
     Watt,
 )
-from separatrix.verdict.map_records import StabilityMap
 from separatrix.verdict.ranking_records import Ranking
 from separatrix.verdict.stability_curve import StabilityCurve
-from separatrix.verdict.uncertain_records import UncertainStudy
+from separatrix.verdict.stability_map import StabilityMap
+from separatrix.verdict.uncertain_study import UncertainStudy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

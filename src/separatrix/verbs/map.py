@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 AXIS = "LOW..HIGH[unit][:N][:log]"
 X, Y = "restitution_factor=0..1", "ball_cage_friction=0..0.5"
 FRICTION, RESTITUTION, KICK = "ball_cage_friction", "restitution_factor", "kick"
-KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "inferred", "not_run")
+KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "not_run")
 
 SOME_COLUMNS, MORE_COLUMNS = 9, 40
 """Columns of a map whose bands stand on a screen and in a report: of more, so many are chosen."""
@@ -47,9 +46,6 @@ class Options:
         str | float | None,
         Option('Initial disturbance, for instance "0.5 m/s" [default: the reference of the study].', "SPEED"),
     ] = None
-    adaptive: Annotated[
-        bool, Option("Run only points near a change of the answer; infer the others, and check some of them.")
-    ] = False
 
 
 def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
@@ -60,9 +56,8 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     from separatrix.verbs.answer_records import MapAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.long_jobs import made_into
-    from separatrix.verdict.map_records import MapQuestion, StabilityMap
     from separatrix.verdict.parameter_axes import checked_points, read_axis
-    from separatrix.verdict.stability_map import stability_map, value_here
+    from separatrix.verdict.stability_map import MapQuestion, StabilityMap, stability_map, value_here
 
     checked_points(options.points, "--points")
     if not 1 <= options.runs <= MOST_RUNS:
@@ -79,7 +74,7 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     usual = settings_for(study.stability, cage).middle_kick
     speed = usual if options.kick is None else kick_speed(options.kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
-    asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs, adaptive=options.adaptive)
+    asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs)
     notes = (*solution.notes, *cage.notes, *extrapolation_notes(solution))
 
     def made(found: StabilityMap) -> MapAnswer:
@@ -107,7 +102,6 @@ def page(answer: Part) -> Page:
             ("Across", _axis_words(answer.x)),
             ("Upward", _axis_words(answer.y)),
             ("Runs", runs_words(answer)),
-            ("Inferred", inference_words(answer)),
         ),
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
@@ -165,9 +159,6 @@ def counted(answer: Part) -> str:
     """Return of how many points the cage is stable, unstable, and what became of the others."""
     counts = answer.counts
     each = [f"{counts.get(one)} {one.replace('_', ' ')}" for one in KINDS if counts.get(one)]
-    near = Counter(one.get("inferred_decision") for one in answer.points if "inferred_decision" in one)
-    if near:
-        each.append(f"those inferred as {', '.join(f'{count} {word}' for word, count in near.items())}")
     return f"Of {len(answer.points)} points {', '.join(each)}."
 
 
@@ -212,18 +203,6 @@ def runs_words(answer: Part) -> str:
     )
     kick = "" if KICK in _names(answer) else said(answer, ", from an initial disturbance of {kick}")
     return f"{words}, each of {told(answer, 'duration')}{kick}"
-
-
-def inference_words(answer: Part) -> str:
-    """Return how many points were not run, and how often those around them were wrong where they were."""
-    found = answer.get("inference")
-    if found is None or not found.points + found.checked:
-        return ""
-    checked = "none was checked"
-    if "error_low" in found:
-        checked = f"{found.checked} more of that kind were run as a check, of which {found.decided_otherwise}"
-        checked += said(found, " are decided otherwise (95 %: {error_low} to {error_high})")
-    return f"{found.points} points were not run, as those around them agree; {checked}"
 
 
 # Where the answer changes.
@@ -325,33 +304,20 @@ def map_figure(answer: Part) -> Figure:
 
 
 def _cells(answer: Part) -> Iterator[Mark]:
-    """Yield the share at each point, that of the nearest one where it was inferred, and what has none."""
-    import numpy as np
-    from scipy.ndimage import distance_transform_cdt
-
+    """Yield the share at each point, and what has none."""
     x, y = answer.x.get("values"), answer.y.get("values")
-    table = np.array(answer.points, dtype=object).reshape(len(x), len(y)).T
-    state = np.vectorize(_state)(table)
-    share = np.vectorize(lambda one: np.nan if (p := one.probability_whirl) is None else p, "d")(table)
-    unknown = np.isnan(share)
-    near = distance_transform_cdt(unknown, "chessboard", return_distances=False, return_indices=True)
-    shown = np.where(state == "INFERRED", share[tuple(near)], share)
-    values = [[None if np.isnan(one) else float(one) for one in row] for row in shown]
-    hover = [[_hover(answer, one) for one in row] for row in table]
+    table = [answer.points[at :: len(y)] for at in range(len(y))]
     label = f"{quantity('probability_whirl').label} [-]"
+    values = [[one.probability_whirl for one in row] for row in table]
+    hover = [[_hover(answer, one) for one in row] for row in table]
     yield Cells(x=x, y=y, values=values, label=label, low=0.0, high=1.0, colours="cividis", hover=hover)
-    decided = np.vectorize(lambda one: str(one.decision or one.get("inferred_decision")))(table)
-    refused = (state == "REFUSED") | ((state == "INFERRED") & (decided == "None"))
+    refused = [[_state(one) == "REFUSED" for one in row] for row in table]
+    undecided = [[one.decision == "UNDECIDED" for one in row] for row in table]
     crossed: dict[str, Any] = {"name": "refused", "strokes": "xxxx", "fill": "#9a9a9a"}
     striped: dict[str, Any] = {"name": "undecided: the runs, or their drift, allow no verdict"}
-    for where, look in ((refused, crossed), (decided == "UNDECIDED", striped)):
-        if where.any():
-            yield Hatched(x=x, y=y, where=where.tolist(), **look)
-    if (state == "INFERRED").any():
-        was_run = [one for one in answer.points if one.runs]
-        name = "was run; elsewhere the points around agree"
-        at: dict[str, Any] = {"x": [one.x for one in was_run], "y": [one.y for one in was_run]}
-        yield Trace(**at, name=name, line="", marker="o", size=2.2, is_open=True, has_halo=True, width=0.5)
+    for where, look in ((refused, crossed), (undecided, striped)):
+        if any(map(any, where)):
+            yield Hatched(x=x, y=y, where=where, **look)
 
 
 def _state(point: Part) -> str:

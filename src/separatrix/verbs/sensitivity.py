@@ -91,10 +91,9 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
     from separatrix.verbs.answer_records import SensitivityAnswer
     from separatrix.verbs.parts.cage_of_study import reference
-    from separatrix.verdict.drawn_frictions import frictions_to_draw
-    from separatrix.verdict.draws import uncertain_inputs
-    from separatrix.verdict.input_shares import uncertain_study
+    from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
     from separatrix.verdict.long_jobs import made_into
+    from separatrix.verdict.uncertain_study import uncertain_study
 
     samples = options.samples
     if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:
@@ -123,8 +122,7 @@ def refusals(study: Study) -> Iterator[str]:
 
 def _drawable(solution: Solution) -> None:
     from separatrix.study.candidates import ranking_question, required_environment
-    from separatrix.verdict.drawn_frictions import frictions_to_draw
-    from separatrix.verdict.draws import uncertain_inputs
+    from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
 
     study = solution.study
     required_environment(study, ranking_question(study))

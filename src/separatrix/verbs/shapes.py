@@ -36,10 +36,11 @@ from separatrix.verbs.answer_records import (
     TractionAnswer,
 )
 from separatrix.verdict.judgement import Judgement
-from separatrix.verdict.map_records import MapAxis, StabilityMap
+from separatrix.verdict.parameter_axes import MapAxis
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked
+from separatrix.verdict.stability_map import StabilityMap
 from separatrix.verdict.swept_cases import Sweep
-from separatrix.verdict.uncertain_records import NotDrawn, UncertainMaterial
+from separatrix.verdict.uncertain_study import NotDrawn, UncertainMaterial
 
 if TYPE_CHECKING:
     import pandas as pd

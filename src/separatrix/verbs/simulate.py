@@ -76,9 +76,9 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.verbs.answer_records import SimulationAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.beyond_models import Moved, beyond_motion
+    from separatrix.verdict.crossing import cage_at
+    from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.reasons import force_limit, outcome_sentence
-    from separatrix.verdict.response import cage_at
-    from separatrix.verdict.which_ball import transmitted_force
 
     if options.animate not in (None, "gif"):
         raise InputError("--animate", "must be gif", got=printable(options.animate))

@@ -111,7 +111,7 @@ VERB = Verb(
     needs=("cage",),
     moves_a_cage=True,
     epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
-    "restitution factor from each initial disturbance.",
+    "restitution factor.",
     keeps_runs=True,
     refusals=refusals,
 )

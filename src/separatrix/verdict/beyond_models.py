@@ -37,9 +37,8 @@ from separatrix.study.study import (
     PocketShape,
     Study,
 )
-from separatrix.verdict.judgement import Judgement, KickCount, Verdict
+from separatrix.verdict.judgement import Judgement, KickCount, Verdict, transmitted_force
 from separatrix.verdict.stability_curve import RestitutionThreshold
-from separatrix.verdict.which_ball import transmitted_force
 
 STRONG: Ratio = 1.0
 """Kick over the pocket speed beyond which a cage with round pockets tilts (docs/theory/cage.md)."""

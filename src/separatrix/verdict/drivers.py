@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import expit, ndtri, stdtrit, xlogy
@@ -25,7 +26,40 @@ from scipy.special import expit, ndtri, stdtrit, xlogy
 from separatrix.ground.units import Array, Ratio
 from separatrix.study.study import Friction, Study
 from separatrix.verdict.draws import Case, UncertainInput
-from separatrix.verdict.uncertain_records import Drivers, Share, TestGain
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Share:
+    """Part of a variance that one input brings, and its 95 % interval [-]."""
+
+    name: str  # the input; chance is that of the single run
+    share: Ratio  # of the variance
+    share_low: Ratio  # lower end of the 95 % interval
+    share_high: Ratio  # upper end of the 95 % interval
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drivers:
+    """Which inputs decide whether a bearing of one case settles."""
+
+    name: str  # of the candidate
+    environment: str  # of the case
+    shares: tuple[Share, ...]
+    """Of the variance of the logit of P(settles), largest first, chance last; empty where `reason` states
+    why."""
+    reason: str  # why there are no shares; empty otherwise
+    skill: Ratio | None  # part of the deviance that the fit removes, on bearings left out
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestGain:
+    """How many undecided cases measuring one input settles on average, and which with what probability."""
+
+    name: str  # the input to measure
+    settled: Ratio  # mean number of cases that get a verdict
+    cases: tuple[str, ...]  # that may get one
+    chances: tuple[Ratio, ...]  # probability that it does, for each case
+
 
 PRIOR = 3.0  # standard deviation of the coefficients beforehand: a separation by one input alone stays finite
 FOLDS = 8  # parts of the bearings, each left out of one fit
@@ -42,23 +76,20 @@ def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> 
     is 1 where the bearing settles, shape (bearing,).
     """
     rare = int(min(settled.sum(), settled.size - settled.sum()))
-    if rare < FEWEST or not names:
-        return Drivers(
-            name=case.candidate,
-            environment=case.environment,
-            shares=(),
-            reason=f"{rare} of {settled.size} bearings end otherwise: too few to compare",
-            skill=None,
-        )
-    unseen = _left_out(scores, settled)
-    skill = 1.0 - _deviance(unseen, settled) / _deviance(np.full(settled.size, settled.mean()), settled)
-    shares = _shares(names, scores, settled) if skill >= LEAST_SKILL else ()
+    skill: Ratio | None = None
+    shares: tuple[Share, ...] = ()
+    reason = f"{rare} of {settled.size} bearings end otherwise: too few to compare"
+    if rare >= FEWEST and names:
+        of_mean = _deviance(np.full(settled.size, settled.mean()), settled)
+        skill = 1.0 - _deviance(_left_out(scores, settled), settled) / of_mean
+        shares = _shares(names, scores, settled) if skill >= LEAST_SKILL else ()
+        reason = f"the inputs explain {max(0.0, 100.0 * skill):.1f} % of the deviance only"
     return Drivers(
         name=case.candidate,
         environment=case.environment,
         shares=shares,
-        reason="" if shares else f"the inputs explain {max(0.0, 100.0 * skill):.1f} % of the deviance only",
-        skill=float(skill),
+        reason="" if shares else reason,
+        skill=skill,
     )
 
 

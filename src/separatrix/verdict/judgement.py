@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy
+from separatrix.cage.closed_forms import drift_rate_law, drifts, drive_energy, felt_mass
+from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.cage.outcome import Cause, RunOutcome
+from separatrix.chain.pocket_friction import REFERENCE
 from separatrix.ground.units import (
     Array,
     Hertz,
@@ -27,12 +30,13 @@ from separatrix.ground.units import (
     Second,
     Watt,
 )
+from separatrix.study.study import BallModel
 from separatrix.verdict import reasons
 from separatrix.verdict.reasons import CageMotion, cage_motion, kept_by_land, largest_room, left_pockets
 
 if TYPE_CHECKING:
     from separatrix.cage.ensemble import Ensemble
-    from separatrix.cage.moving_cage import MovingCage
+    from separatrix.chain.solution import Solution
 
 
 class Verdict(Enum):
@@ -176,7 +180,7 @@ def worst(counts: tuple[KickCount, ...]) -> int:
     Calm runs settle or roll. Of several it is the one with most whirls, then with most runs that the land
     keeps moving, then with most that roll.
     """
-    whirling = [i for i, count in enumerate(counts) if _mostly(count.whirls, count.runs)]
+    whirling = [i for i, count in enumerate(counts) if is_mostly(count.whirls, count.runs)]
 
     def goodness(i: int) -> tuple[int, int, int, int, int]:
         one = counts[i]
@@ -334,30 +338,92 @@ def decide(
     counts = counts or kick_counts(ensemble)
     at = worst(counts)
     count = counts[at]
-    if _mostly(count.whirls, count.runs):
+    if is_mostly(count.whirls, count.runs):
         return Verdict.UNSTABLE, reasons.whirls(ensemble, at)
     if wilson_interval(count.runs, count.runs)[0] <= FEW:
         return Verdict.UNDECIDED, reasons.too_few(count.runs)
-    if not _clear(count.calm + count.drifts, count.runs):
+    if not is_clear(count.calm + count.drifts, count.runs):
         return Verdict.UNDECIDED, reasons.mixed(ensemble, counts, at)
     if (ensemble.cause == Cause.NOT_FINITE).any():
         return Verdict.UNDECIDED, reasons.not_finite(ensemble)
-    if drifts(cage) or not _clear(count.calm, count.runs):
+    if drifts(cage) or not is_clear(count.calm, count.runs):
         return Verdict.UNDECIDED, reasons.drift(cage, ensemble, at)
     left = left_pockets(cage, ensemble) & is_calm(ensemble.outcome)
-    if any(not _clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
+    if any(not is_clear(int(n), count.runs) for n in count.runs - left.sum(axis=1)):
         return Verdict.UNDECIDED, reasons.out_of_pockets(cage, ensemble, left)
-    if any(not _clear(count.runs - count.kept_by_land, count.runs) for count in counts):
+    if any(not is_clear(count.runs - count.kept_by_land, count.runs) for count in counts):
         return Verdict.UNDECIDED, reasons.kept_moving(cage, ensemble)
     if ensemble.largest_offset.max() > largest_room(cage):
         return Verdict.UNDECIDED, reasons.beyond_room(cage, ensemble)
     return Verdict.STABLE, reasons.settles(cage, ensemble, at)
 
 
-def _mostly(count: int, runs: int) -> bool:
+def is_mostly(count: int, runs: int) -> bool:
     """Whether more than half of the runs do so, beyond the scatter of so few."""
     return wilson_interval(count, runs)[0] > FEW
 
 
-def _clear(count: int, runs: int) -> bool:
-    return _mostly(count, runs) and count / runs >= CLEAR
+def is_clear(count: int, runs: int) -> bool:
+    """Whether so large a share of the runs does so as a stable cage needs, beyond their scatter."""
+    return is_mostly(count, runs) and count / runs >= CLEAR
+
+
+ENOUGH: Ratio = 0.25
+"""Friction of a sustained whirl over what the races hold, up to which the ball of one state decides alone."""
+
+
+def transmitted_force(solution: Solution) -> Newton:
+    """Largest force that the races can transmit to the most loaded ball, f_BT (Q_i + Q_o) [N]."""
+    contacts = solution.bearing
+    return solution.study.film.race_friction * (contacts.inner.ellipse.load + contacts.outer.ellipse.load)
+
+
+def whirl_share(cage: MovingCage, capacity: Newton) -> Ratio:
+    r"""Friction of a sustained whirl over what the races hold [-].
+
+    :math:`f N / f_{BT}(Q_i + Q_o)` with the force :math:`N = 2.5\,\Omega c_p \sqrt{k m}` of an impact, whose
+    mass m is that which it feels.
+    """
+    speed = REFERENCE * abs(cage.cage_speed) * cage.half_play
+    return cage.ball_cage_friction * speed * math.sqrt(cage.ball_cage_stiffness * felt_mass(cage)) / capacity
+
+
+def judge_by_ball(
+    solution: Solution, friction: Ratio, judged: Callable[[MovingCage], Judgement]
+) -> Judgement:
+    """Judge the cage of a solved study at a friction by the ball that decides: see `judge_solution`."""
+    level, cage = solution.design.ball_model, moving_cage(solution, friction)
+    found, share = judged(cage), whirl_share(cage, transmitted_force(solution))
+    if level is not BallModel.AUTO:
+        return found
+    part = f"{100.0 * share:.2g} % of what the races hold"
+    because = f"Friction of a whirl reaches {part}"
+    if share <= ENOUGH:
+        because += f": below {100.0 * ENOUGH:g} % one state is enough."
+    elif found.verdict is Verdict.STABLE:
+        because = "A cage that is stable with one state is stable among free balls."
+    else:
+        because += f"; with one state the verdict is {found.verdict.name}."
+        found = judged(moving_cage(solution, friction, BallModel.FREE))
+    return replace(found, ball_reason=because)
+
+
+def judge_solution(solution: Solution, friction: Ratio, run: Callable[[MovingCage], Ensemble]) -> Judgement:
+    """Judge the cage of a solved study at a friction by the ball that decides.
+
+    That is the one of the study, or one state until free balls have to be asked. The critical friction with
+    one state is 0.74 to 1.00 of that among free balls (ten bearings, the worse of two speeds): its STABLE is
+    safe, its UNSTABLE may be too early. They agree while the friction of a sustained whirl stays below a
+    quarter of what the races hold.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of the chain.
+    friction : float
+        Ball on cage [-].
+    run : callable
+        Runs the ensemble of a cage, always with the same settings.
+    """
+    capacity = transmitted_force(solution)
+    return judge_by_ball(solution, friction, lambda cage: judge(cage, run(cage), capacity=capacity))

@@ -58,11 +58,11 @@ NAMES = tuple(field.name for field in fields(Ensemble))
 AT_WORK: list[Stop] = []
 """Flags of the jobs of this process that are at work."""
 
-MORE = 1.2
-"""What a place takes at least, in parts of what it took so far."""
+UNDER_WAY = 0.25
+"""What a run of a place under way counts, beside one of a finished place: short runs end first."""
 
-BEGUN = 0.1
-"""Share of its runs after which a place is expected to go on as it began."""
+LEAST_LEFT = 0.2
+"""Share of its load that a place under way takes at least before it ends."""
 
 
 class Load(NamedTuple):
@@ -70,16 +70,13 @@ class Load(NamedTuple):
 
     runs: float = 1.0  # of so many; or just one piece of work
     dear: float = 1.0  # time of a run beside that of others
-    follow: float = 0.0  # places like it that will be wanted once it is known, on average
 
 
 class Work:
     """How far a job is, by the time that its places took and the runs that they made for it.
 
-    A place is expected to take the time spent in all places of as many runs, over the number of those that
-    are finished: short ones finish first, so that their own mean is too low (for exponentially distributed
-    times this is the likeliest mean). Before one is finished it goes on as it began, or as all did. Places
-    whose runs were kept by an earlier job say nothing of the others.
+    What is left goes on at the pace of what was made; a place under way takes at least a fifth of its load
+    more. Places whose runs were kept by an earlier job say nothing of the others.
     """
 
     def __init__(self) -> None:
@@ -104,7 +101,7 @@ class Work:
             self._spent.setdefault(place, (whole, self.loads[place].runs))
 
     def finish(self, place: Hashable) -> None:
-        """Note that a place is finished, and all that follow from it are known."""
+        """Note that a place is finished."""
         with self._lock:
             self._finished.add(place)
 
@@ -112,27 +109,17 @@ class Work:
         """Work done and all that is expected [s], of these threads; a place keeps one busy, no more."""
         with self._lock:
             done = sum(spent for spent, _ in self._spent.values())
-            known = {
-                place: self._spent[place] for place in self.loads.keys() & self._spent.keys() - self._kept
-            }
-            units = sum(made * self.loads[place].dear for place, (_, made) in known.items())
-            rate = sum(spent for spent, _ in known.values()) / units if units else 0.0
-            alike: dict[float, tuple[Second, int]] = {}
-            for place, (spent, _) in known.items():
-                whole, count = alike.get(self.loads[place].runs, (0.0, 0))
-                alike[self.loads[place].runs] = whole + spent, count + (place in self._finished)
-            left = longest = 0.0
-            for place in self.loads.keys() - self._finished:
-                load, (spent, made) = self.loads[place], self._spent.get(place, (0.0, 0.0))
-                expected = rate * load.runs * load.dear
-                whole, count = alike.get(load.runs, (0.0, 0))
-                if count:
-                    expected = whole / count
-                elif made > BEGUN * load.runs:
-                    expected = spent * load.runs / made
-                rest = max(expected, MORE * spent) - spent
-                left, longest = left + rest + load.follow * expected, max(longest, rest)
-        return done, done + max(left, threads * longest) if rate else math.inf
+            made, left, spent_there = 0.0, [0.0], 0.0
+            for place, load in self.loads.items():
+                spent, runs = self._spent.get(place, (0.0, 0.0))
+                if place not in self._finished:
+                    left.append(load.dear * max(load.runs - runs, LEAST_LEFT * load.runs))
+                if place not in self._kept:
+                    whole = load.runs if place in self._finished else UNDER_WAY * min(runs, load.runs)
+                    made, spent_there = made + load.dear * whole, spent_there + spent
+            if spent_there == 0.0:
+                return done, math.inf
+            return done, done + spent_there / made * max(sum(left), threads * max(left))
 
 
 def scattered(places: Iterable[Place]) -> list[Place]:
@@ -255,18 +242,6 @@ class Runner:
         return joined(
             [self.ensemble(cage, settings, kicks=kicks, runs=n, first_run=first) for first, n in parts]
         )
-
-    def alone(self, work: Callable[[], Answer]) -> Answer:
-        """Result of a single piece of work, in a thread so that an interrupt ends its runs.
-
-        `Interrupted` has nothing finished: the piece is no answer.
-        """
-        try:
-            return self.work_out(
-                lambda _: work(), [None], into=lambda found: found[None], progress=lambda *_: None
-            )
-        except Interrupted:
-            raise Interrupted from None
 
     def work_out(
         self,

@@ -1,4 +1,4 @@
-"""Axes of a map or a sweep, ``PARAM=LOW..HIGH[unit][:N][:log]``, and the cases of a sweep."""
+"""What a map or a sweep varies: parameters, axes ``PARAM=LOW..HIGH[unit][:N][:log]``, and cases."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import math
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from separatrix.ground.errors import InputError, noted, together
+from separatrix.ground.schema import keys_of
 from separatrix.ground.toml import Kind, nearest, path_text, read_text
 from separatrix.ground.units import NUMBER, parse, shown
-
-if TYPE_CHECKING:
-    from separatrix.verdict.map_records import MapAxis, Parameter
+from separatrix.study.keys import SECTIONS, SETTINGS, WHOLE, numbers_of, with_values
+from separatrix.study.study import Film, Study, Wear
 
 FEWEST, MOST = 2, 1000  # points of an axis
 POINTS = 10  # points of an axis of a sweep, unless it states a number
@@ -33,6 +33,85 @@ Case = Mapping[str, float]
 _NUMBER = re.compile(NUMBER)
 
 
+RESTITUTION, FRICTION, KICK = "restitution_factor", "ball_cage_friction", "kick"
+RACE_FRICTION = "film.race_friction"
+THICKNESS = "film.thickness"  # of a film; a map may begin at 0, where the races are bare
+SHORT = {"cage.ball_cage_friction": FRICTION}  # so that one parameter has one name
+LONG = {name: key for key, name in SHORT.items()}
+_OF_FILM = ("film.elastic_modulus", "film.poisson_ratio")
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number that a map varies: its name in a study file, and the SI unit it is written in."""
+
+    name: str  # as in a study file
+    unit: str  # in which values are written, SI
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it takes whole numbers only."""
+        return self.unit == WHOLE
+
+
+def parameters() -> dict[str, Parameter]:
+    """Every parameter a map can vary, by name."""
+    names = {RESTITUTION: "-", FRICTION: "-", KICK: "m/s"}
+    for section, record in SECTIONS.items():
+        names |= {f"{section}.{key}": unit for key, unit in numbers_of(record).items()}
+    names |= {f"film.wear.{key}": unit for key, unit in numbers_of(Wear).items()}
+    left = {name: unit for name, unit in names.items() if name not in (*SETTINGS, *SHORT)}
+    return {name: Parameter(name, unit) for name, unit in left.items()}
+
+
+def other_keys() -> list[str]:
+    """Keys of a study that no map can vary: texts, lists, and how the ensemble is drawn."""
+    known = parameters()
+    keys = [f"{section}.{name}" for section, record in SECTIONS.items() for name in keys_of(record)]
+    return [key for key in keys if key not in known and key not in SHORT]
+
+
+def varied(study: Study, values: Mapping[str, float]) -> Study:
+    """Return the study with other values of some parameters, all at once; `InputError` if it is refused.
+
+    Restitution factor and kick are not keys of a study; the map gives them to the cage and to its runs. A
+    film of zero thickness is bare races.
+    """
+    keys = {LONG.get(name, name): value for name, value in values.items() if name not in (RESTITUTION, KICK)}
+    for key in keys:
+        section = key.partition(".")[0]
+        if key in _OF_FILM and study.film.body is None:
+            raise InputError("[film]", "has no material whose properties could vary")
+        if key.startswith("film.wear.") and study.film.wear is None:
+            raise InputError("[film]", "has no wear that could vary")
+        if getattr(study, section, study) is None:
+            raise InputError(f"[{section}]", "is missing")
+    if keys.get(THICKNESS) == 0.0:
+        keys = {
+            key: value for key, value in keys.items() if not key.startswith("film.") or key == RACE_FRICTION
+        }
+        study = replace(study, film=Film(race_friction=study.film.race_friction))
+    return with_values(study, keys) if keys else study
+
+
+def value_in(study: Study, name: str) -> float | None:
+    """Value of a key in the study; None where it has none, or is not one of its keys."""
+    value: object = study
+    for step in name.split("."):
+        value = getattr(value, step, None)
+    return value if isinstance(value, int | float) else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapAxis:
+    """One parameter of a map: its name and SI unit, its rising values, and its value in the study."""
+
+    parameter: str  # its name in a study file
+    unit: str  # of the values, SI
+    values: tuple[float, ...]  # rising
+    here: float | None = None  # its value in the study; null if there is none
+
+
 def read_axis(text: str, option: str, points: int) -> MapAxis:
     """Axis of a map from its text, for instance ``cage.pocket_clearance=0.1..1mm:50:log``.
 
@@ -44,8 +123,6 @@ def read_axis(text: str, option: str, points: int) -> MapAxis:
     InputError
         Not such a text, no such parameter, or no rising range in its unit.
     """
-    from separatrix.verdict.map_records import MapAxis
-
     name, found, rest = text.partition("=")
     if not found:
         raise InputError(option, "needs a parameter, = and a range", got=shown(text), cure=EXAMPLE)
@@ -71,8 +148,6 @@ def read_axis(text: str, option: str, points: int) -> MapAxis:
 
 def find_parameter(name: str, option: str) -> Parameter:
     """Parameter of a name; `InputError` with the nearest one if there is none or it is not a number."""
-    from separatrix.verdict.map_records import SHORT, other_keys, parameters
-
     known = parameters()
     name = SHORT.get(name, name)
     if name in known:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
-from itertools import chain
 from math import log
 from typing import Any, NamedTuple
 
-from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
@@ -32,10 +30,9 @@ from separatrix.verdict.beyond_models import (
     pocket_of,
     reason,
 )
-from separatrix.verdict.critical_friction import CriticalFriction, expected_runs
-from separatrix.verdict.drawn_frictions import DrawnBearings, drawn_bearings
-from separatrix.verdict.draws import Case
-from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.crossing import GrowthCounter
+from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
+from separatrix.verdict.judgement import judge_solution, transmitted_force
 from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.ranking_records import (
     MeanFriction,
@@ -52,28 +49,24 @@ from separatrix.verdict.ranking_records import (
     safety_interval,
     same_rank,
 )
-from separatrix.verdict.response import GrowthCounter
 from separatrix.verdict.safety_factor import (
     WIDE,
     CageLimit,
     between,
     cage_limit,
-    ends_of_each,
     safety_factor,
     spread,
 )
 from separatrix.verdict.stability_curve import (
-    OWN_DAMPING,
-    Node,
+    CriticalFriction,
     RestitutionThreshold,
     StabilityCurve,
-    Tracer,
+    critical_friction,
     curve_of_points,
+    expected_load,
     restitution_threshold,
-    rising,
     threshold_factors,
 )
-from separatrix.verdict.which_ball import judge_solution, transmitted_force
 
 
 class Asked(NamedTuple):
@@ -84,14 +77,16 @@ class Asked(NamedTuple):
     is_paper: bool = False
 
 
-class Knot(NamedTuple):
-    """A point of a pocket's curve, by the paper's model."""
+@dataclass(frozen=True, slots=True)
+class Knot:
+    """A point of a pocket's curve, by the paper's model; None is the cage's own race damping."""
 
     pocket: Pocket
-    node: Node
+    restitution_factor: Ratio | None
 
 
-class Limit(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Limit:
     """Critical friction of a pocket's cage by the study's model; with another land clearance, if given."""
 
     pocket: Pocket
@@ -99,8 +94,10 @@ class Limit(NamedTuple):
 
 
 Piece = Asked | Knot | Limit | Case
-"""What is computed in one go; a case is a verdict on drawn bearings."""
-Found = Judgement | CriticalFriction | CageLimit
+"""What is computed in one go, a case for a verdict on drawn bearings."""
+
+Findings = Mapping[Piece, Any]
+"""What was computed: a `Judgement`, a `CriticalFriction` of a knot, a `CageLimit` of a limit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,29 +109,28 @@ class _Question:
     cages: Mapping[Pocket, Solution]
     is_paper: bool  # whether the study's model is the paper's
     spreads: Mapping[str, float]  # by candidate: what uncertain inputs do to its critical friction
-    paper: Mapping[Pocket, Solution]  # the same by the paper's model
-    tracers: Mapping[Pocket, Tracer]
+    counters: Mapping[Pocket, GrowthCounter]  # of the same cages by the paper's model, as the next
+    paper: Mapping[Pocket, Solution]
+    factors: Sequence[Ratio]  # restitution factors of the curves
     pockets: Mapping[str, Pocket]
     reference: Pocket
-    ends: Sequence[tuple[Pocket, ...]]  # of the pockets that differ in stiffness alone
     wide: Limit | None  # on a land that leaves the reference cage to its pockets, if its own does not
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
     beside: Sequence[Asked]  # of those by the paper's, in the bearing's own environment
     runner: Runner
 
+    @property
+    def pieces(self) -> list[Piece]:
+        """What is wanted: the longest first, as its runs wait for each other; then verdicts.
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Findings:
-    """What was computed, by pocket; an interrupt leaves entries out."""
-
-    points: Mapping[Pocket, Sequence[CriticalFriction]]
-    here: CriticalFriction | None
-    limits: Mapping[Limit, CageLimit]
-    judgements: Mapping[Asked, Judgement]
-    drawn: Mapping[Case, Judgement]
-    traced: Mapping[Pocket, bool]
-    complete: bool
+        So an interrupt leaves some of these.
+        """
+        verdicts = [*scattered(self.keys), *scattered(self.beside)]
+        cases = scattered(self.drawn.friction) if self.drawn else []
+        own = Knot(self.reference, None)
+        knots = [Knot(pocket, eta) for pocket in self.cages for eta in self.factors]
+        return [*_limits(self, {}), own, *verdicts, *cases, *knots]
 
 
 def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
@@ -162,9 +158,11 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
         for place in asked.environments
     }
     means = {name: overall(map(one.frictions.get, asked.environments)) for name, one in solved.items()}
-    question = _question(study, asked, solved, [frictions[environment], *frictions.values(), means], runner)
+    tables = [frictions[environment], *frictions.values(), means]
+    question = _question(study, asked, solved, tables, runner or Runner())
+    pieces = question.pieces
 
-    def ranking(found: _Findings) -> Ranking:
+    def ranking(found: Findings) -> Ranking:
         ranked = {name: _ranked(question, found, table, name) for name, table in frictions.items()}
         reference = question.cages[question.reference]
         return Ranking(
@@ -188,21 +186,27 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             **_on_a_wide_land(question, found),
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
-            complete=found.complete,
+            complete={*pieces, *_limits(question, found)} <= {*found},
         )
 
-    return _compute(question, ranking)
+    return question.runner.work_out(
+        partial(_computed, question),
+        pieces,
+        into=ranking,
+        more=lambda _, found: _limits(question, found),
+        load=partial(_load, question),
+    )
 
 
 def _notes(
-    study: Study, asked: RankingQuestion, question: _Question, found: _Findings, rows: Sequence[Row]
+    study: Study, asked: RankingQuestion, question: _Question, found: Findings, rows: Sequence[Row]
 ) -> tuple[str, ...]:
     """Sentences for under the table: whose curve it is, and where chain and motion leave their models."""
-    points = [*chain.from_iterable(found.points.values()), *([found.here] if found.here else [])]
-    notes = [note for one in question.solved for note in one.notes]
-    notes += [note for limit in found.limits.values() for note in limit.notes]
-    notes += [note for tracer in question.tracers.values() for note in tracer.counter.cage.notes]
-    notes += [note for point in points for note in point.notes]
+    knots = [Knot(pocket, eta) for pocket in question.cages for eta in (*question.factors, None)]
+    limits = (one for piece, one in found.items() if isinstance(piece, Limit))
+    points = (found[knot] for knot in knots if knot in found)
+    paper = (counter.cage for counter in question.counters.values())
+    notes = [note for one in (*question.solved, *limits, *paper, *points) for note in one.notes]
     notes += [other_than_candidates(study, asked)] if len(question.cages) > 1 else []
     if question.drawn and (failures := question.drawn.failures):
         share = f"{len(failures)} of {study.stability.runs}"
@@ -219,12 +223,9 @@ def _question(
     asked: RankingQuestion,
     solved: Mapping[str, Solution],
     tables: Sequence[Mapping[str, MeanFriction | None]],
-    runner: Runner | None,
+    runner: Runner,
 ) -> _Question:
-    """What a ranking computes for tables of mean frictions, that of the bearing's own environment first.
-
-    The curve of the reference pocket is shown; of the others only the thresholds count.
-    """
+    """What a ranking computes for tables of mean frictions, that of the bearing's own environment first."""
     pockets = {name: pocket_of(one) for name, one in solved.items()}
     cages = {pockets[name]: one for name, one in solved.items()}
     is_paper = study.cage is not None and study.cage.is_of_paper
@@ -233,16 +234,8 @@ def _question(
     every = {(pockets[n], f.mean) for table in tables for n, f in table.items() if f is not None}
     keys = [Asked(*each) for each in sorted(every)]
     own = {Asked(pockets[n], f.mean, True) for n, f in tables[0].items() if f is not None}
-    runner = runner or Runner()
-    empty = {pocket: moving_cage(one, 0.0) for pocket, one in paper.items()}
-    tracers = {
-        pocket: Tracer(
-            GrowthCounter(empty[pocket], study.stability, runner),
-            threshold_factors(study.stability),
-            band=False,
-            frictions=None if pocket == reference else [key.friction for key in keys if key.pocket == pocket],
-        )
-        for pocket in cages
+    counters = {
+        pocket: GrowthCounter(moving_cage(one, 0.0), study.stability, runner) for pocket, one in paper.items()
     }
     is_by_land = 0.0 < reference.land < reference.clearance
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
@@ -250,16 +243,16 @@ def _question(
     if drawn and not is_paper:
         spreads = {name: spread([own[name] for own in drawn.solved]) for name in solved}
     return _Question(
-        settings=settings_for(study.stability, empty[reference]),
+        settings=counters[reference].settings,
         solved=[*solved.values()],
         cages=cages,
         is_paper=is_paper,
         spreads=spreads,
         paper=paper,
-        tracers=tracers,
+        counters=counters,
+        factors=threshold_factors(study.stability),
         pockets=pockets,
         reference=reference,
-        ends=ends_of_each(cages),
         wide=Limit(reference, WIDE * reference.clearance) if is_by_land and not is_paper else None,
         drawn=drawn,
         keys=keys,
@@ -268,46 +261,7 @@ def _question(
     )
 
 
-def _compute(question: _Question, ranking: Callable[[_Findings], Ranking]) -> Ranking:
-    """Critical frictions and verdicts, all in one row of work for the threads, made into a ranking."""
-    keys, cases = question.keys, list(question.drawn.friction) if question.drawn else []
-    nodes = [Knot(pocket, node) for pocket, tracer in question.tracers.items() for node in tracer.first]
-    limits = _limits(question, {})
-    verdicts: list[Asked | Case] = [*keys, *question.beside, *cases]
-
-    def ranked(results: Mapping[Piece, Found]) -> Ranking:
-        points = {k: _points_of(results, k) for k in question.cages}
-        here = points[question.reference].pop((OWN_DAMPING, None), None)
-        judged = {one: found for one, found in results.items() if isinstance(found, Judgement)}
-        traced = {k: tracer.complete(points[k]) for k, tracer in question.tracers.items()}
-        known = {one: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)}
-        every = len(judged) == len(verdicts) and {*_limits(question, known)} <= {*known}
-        return ranking(
-            _Findings(
-                points={k: rising(found.values()) for k, found in points.items()},
-                here=here,
-                limits=known,
-                judgements={one: found for one, found in judged.items() if isinstance(one, Asked)},
-                drawn={one: found for one, found in judged.items() if isinstance(one, Case)},
-                traced=traced,
-                complete=here is not None and all(traced.values()) and every,
-            )
-        )
-
-    own = Knot(question.reference, (OWN_DAMPING, None))
-    # the longest first, as its runs wait for each other; then verdicts, so that an interrupt leaves some
-    judged: list[Piece] = [*scattered(keys), *scattered(question.beside), *scattered(cases)]
-    pieces: list[Piece] = [*limits, own, *judged, *nodes]
-    return question.runner.work_out(
-        lambda piece: _computed(question, piece),
-        pieces,
-        into=ranked,
-        more=lambda piece, results: _more(question, piece, results),
-        load=lambda piece: _load(question, piece),
-    )
-
-
-def _limits(question: _Question, known: Mapping[Limit, CageLimit]) -> list[Limit]:
+def _limits(question: _Question, found: Findings) -> list[Limit]:
     """Critical frictions that are wanted: of pockets that differ in stiffness alone those of the ends.
 
     If the ends say nothing of those between them, all. The reference cage's on a wide land too, if its land
@@ -315,50 +269,48 @@ def _limits(question: _Question, known: Mapping[Limit, CageLimit]) -> list[Limit
     """
     if question.is_paper:
         return []
-    wanted = []
-    for ends in question.ends:
-        limits = [Limit(one) for one in ends]
-        soft, stiff = known.get(limits[0]), known.get(limits[-1])
+    wanted = [question.wide] if question.wide else []
+    for alike in sorted({_alike(question, one) for one in question.cages}):
+        ends = dict.fromkeys((alike[0], alike[-1]))
+        soft, stiff = found.get(Limit(alike[0])), found.get(Limit(alike[-1]))
         is_open = soft is not None and stiff is not None and between(soft, stiff, 0.5) is None
-        alike = {one for one in question.cages if one._replace(stiffness=ends[0].stiffness) == ends[0]}
-        wanted += [Limit(one) for one in sorted(alike)] if is_open else limits
-    return [*wanted, *([question.wide] if question.wide else [])]
+        wanted += [Limit(one) for one in (alike if is_open else ends)]
+    return wanted
 
 
-def _limit_of(question: _Question, found: _Findings, pocket: Pocket) -> CageLimit | None:
+def _alike(question: _Question, pocket: Pocket) -> tuple[Pocket, ...]:
+    """Pockets that differ from this one in stiffness alone, the softest first."""
+    alike = (one for one in question.cages if one._replace(stiffness=pocket.stiffness) == pocket)
+    return tuple(sorted(alike))
+
+
+def _limit_of(question: _Question, found: Findings, pocket: Pocket) -> CageLimit | None:
     """Critical friction of a pocket, its own or that between those of the ends; None if not finished."""
-    if own := found.limits.get(Limit(pocket)):
+    alike = _alike(question, pocket)
+    soft, own, stiff = (found.get(Limit(one)) for one in (alike[0], pocket, alike[-1]))
+    if own is not None or soft is None or stiff is None:
         return own
-    first, last = next(
-        (ends[0], ends[-1])
-        for ends in question.ends
-        if pocket._replace(stiffness=ends[0].stiffness) == ends[0]
-    )
-    soft, stiff = found.limits.get(Limit(first)), found.limits.get(Limit(last))
-    if soft is None or stiff is None or first == last:
-        return None
-    share = log(pocket.stiffness / first.stiffness) / log(last.stiffness / first.stiffness)
+    share = log(pocket.stiffness / alike[0].stiffness) / log(alike[-1].stiffness / alike[0].stiffness)
     return between(soft, stiff, share)
 
 
 def _load(question: _Question, piece: Piece) -> Load:
-    """Work of a piece: runs of a verdict, of a limit, or those of a node."""
+    """Work of a piece: runs of a verdict, of a limit, or those of a point."""
     if isinstance(piece, Knot):
-        return question.tracers[piece.pocket].load(piece.node)
+        return expected_load(question.settings, band=piece.restitution_factor is None)
     kicks = len(question.settings.kicks)
     if isinstance(piece, Limit):
-        return Load(kicks * expected_runs(question.settings, band=False))
+        return Load(kicks * expected_load(question.settings, band=False).runs)
     return Load(kicks * question.settings.runs)
 
 
-def _computed(question: _Question, piece: Piece) -> Found:
+def _computed(question: _Question, piece: Piece) -> object:
     settings, runner = question.settings, question.runner
     if isinstance(piece, Case):
-        if question.drawn is None:
-            raise LookupError(piece)
-        return question.drawn.judge(piece, settings.kicks, runner)
+        return question.drawn and question.drawn.judge(piece, settings.kicks, runner)
     if isinstance(piece, Knot):
-        return question.tracers[piece.pocket].point(piece.node)
+        counter, eta = question.counters[piece.pocket], piece.restitution_factor
+        return critical_friction(counter.cage, eta, settings, counter=counter, band=eta is None)
     if isinstance(piece, Limit):
         solution = question.cages[piece.pocket]
         highest = max(key.friction for key in question.keys)
@@ -368,38 +320,25 @@ def _computed(question: _Question, piece: Piece) -> Found:
     return judge_solution(solved[piece.pocket], piece.friction, run)
 
 
-def _more(question: _Question, piece: Piece, results: Mapping[Piece, Found]) -> list[Piece]:
-    """Nodes of the same curve, and limits between two, that are wanted once this one is known."""
-    if isinstance(piece, Limit):
-        known = {one: f for one, f in results.items() if isinstance(one, Limit) and isinstance(f, CageLimit)}
-        return [one for one in _limits(question, known) if one not in known]
-    if not isinstance(piece, Knot):
-        return []
-    wanted = question.tracers[piece.pocket].more(piece.node, _points_of(results, piece.pocket))
-    return [Knot(piece.pocket, node) for node in wanted]
+def _points(question: _Question, found: Findings, pocket: Pocket) -> list[CriticalFriction]:
+    """Finished points of the curve of a pocket, rising restitution factors first."""
+    knots = (Knot(pocket, eta) for eta in question.factors)
+    return [found[knot] for knot in knots if knot in found]
 
 
-def _points_of(results: Mapping[Piece, Found], pocket: Pocket) -> dict[Node, CriticalFriction]:
-    """Points of the curve of one pocket."""
-    return {
-        one.node: found
-        for one, found in results.items()
-        if isinstance(one, Knot) and isinstance(found, CriticalFriction) and one.pocket == pocket
-    }
-
-
-def _curve(question: _Question, found: _Findings) -> StabilityCurve | None:
+def _curve(question: _Question, found: Findings) -> StabilityCurve | None:
     """Stability curve of the reference cage; None if an interrupt left no point of it."""
-    points, shown = found.points[question.reference], question.settings.restitution_factors
+    points, shown = _points(question, found, question.reference), question.settings.restitution_factors
+    complete, here = len(points) == len(question.factors), found.get(Knot(question.reference, None))
     points = [point for point in points if not shown or point.restitution_factor in shown]
     if not points:
         return None
-    cage, complete = question.tracers[question.reference].counter.cage, found.traced[question.reference]
-    return curve_of_points(cage, question.settings, points, band=False, here=found.here, complete=complete)
+    cage = question.counters[question.reference].cage
+    return curve_of_points(cage, question.settings, points, band=False, here=here, complete=complete)
 
 
 def _ranked(
-    question: _Question, found: _Findings, table: Mapping[str, MeanFriction | None], environment: str
+    question: _Question, found: Findings, table: Mapping[str, MeanFriction | None], environment: str
 ) -> tuple[Row, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
     known = {name: friction for name, friction in table.items() if friction is not None}
@@ -418,7 +357,7 @@ def _ranked(
     )
 
 
-def _row(question: _Question, found: _Findings, case: Case, friction: MeanFriction) -> Ranked | NotFinished:
+def _row(question: _Question, found: Findings, case: Case, friction: MeanFriction) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
     pocket = question.pockets[case.candidate]
     eta = question.cages[pocket].restitution.restitution_factor
@@ -436,16 +375,16 @@ def _row(question: _Question, found: _Findings, case: Case, friction: MeanFricti
         restitution_factor=eta,
         reason=NOT_FINISHED,
     )
-    judgement = found.judgements.get(Asked(pocket, friction.mean))
+    judgement = found.get(Asked(pocket, friction.mean))
     if judgement is None:
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
-    row = replace(row, judgement=judgement, over_inputs=found.drawn.get(case))
-    threshold = _threshold(found, pocket, friction)
+    row = replace(row, judgement=judgement, over_inputs=found.get(case))
+    threshold = _threshold(question, found, pocket, friction)
     limit = _limit_of(question, found, pocket)
     by_paper = Asked(pocket, friction.mean, True)
-    papers = judgement if question.is_paper else found.judgements.get(by_paper)
+    papers = judgement if question.is_paper else found.get(by_paper)
     is_missing = papers is None and by_paper in question.beside
     if threshold is None or is_missing or (limit is None and not question.is_paper):
         missing = "threshold" if question.is_paper else "critical friction, or the paper's answer"
@@ -471,19 +410,20 @@ def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> d
     return own | asdict(safety_factor(limit, friction.mean, friction.interval(), spread))
 
 
-def _on_a_wide_land(question: _Question, found: _Findings) -> dict[str, Any]:
+def _on_a_wide_land(question: _Question, found: Findings) -> dict[str, Any]:
     """Critical friction on a land that leaves the cage to its pockets, as fields; none if not asked."""
-    if question.wide is None or question.wide not in found.limits:
+    if question.wide is None or question.wide not in found:
         return {}
-    limit = found.limits[question.wide].own
-    values = {name.replace("own", "wide_land"): value for name, value in limit.items()}
+    values = {name.replace("own", "wide_land"): value for name, value in found[question.wide].own.items()}
     return {"wide_land_clearance": question.wide.land_clearance, **values}
 
 
-def _threshold(found: _Findings, pocket: Pocket, friction: MeanFriction) -> RestitutionThreshold | None:
+def _threshold(
+    question: _Question, found: Findings, pocket: Pocket, friction: MeanFriction
+) -> RestitutionThreshold | None:
     """Threshold at the mean friction, its interval widened by those at the ends of the friction's."""
-    points = found.points[pocket]
-    if not found.traced[pocket]:
+    points = _points(question, found, pocket)
+    if len(points) < len(question.factors):
         return None
     value, *ends = (restitution_threshold(points, f) for f in (friction.mean, *friction.interval()))
     return replace(value, low=min(t.low for t in ends), high=max(t.high for t in ends))

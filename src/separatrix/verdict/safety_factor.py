@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -15,13 +15,10 @@ from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Metre, MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
-from separatrix.verdict.beyond_models import Pocket
-from separatrix.verdict.critical_friction import lowest_crossing
-from separatrix.verdict.judgement import NORMAL_95
+from separatrix.verdict.crossing import SEARCHED_FRICTION, GrowthCounter, Side, ends_of, outermost
+from separatrix.verdict.judgement import ENOUGH, NORMAL_95, transmitted_force, whirl_share
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.reasons import ball_words
-from separatrix.verdict.response import SEARCHED_FRICTION, Crossing, GrowthCounter, Side
-from separatrix.verdict.which_ball import ENOUGH, transmitted_force, whirl_share
 
 HAND: Ratio = 0.42
 """Critical friction over sqrt(2 k M/Z)/C, within 0.1 for turbopumps (15 bearings, docs/theory/ranking.md)."""
@@ -108,38 +105,28 @@ def cage_limit(
 def _limit(
     cage: MovingCage, settings: StabilitySettings, runner: Runner, guess: Ratio | None = None
 ) -> CageLimit:
-    counter = GrowthCounter(cage, settings, runner)
-    found, kick, notes = lowest_crossing(counter, hand_estimate(cage) if guess is None else guess)
-    value, low, high = _ends(found)
+    counter, estimate = GrowthCounter(cage, settings, runner), hand_estimate(cage)
+    settings = counter.settings
+    responses = {kick: counter.response(None, kick) for kick in settings.kicks}
+    found, kick = outermost(responses, 0.5, settings.runs, estimate if guess is None else guess)
+    value, low, high = ends_of(found)
+    if isinstance(found, Side):
+        value, low, high = (0.0, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
     return CageLimit(
         own_critical_friction=value,
-        own_critical_friction_low=low,
+        own_critical_friction_low=low or 0.0,
         own_critical_friction_high=high,
         critical_kick=kick,
         critical_ball=ball_words(cage),
-        estimated_critical_friction=hand_estimate(cage),
-        notes=notes,
+        estimated_critical_friction=estimate,
+        notes=tuple(note for _, response in sorted(responses.items()) for note in response.notes),
     )
-
-
-def _ends(found: Crossing | Side) -> tuple[Ratio | None, Ratio, Ratio | None]:
-    if isinstance(found, Crossing):
-        return found.value, found.low, found.high
-    return (0.0, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
 
 
 def hand_estimate(cage: MovingCage) -> Ratio:
     """Critical friction by the closed law, 0.42 sqrt(2 k M/Z)/C with C of a slow push [-]."""
     stiff = 2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count
     return HAND * math.sqrt(stiff) / cage.slow_damping
-
-
-def ends_of_each(pockets: Iterable[Pocket]) -> list[tuple[Pocket, ...]]:
-    """Of pockets that differ in stiffness alone the softest and the stiffest; one that has none like it."""
-    alike: dict[Pocket, list[Pocket]] = {}
-    for one in sorted(pockets):
-        alike.setdefault(one._replace(stiffness=0.0), []).append(one)
-    return [tuple(dict.fromkeys((group[0], group[-1]))) for group in alike.values()]
 
 
 def between(soft: CageLimit, stiff: CageLimit, share: Ratio) -> CageLimit | None:

@@ -3,67 +3,162 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, TypeVar
+from typing import Annotated, Any
 
-from separatrix.cage.closed_forms import drift_rate_law, drifts
+from separatrix.cage.closed_forms import drift_rate_law, drifts, linear_critical_friction
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import MovingCage
+from separatrix.chain.impact_restitution import damping_ratio
+from separatrix.chain.impact_restitution import restitution_factor as nominal
 from separatrix.ground.units import MetrePerSecond, PerSecond, Ratio, Rows, Second
 from separatrix.study.study import StabilitySettings
-from separatrix.verdict.critical_friction import (
-    BAND_FEW,
-    BAND_MOST,
-    CriticalFriction,
-    LinearLimit,
-    critical_friction,
-    expected_runs,
-    linear_limit,
+from separatrix.verdict.crossing import (
+    BATCH,
+    END_RUNS,
+    SEARCHED_FRICTION,
+    Found,
+    GrowthCounter,
+    Side,
+    cage_at,
+    ends_of,
+    outermost,
 )
 from separatrix.verdict.long_jobs import Load, Runner
-from separatrix.verdict.response import SEARCHED_FRICTION, GrowthCounter, Side
 
-Point = TypeVar("Point")
-COARSE: tuple[Ratio, ...] = (0.0, 0.25, 0.5, 0.75, 0.875, 1.0)
-"""Restitution factors to begin with: closer before 1, where balls gripped by their races damp nothing, the
-critical friction falls to zero and a line from 0.75 would be taken for straight."""
+FACTORS: tuple[Ratio, ...] = (0.0, 1 / 16, *(i / 8 for i in range(1, 8)), 15 / 16, 1.0)
+"""Restitution factors of a curve, unless a study states them: closer where it bends. Towards 0 the damping
+ratio, which the linear limit follows, rises steeply; before 1, where balls gripped by their races damp
+nothing, the critical friction falls to zero."""
 
-FIRST_THREES = ((0.0, 0.25, 0.5), (0.5, 0.75, 1.0), (0.75, 0.875, 1.0))
-FINEST: Ratio = 1.0 / 32.0  # the least distance between two; all are halves of halves, so exact in binary
-Bends = Callable[[Point, Point, Point], bool]
-"""Whether the middle one of three points lies off the line between the others."""
+OUTER_FACTORS: tuple[Ratio, ...] = (0.0, 0.98, 1.0)
+"""Restitution factors beside those that a study gives, so that thresholds are solved over all of 0 to 1."""
 
-
-def finer(eta: Ratio, found: Mapping[Ratio, Point], bends: Bends[Point]) -> list[tuple[Ratio, Ratio]]:
-    """Neighbours half way between which a point is wanted once the point at `eta` is computed.
-
-    A middle that lies off the line between its neighbours has both its sides halved. Each decision depends on
-    three points only, so the points of a curve do not depend on their order.
-    """
-    wanted: list[tuple[Ratio, Ratio]] = []
-    for low, middle, high in _threes(eta):
-        known = [found[at] for at in (low, middle, high) if at in found]
-        if high - middle >= 2.0 * FINEST and len(known) == 3 and bends(*known):
-            halves = (low, middle), (middle, high)
-            wanted += [half for half in halves if 0.5 * sum(half) not in COARSE]
-    return wanted
-
-
-def _threes(eta: Ratio) -> Iterator[tuple[Ratio, Ratio, Ratio]]:
-    """Neighbours that `eta` completes: it is their middle, or one of the first."""
-    if eta in COARSE:
-        yield from (three for three in FIRST_THREES if eta in three)
-        return
-    gap = FINEST
-    while eta % (2.0 * gap) == 0.0:
-        gap *= 2.0
-    yield eta - gap, eta, eta + gap
-
-
+BAND_FEW, BAND_MOST = 0.1, 0.9  # shares of whirling runs at which a kick counts as settling, and as whirling
+MIDDLE_RUNS = 1.5  # runs spent on a critical friction that has its band, in parts of those of the settings
+APART = 1.4  # a guess of the ratio between two crossings of one kick; it costs or saves time only
 ETA = "restitution_factor"
-FLAT: Ratio = 0.002  # friction by which a line may miss a point, whatever the scatter of that
-OWN_DAMPING = -1.0  # in place of a restitution factor: the cage's own race damping
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CriticalFriction:
+    """Critical friction at one restitution factor; None where there is none, with the reason.
+
+    The intervals come from the number of runs. The ends of the band are None, too, where it was not computed.
+    """
+
+    restitution_factor: Ratio  # nominal, of the whole cage mass
+    critical_friction: Ratio | None = None  # at which half the runs whirl from the reference disturbance
+    critical_friction_low: Ratio | None = None  # below it nine in ten runs settle from every disturbance
+    critical_friction_high: Ratio | None = None  # above it nine in ten runs whirl from every disturbance
+    scatter_low: Ratio | None = None  # lower end of the 95 % interval of `critical_friction`
+    scatter_high: Ratio | None = None  # upper end of the 95 % interval of `critical_friction`
+    low_scatter_low: Ratio | None = None  # lower end of the interval of `critical_friction_low`
+    low_scatter_high: Ratio | None = None  # upper end of the interval of `critical_friction_low`
+    high_scatter_low: Ratio | None = None  # lower end of the interval of `critical_friction_high`
+    high_scatter_high: Ratio | None = None  # upper end of the interval of `critical_friction_high`
+    side: Side | None = None  # of one half on which P(whirl) lies throughout, if `critical_friction` is None
+    reason: str | None = None  # why one of the first three frictions is None
+    notes: tuple[str, ...] = ()  # on runs that do not show where their motion ends, a sentence each
+
+    @property
+    def height(self) -> Ratio:
+        """Critical friction, with 0 or the top of the searched range where there is none."""
+        if self.critical_friction is not None:
+            return self.critical_friction
+        return 0.0 if self.side is Side.ABOVE else SEARCHED_FRICTION
+
+
+_VALUES = (
+    ("critical_friction", "scatter_low", "scatter_high"),
+    ("critical_friction_low", "low_scatter_low", "low_scatter_high"),
+    ("critical_friction_high", "high_scatter_low", "high_scatter_high"),
+)
+"""Fields with value and interval of the critical friction, and of the lower and the upper end of its band."""
+
+_REASONS = {
+    Side.ABOVE: "{0:.0%} of the runs from {1:g} m/s whirl even at zero pocket friction",
+    Side.BELOW: f"under {{0:.0%}} of the runs from {{1:g}} m/s whirl below friction {SEARCHED_FRICTION:g}",
+}
+
+
+def critical_friction(
+    cage: MovingCage,
+    restitution_factor: Ratio | None,
+    settings: StabilitySettings,
+    *,
+    counter: GrowthCounter | None = None,
+    band: bool = True,
+) -> CriticalFriction:
+    """Friction at which half the runs whirl from the reference kick, and the band over all kicks.
+
+    Parameters
+    ----------
+    cage, settings
+        The friction of the cage is replaced, and its race damping unless `restitution_factor` is None.
+    restitution_factor : float or None
+        Nominal, of the whole cage mass [-]; None for the cage's own race damping.
+    counter : GrowthCounter, optional
+        Counts the runs.
+    band : bool
+        Whether the other kicks and the band are wanted; without it half the runs are enough.
+    """
+    counts = counter or GrowthCounter(cage, settings)
+    settings, eta = counts.settings, restitution_factor
+    damped = counts.cage_at(None if eta is None else min(eta, 0.9), 0.0)
+    guess = 0.8 * linear_critical_friction(damped)
+    reference = settings.middle_kick
+    responses = {kick: counts.response(eta, kick) for kick in {*settings.kicks, reference}}
+    most = max(1, round((MIDDLE_RUNS if band else END_RUNS) * settings.runs))
+    found = responses[reference].crossing(0.5, most, guess)
+    ends: list[tuple[Found, Ratio, MetrePerSecond]] = [(found, 0.5, reference)]
+    if band:
+        at, of_kicks = ends_of(found)[0] or guess, {kick: responses[kick] for kick in settings.kicks}
+        for share, way in ((BAND_FEW, 1), (BAND_MOST, -1)):
+            end, kick = outermost(of_kicks, share, settings.runs, at / APART**way, way)
+            ends.append((end, share, kick))
+    values: dict[str, Any] = {}
+    for names, (end, *_) in zip(_VALUES, ends, strict=False):
+        values |= zip(names, ends_of(end), strict=True)
+    reasons = [_REASONS[end].format(share, kick) for end, share, kick in ends if isinstance(end, Side)]
+    return CriticalFriction(
+        restitution_factor=own_restitution_factor(cage) if eta is None else eta,
+        **values,
+        side=found if isinstance(found, Side) else None,
+        reason="; ".join(dict.fromkeys(reasons)) or None,
+        notes=tuple(note for _, response in sorted(responses.items()) for note in response.notes),
+    )
+
+
+def expected_load(settings: StabilitySettings, *, band: bool) -> Load:
+    """Work of one critical friction, about; the first counts find where it is."""
+    first = min(BATCH, settings.runs)
+    if not band:
+        return Load(4.0 * first + END_RUNS * settings.runs, dear=2.0)
+    each = 5.0 * first + END_RUNS * settings.runs
+    return Load(4.0 * first + MIDDLE_RUNS * settings.runs + len(settings.kicks) * each, dear=2.0)
+
+
+def own_restitution_factor(cage: MovingCage) -> Ratio:
+    """Nominal restitution factor of a cage's own race damping."""
+    if not math.isfinite(cage.race_damping):
+        return 1.0
+    return nominal(damping_ratio(cage.ball_cage_stiffness, cage.mass, cage.race_damping))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinearLimit:
+    """Critical friction without clearance in a ball set at rest, in closed form."""
+
+    restitution_factor: Ratio  # at which the limit is taken
+    critical_friction: Ratio  # above which every disturbance grows
+
+
+def linear_limit(cage: MovingCage, restitution_factor: Ratio) -> LinearLimit:
+    """Critical friction of the linear law, 2 zeta sqrt(2/Z), at one restitution factor."""
+    critical = linear_critical_friction(cage_at(cage, restitution_factor, 0.0))
+    return LinearLimit(restitution_factor=restitution_factor, critical_friction=critical)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +181,6 @@ class StabilityCurve:
     searched_friction: Ratio  # highest friction that was searched
     drifts: bool  # whether nothing returns the cage centre: a run may settle, but no verdict is STABLE
     drift_rate_law: PerSecond  # growth of the offset by the linear law; 0 with a land or a ball set at rest
-    adaptive: bool  # whether the restitution factors were chosen here
     complete: bool  # false if an interrupt left points out
 
     @property
@@ -101,133 +195,23 @@ def stability_curve(
 ) -> StabilityCurve:
     """Critical friction against restitution factor, and at the cage's own race damping.
 
-    Without restitution factors in the settings they are chosen where the curve bends. The friction of the
-    cage is replaced, and its race damping but for `here`. The numbers do not depend on the runner.
-    `Interrupted` has the curve of the points that were finished, if any was.
+    The restitution factors are those of the settings, or `FACTORS`. The friction of the cage is replaced, and
+    its race damping but for `here`. The numbers do not depend on the runner. `Interrupted` has the curve of
+    the points that were finished, if any was.
     """
     runner = runner or Runner()
-    tracer = Tracer(GrowthCounter(cage, settings, runner), settings.restitution_factors, band=True)
+    counter, factors = GrowthCounter(cage, settings, runner), settings.restitution_factors or FACTORS
 
-    def curve(found: dict[Node, CriticalFriction]) -> StabilityCurve:
-        here = found.pop((OWN_DAMPING, None), None)
-        complete = here is not None and tracer.complete(found)
-        return curve_of_points(cage, settings, list(found.values()), here=here, complete=complete)
+    def curve(found: dict[Ratio | None, CriticalFriction]) -> StabilityCurve:
+        complete, here = len(found) == 1 + len(factors), found.pop(None, None)
+        return curve_of_points(cage, settings, found.values(), here=here, complete=complete)
 
     return runner.work_out(
-        tracer.point, [(OWN_DAMPING, None), *tracer.first], into=curve, more=tracer.more, load=tracer.load
+        lambda eta: critical_friction(cage, eta, settings, counter=counter),
+        [None, *factors],
+        into=curve,
+        load=lambda _: expected_load(counter.settings, band=True),
     )
-
-
-Node = tuple[Ratio, Ratio | None]  # a restitution factor (or `OWN_DAMPING`), and a guess of its friction
-
-
-class Tracer:
-    """Which points of a curve are wanted, and how one is computed.
-
-    Parameters
-    ----------
-    counter : GrowthCounter
-        Counts the runs of its cage.
-    given : sequence of float
-        Restitution factors; if none, they are halved where the curve bends by more than its scatter.
-    band : bool
-        Whether the points have their band; if so, its ends are followed as well.
-    frictions : sequence of float, optional
-        The curve is followed as finely as it bends where it passes these; by default everywhere.
-    """
-
-    def __init__(
-        self,
-        counter: GrowthCounter,
-        given: Sequence[Ratio],
-        *,
-        band: bool,
-        frictions: Sequence[Ratio] | None = None,
-    ) -> None:
-        self.counter, self.given, self.band, self.frictions = counter, tuple(given), band, frictions
-
-    @property
-    def first(self) -> list[Node]:
-        """Where to begin."""
-        return [(eta, None) for eta in self.given or COARSE]
-
-    def point(self, node: Node) -> CriticalFriction:
-        """Critical friction at a node; at the cage's own race damping always with its band."""
-        counts, band = self.counter, self.band or node[0] == OWN_DAMPING
-        eta = None if node[0] == OWN_DAMPING else node[0]
-        return critical_friction(counts.cage, eta, counts.settings, counter=counts, band=band, guess=node[1])
-
-    def load(self, node: Node) -> Load:
-        """Work of a node; about as many follow as a curve begins with."""
-        runs = expected_runs(self.counter.settings, band=self.band or node[0] == OWN_DAMPING)
-        is_halved = node[0] in COARSE and not self.given and self.frictions is None
-        return Load(runs, dear=2.0, follow=0.7 if is_halved else 0.0)
-
-    def more(self, node: Node, found: Mapping[Node, CriticalFriction]) -> list[Node]:
-        """Nodes that are wanted once this one is known."""
-        if self.given or node[0] == OWN_DAMPING:
-            return []
-        known = {at: point for (at, _), point in found.items() if at != OWN_DAMPING}
-        spans = [(known[low], known[high]) for low, high in finer(node[0], known, bends)]
-        return [_between(*span) for span in spans if self._matters(*span)]
-
-    def _matters(self, *span: CriticalFriction) -> bool:
-        """Whether the curve may pass one of the frictions between two points."""
-        if self.frictions is None:
-            return True
-        ends = [end for point in span for end in _heights(point)[0]]
-        return any(min(ends) - FLAT <= friction <= max(ends) + FLAT for friction in self.frictions)
-
-    def complete(self, found: Mapping[Node, CriticalFriction]) -> bool:
-        """Whether no point is wanted that is not known."""
-        known = {at for at, _ in found}
-        wanted = {at for at, _ in self.first} | {at for node in found for at, _ in self.more(node, found)}
-        return wanted <= known
-
-
-def _between(low: CriticalFriction, high: CriticalFriction) -> Node:
-    """Node half way between two points, and what a line between them lets guess of it."""
-    eta = 0.5 * (low.restitution_factor + high.restitution_factor)
-    if low.critical_friction is None or high.critical_friction is None:
-        return eta, None
-    return eta, 0.5 * (low.critical_friction + high.critical_friction)
-
-
-def bends(low: CriticalFriction, middle: CriticalFriction, high: CriticalFriction) -> bool:
-    """Whether the line between two points misses the middle one, or its band, by more than the scatter."""
-    return any(map(_misses, _heights(low), _heights(middle), _heights(high)))
-
-
-Heights = tuple[Ratio, Ratio, Ratio]  # a friction with its 95 % interval
-
-
-def _misses(low: Heights, middle: Heights, high: Heights) -> bool:
-    """Whether a middle lies off the line by more than both are uncertain."""
-    off = middle[0] - 0.5 * (low[0] + high[0])
-    of_line = 0.5 * math.hypot(low[2] - low[1], high[2] - high[1])
-    return abs(off) > FLAT + 0.5 * math.hypot(middle[2] - middle[1], of_line)
-
-
-def height(point: CriticalFriction) -> Ratio:
-    """Critical friction, with 0 or the top of the searched range where there is none."""
-    if point.critical_friction is not None:
-        return point.critical_friction
-    return 0.0 if point.side is Side.ABOVE else SEARCHED_FRICTION
-
-
-def _heights(point: CriticalFriction) -> list[Heights]:
-    """Critical friction and both ends of the band; the ends of the searched range where there is none."""
-    low, high = _or(point.critical_friction_low, 0.0), _or(point.critical_friction_high, SEARCHED_FRICTION)
-    rows = (
-        (height(point), point.scatter_low, point.scatter_high),
-        (low, point.low_scatter_low, point.low_scatter_high),
-        (high, point.high_scatter_low, point.high_scatter_high),
-    )
-    return [(at, _or(least, at), _or(most, at)) for at, least, most in rows]
-
-
-def _or(value: Ratio | None, other: Ratio) -> Ratio:
-    return other if value is None else value
 
 
 def curve_of_points(
@@ -257,13 +241,8 @@ def curve_of_points(
         searched_friction=SEARCHED_FRICTION,
         drifts=drifts(cage),
         drift_rate_law=drift_rate_law(cage),
-        adaptive=not settings.restitution_factors,
         complete=complete,
     )
-
-
-OUTER_FACTORS: tuple[Ratio, ...] = (0.0, 0.98, 1.0)
-"""Restitution factors beside those that a study gives, so that thresholds are solved over all of 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -296,7 +275,7 @@ def _first_below(
     before: tuple[Ratio, Ratio] | None = None
     for point in points:
         known = end(point)
-        eta, f = point.restitution_factor, height(point) if known is None else known
+        eta, f = point.restitution_factor, point.height if known is None else known
         if f < friction or point.side is Side.ABOVE:
             if before is None or f >= before[1]:
                 return eta
@@ -308,17 +287,14 @@ def _first_below(
 def own_threshold(
     cage: MovingCage, settings: StabilitySettings, friction: Ratio, runner: Runner
 ) -> RestitutionThreshold:
-    """Threshold of one friction: the curve is followed, here and now, as finely as that needs."""
-    tracer = Tracer(
-        GrowthCounter(cage, settings, runner), threshold_factors(settings), band=False, frictions=[friction]
-    )
-    found: dict[Node, CriticalFriction] = {}
-    waiting = list(tracer.first)
-    while waiting:
-        node = waiting.pop()
-        found[node] = tracer.point(node)
-        waiting += [one for one in tracer.more(node, found) if one not in found and one not in waiting]
-    return restitution_threshold(rising(found.values()), friction)
+    """Threshold of one friction; the curve is followed no further than it can lie."""
+    counter, points = GrowthCounter(cage, settings, runner), list[CriticalFriction]()
+    for eta in threshold_factors(settings):
+        point = critical_friction(cage, eta, settings, counter=counter, band=False)
+        points.append(point)
+        if max(point.height, point.scatter_high or 0.0) < friction:
+            break
+    return restitution_threshold(points, friction)
 
 
 def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:
@@ -326,7 +302,7 @@ def rising(points: Iterable[CriticalFriction]) -> list[CriticalFriction]:
     return sorted(points, key=lambda point: point.restitution_factor)
 
 
-def threshold_factors(settings: StabilitySettings) -> list[Ratio]:
-    """Restitution factors of the settings and those beside them, rising; none if they are to be chosen."""
+def threshold_factors(settings: StabilitySettings) -> Sequence[Ratio]:
+    """Restitution factors of the settings and those beside them, rising; `FACTORS` if it gives none."""
     given = settings.restitution_factors
-    return sorted({*given, *OUTER_FACTORS}) if given else []
+    return sorted({*given, *OUTER_FACTORS}) if given else FACTORS

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
+from typing import Any
 
 from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.disturbance import settings_for
@@ -26,15 +27,22 @@ from separatrix.ground.units import (
 )
 from separatrix.study.candidates import require_friction
 from separatrix.study.study import Operation, Study
-from separatrix.verdict.judgement import Judgement
+from separatrix.verdict.judgement import Judgement, judge_solution
 from separatrix.verdict.long_jobs import Runner, scattered
-from separatrix.verdict.map_records import KICK, RESTITUTION, Parameter, parameters, varied
-from separatrix.verdict.parameter_axes import MOST_CASES, TIME_SHARE, Case
-from separatrix.verdict.ranking_records import measured
+from separatrix.verdict.parameter_axes import (
+    KICK,
+    MOST_CASES,
+    RESTITUTION,
+    TIME_SHARE,
+    Case,
+    Parameter,
+    parameters,
+    varied,
+)
+from separatrix.verdict.ranking_records import MeanFriction, measured
 from separatrix.verdict.reasons import CageMotion
 from separatrix.verdict.safety_factor import cage_limit, safety_factor
 from separatrix.verdict.stability_curve import own_threshold
-from separatrix.verdict.which_ball import judge_solution
 
 ROUNDING = 1e-9  # share of their value by which cases that are alike may differ
 
@@ -287,24 +295,15 @@ def _swept(
         asked = varied(study, case)
         solution = solve(asked)
         bearing = solution.bearing
-        inner, outer = bearing.inner, bearing.outer
-        turning = orders(asked.operation, asked.bearing.ball_count, bearing.cage_speed)
-        found = replace(
-            found,
-            cage_speed=bearing.cage_speed,
-            load_inner=inner.load,
-            load_outer=outer.load,
-            contact_angle_inner=inner.contact_angle,
-            contact_angle_outer=outer.contact_angle,
-            max_pressure_inner=inner.ellipse.max_pressure,
-            max_pressure_outer=outer.ellipse.max_pressure,
-            spin_roll_ratio_inner=inner.spin_roll_ratio,
-            spin_roll_ratio_outer=outer.spin_roll_ratio,
-            shaft_frequency=turning["shaft_frequency"],
-            cage_frequency=turning["cage_frequency"],
-            outer_pass_frequency=turning["outer_pass_frequency"],
-            inner_pass_frequency=turning["inner_pass_frequency"],
-        )
+        values: dict[str, Any] = {}
+        for race in ("inner", "outer"):
+            at = getattr(bearing, race)
+            values[f"load_{race}"] = at.load
+            values[f"contact_angle_{race}"] = at.contact_angle
+            values[f"max_pressure_{race}"] = at.ellipse.max_pressure
+            values[f"spin_roll_ratio_{race}"] = at.spin_roll_ratio
+        values |= orders(asked.operation, asked.bearing.ball_count, bearing.cage_speed)
+        found = replace(found, cage_speed=bearing.cage_speed, **values)
         slopes = solution.slopes
         found = replace(found, slope_inner=slopes.inner.slope, slope_outer=slopes.outer.slope)
         if study.cage is None:
@@ -324,40 +323,38 @@ def _swept(
         if margins or verdicts:
             require_friction(asked)
         if margins:
-            found = _with_margin(found, solution, runner)
-        return _with_verdict(found, solution, runner) if verdicts else found
+            found = replace(found, **_margin(solution, runner))
+        return replace(found, **_verdict(solution, runner)) if verdicts else found
     except SeparatrixError as error:
         return replace(found, reason=str(error))
 
 
-def _with_margin(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
-    """The case with its safety factor; in the paper's model with its threshold, and the distance to it."""
-    friction, eta = found.ball_cage_friction or 0.0, solution.restitution.restitution_factor
+def _margin(solution: Solution, runner: Runner) -> dict[str, Any]:
+    """Safety factor of a case; in the paper's model its threshold, and the distance to it."""
+    friction = measured(solution.friction) if solution.friction else MeanFriction(0.0)
+    settings = solution.study.stability
     if not solution.design.is_of_paper:
-        settings = settings_for(solution.study.stability, moving_cage(solution, 0.0))
-        limit = cage_limit(solution, settings, runner, highest=friction)
-        interval = measured(solution.friction).interval() if solution.friction else (friction, friction)
-        return replace(found, **limit.own, **asdict(safety_factor(limit, friction, interval)))
-    threshold = own_threshold(moving_cage(solution, 0.0), solution.study.stability, friction, runner)
-    return replace(
-        found,
-        restitution_threshold=threshold.value,
-        restitution_threshold_low=threshold.low,
-        restitution_threshold_high=threshold.high,
-        margin=threshold.value - eta,
-    )
+        settings = settings_for(settings, moving_cage(solution, 0.0))
+        limit = cage_limit(solution, settings, runner, highest=friction.mean)
+        return limit.own | asdict(safety_factor(limit, friction.mean, friction.interval()))
+    threshold = own_threshold(moving_cage(solution, 0.0), settings, friction.mean, runner)
+    return {
+        "restitution_threshold": threshold.value,
+        "restitution_threshold_low": threshold.low,
+        "restitution_threshold_high": threshold.high,
+        "margin": threshold.value - solution.restitution.restitution_factor,
+    }
 
 
-def _with_verdict(found: SweptCase, solution: Solution, runner: Runner) -> SweptCase:
-    """The case with the verdict of its whole ensemble; an orbit where most runs whirl."""
+def _verdict(solution: Solution, runner: Runner) -> dict[str, Any]:
+    """Verdict of the whole ensemble of a case; an orbit where most runs whirl."""
     run = partial(runner.whole_ensemble, settings=solution.study.stability)
-    judged = judge_solution(solution, found.ball_cage_friction or 0.0, run)
+    judged = judge_solution(solution, solution.friction.mean if solution.friction else 0.0, run)
+    orbit = None
     if judged.cage_motion is CageMotion.WHIRLING and judged.whirl_ratio is not None:
         orbit = judged.whirl_ratio * abs(solution.bearing.cage_speed) / (2.0 * math.pi)
-        found = replace(found, orbit_frequency=orbit)
-    return replace(
-        found,
-        verdict=judged.verdict.name,
-        cage_motion=None if judged.cage_motion is None else judged.cage_motion.value,
-        **{name: getattr(judged, name) for name in EVIDENCE},
-    )
+    return {name: getattr(judged, name) for name in EVIDENCE} | {
+        "verdict": judged.verdict.name,
+        "cage_motion": None if judged.cage_motion is None else judged.cage_motion.value,
+        "orbit_frequency": orbit,
+    }

@@ -7,16 +7,14 @@ from math import hypot, log, pi
 from typing import Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Note, Table
+from separatrix.present.blocks import Block, Cell, Column, Equation, Level, Note, Table
 from separatrix.present.figure import BLUE, GREY, Across, Band, Label, Mark, Panel, Trace
 from separatrix.verbs.parts.telling import (
     all_numbers,
     axis,
     column,
-    each_of,
     marks,
     number_of,
-    place_column,
     quantity,
     said,
     told,
@@ -31,8 +29,6 @@ HEIGHTS = ("critical_friction", "scatter_high", "critical_friction_high")
 
 WIDE = 0.006
 """Half the width of a band that is known at the bearing's own restitution factor alone."""
-
-# The picture.
 
 # The picture.
 
@@ -184,28 +180,17 @@ def drift_words(curve: Part) -> str:
 
 
 def own_point(curve: Part) -> list[Block]:
-    """Return the band at the bearing's own restitution factor, disturbance by disturbance."""
+    """Return the band at the bearing's own restitution factor."""
     here = curve.get("here")
     if here is None:
         return []
-    columns = [place_column(curve, "kicks", head="initial disturbance")]
-    if here.kick_low:
-        columns.append(place_column(here, "kick_low", head=f"{_share(curve.band_few)} whirl at"))
-        columns.append(place_column(here, "kick_critical_friction"))
-        columns.append(place_column(here, "kick_high", head=f"{_share(curve.band_most)} whirl at"))
-    at = told(here, "restitution_factor")
-    caption = f"Pocket frictions at this bearing's restitution factor, {at}. {band_words(curve, here)}"
     notes = [_sentence(here.reason)] if "reason" in here else []
     if here.restitution_factor == 0.0:
         notes.append(
             "Impacts of this bearing are overdamped: its critical friction is found with its own race "
             "damping, the curve's point at 0 with the largest damping that leaves no rebound."
         )
-    return [
-        Heading("Critical friction of this bearing", depth=3),
-        Table("own point", tuple(columns), tuple(range(len(curve.kicks))), caption),
-        *(Note(one, "legend") for one in notes),
-    ]
+    return [Note(band_words(curve, here)), *(Note(one, "legend") for one in notes)]
 
 
 def band_words(curve: Part, at: Part) -> str:
@@ -228,7 +213,7 @@ def _share(value: float) -> str:
 
 
 def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
-    """Return the table of the curve, with its ensemble; a workbook has that of each disturbance, too."""
+    """Return the table of the curve, with its ensemble."""
     points = curve.get("curve") or []
     linear = {one.restitution_factor: one for one in curve.get("linear_limit") or ()}
     few, most = _share(1.0 - curve.band_few), _share(curve.band_most)
@@ -248,9 +233,6 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         column("critical_friction", of=lambda row: linear.get(row.restitution_factor), head="linear limit"),
     )
     reasons = dict.fromkeys(one.reason for one in points if "reason" in one)
-    own = {"kicks": curve.unit("kicks")}
-    each = [Part({**one.values, "kicks": curve.kicks}, {**one.units, **own}) for one in points_of(curve)]
-    rows = [(one.restitution_factor, row) for one in each if one.kick_low for row in each_of(one)]
     return [
         Equation(
             r"f_{lin} = 2\,\zeta\,\sqrt{2/Z}",
@@ -259,7 +241,6 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         Table("stability curve", columns, tuple(points), caption, level),
         *(Note(_sentence(one), "legend", level) for one in reasons),
         all_numbers("points of the curve", (), ((one,) for one in points_of(curve))),
-        all_numbers("curve by disturbance", ("restitution factor",), rows),
     ]
 
 

@@ -117,9 +117,6 @@ QUANTITIES: dict[str, Quantity] = {
     "kicks": Q(label="initial disturbances", unit="m/s", form=".3g"),
     "middle_kick": Q(label="reference disturbance", unit="m/s", form=".3g"),
     "searched_friction": Q(label="highest friction that was searched"),
-    "kick_low": Q(label="friction at which few runs whirl", head="few whirl at"),
-    "kick_critical_friction": Q(label="friction at which half of the runs whirl", head="half whirl at"),
-    "kick_high": Q(label="friction at which most runs whirl", head="most whirl at"),
     "band_few": Q(label="share of runs that whirl at the lower end of the band", unit="%"),
     "band_most": Q(label="share of runs that whirl at the upper end of the band", unit="%"),
     "runs": Q(label="runs", form=".0f"),
@@ -129,8 +126,6 @@ QUANTITIES: dict[str, Quantity] = {
     "agreeing_runs": Q(label="runs that agree", digits=7),
     "wrong_side_probability": Q(label="risk of the wrong side", unit="%", digits=2),
     "other_decision_probability": Q(label="risk of another decision", unit="%", digits=2),
-    "error_low": Q(label="least share of wrong decisions", unit="%", digits=2),
-    "error_high": Q(label="largest share of wrong decisions", unit="%", digits=2),
     "probability_whirl": Q(
         label="share of the runs that whirl", digits=2, ends=("probability_low", "probability_high")
     ),

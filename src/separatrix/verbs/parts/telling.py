@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -100,13 +100,6 @@ def place_column(part: Part, name: str, *, head: str = "") -> Column:
         lambda place: Cell(getattr(part, name)[place], known, unit),
         meaning=known.meaning,
     )
-
-
-def each_of(part: Part) -> Iterator[Part]:
-    """Yield a part for each place in the lists of a part."""
-    lists = {name: value for name, value in part.values.items() if isinstance(value, list)}
-    for values in zip(*lists.values(), strict=True):
-        yield Part(dict(zip(lists, values, strict=True)), part.units)
 
 
 def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]) -> Table:

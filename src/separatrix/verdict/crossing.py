@@ -1,4 +1,4 @@
-"""Whirling runs, counted, and the friction at which their share passes a target: a response curve.
+"""Whirling runs, counted, and the friction at which their share passes a target: a crossing.
 
 Near its target P is taken as logistic in the logarithm of friction. Place and slope are unknown; both are
 summed over on a grid, weighted with the probability of the counts. So the estimate has an interval from the
@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import inf
+from operator import itemgetter
 
 import numpy as np
 
@@ -126,6 +127,14 @@ class GrowthCounter:
         notes = (UNRESOLVED.format(open_ends, runs, kick, friction),) if open_ends else ()
         return Count(int(np.count_nonzero(left | (found.outcome == RunOutcome.WHIRLS))), runs, notes)
 
+    def response(self, restitution_factor: Ratio | None, kick: MetrePerSecond) -> Response:
+        """Return the counts from one kick at a restitution factor, none yet; None as in `cage_at`."""
+
+        def look(friction: Ratio, first_run: int, runs: int) -> Count:
+            return self.count(restitution_factor, friction, kick, first_run=first_run, runs=runs)
+
+        return Response(look, self.settings.runs)
+
 
 SEARCHED_FRICTION: Ratio = 1.0  # critical friction is searched from 0 up to here
 _STEPS_A_DECADE = 24  # neighbours differ by 10 %, well inside the band
@@ -151,6 +160,10 @@ ENDS_95 = (0.025, 0.975)
 Look = Callable[[Ratio, int, int], Count]
 """Whirling runs at a friction: number of the first run, and how many."""
 
+FIRST_RUNS, END_RUNS = 0.25, 0.75
+"""Runs spent near a crossing, in parts of those of the settings: on a first look from each kick; then on a
+crossing that may be the outermost, or that of one kick alone."""
+
 
 class Side(Enum):
     """Why there is no crossing: P is above the target everywhere, or below it."""
@@ -168,7 +181,10 @@ class Crossing:
     high: Ratio
 
 
-def ends_of(found: Crossing | Side | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, None, None]:
+Found = Crossing | Side
+
+
+def ends_of(found: Found | None) -> tuple[Ratio, Ratio, Ratio] | tuple[None, None, None]:
     """Value and interval of a crossing; None where there is none."""
     return (found.value, found.low, found.high) if isinstance(found, Crossing) else (None, None, None)
 
@@ -209,7 +225,7 @@ class Response:
             count = self.add(cell, min(count.runs, self._runs - count.runs))
         return count.share >= target
 
-    def crossing(self, target: Ratio, runs: int, guess: Ratio) -> Crossing | Side:
+    def crossing(self, target: Ratio, runs: int, guess: Ratio) -> Found:
         """Friction at which P passes the target, or the side on which P lies all along.
 
         Both ends of the ladder are counted first, since P need not rise. Where P wavers through the target
@@ -299,3 +315,31 @@ def posterior(counts: Mapping[float, Count], place: Array, target: Ratio) -> Arr
 def quantile(place: Array, weight: Array, share: Ratio) -> float:
     """Place below which a share of the weight lies."""
     return float(np.interp(share, np.cumsum(weight) - 0.5 * weight, place))
+
+
+def outermost(
+    responses: Mapping[MetrePerSecond, Response], target: Ratio, runs: int, guess: Ratio, way: int = 1
+) -> tuple[Found, MetrePerSecond]:
+    """Crossing that comes first over the kicks, going up (`way` 1) or down (-1) in friction, and its kick.
+
+    A side where a kick has no crossing but would come first, or where none has one. After a first look at
+    each kick, `runs` of the settings are spent on those whose crossing may come first.
+    """
+    few, more = (max(1, round(part * runs)) for part in (FIRST_RUNS, END_RUNS))
+    found: dict[MetrePerSecond, Found] = {}
+    for kick, response in responses.items():
+        found[kick] = response.crossing(target, few, guess)
+        known = [way * one.value for one in found.values() if isinstance(one, Crossing)]
+        guess = way * min(known, default=way * guess)
+    before_all, farthest = Side.ABOVE if way > 0 else Side.BELOW, math.inf
+    crossings = [(way * one.value, kick, one) for kick, one in found.items() if isinstance(one, Crossing)]
+    for _, kick, one in () if before_all in found.values() else sorted(crossings, key=itemgetter(0)):
+        if min(way * one.low, way * one.high) <= farthest:
+            again = found[kick] = responses[kick].crossing(target, more, one.value)
+            if isinstance(again, Crossing):
+                farthest = min(farthest, max(way * again.low, way * again.high))
+    if before_all in found.values():
+        return before_all, next(kick for kick, one in found.items() if one is before_all)
+    ends = [(way * one.value, way * kick) for kick, one in found.items() if isinstance(one, Crossing)]
+    first = way * (min(ends)[1] if ends else max(way * kick for kick in found))
+    return found[first], first
