@@ -23,7 +23,7 @@ from separatrix.study import study
 from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
 from separatrix.verbs import answer_records as answers
-from separatrix.verbs.parts.comparison import Row
+from separatrix.verbs.compare import Row
 from separatrix.verbs.parts.quantities import QUANTITIES
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 

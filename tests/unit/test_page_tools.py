@@ -13,8 +13,8 @@ from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, materials, reproduce, tribometer
 from separatrix.verbs.answer_files import document
-from separatrix.verbs.parts.comparison import compared as compared_answers
-from separatrix.verbs.parts.comparison import difference_interval, differing, results
+from separatrix.verbs.compare import compared as compared_answers
+from separatrix.verbs.compare import difference_interval, differing, results
 from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
 from separatrix.verdict.judgement import wilson_interval
 

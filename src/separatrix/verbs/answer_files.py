@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import grouped, harmless, json_text
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
     from separatrix.verbs.verb import Tool, Verb
-    from separatrix.verdict.long_jobs import Progress
 
 
 def document(verb: Verb, found: Computed) -> Document:
@@ -62,7 +61,7 @@ def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
     return tuple(grouped([*asked.notes, *own]))
 
 
-def page_of_document(verb: Verb | Tool, found: Document, where: str = "The answer") -> Page:
+def page_of_document(verb: Tool, found: Document, where: str = "The answer") -> Page:
     """Return the page of a document; one that is not what its page takes is refused under `where`."""
     from separatrix.verbs.saved_answers import refusing_damage
 
@@ -76,9 +75,7 @@ def save_answer(
     found: Document,
     *,
     page: Page | None = None,
-    options: Any = None,
     pictures: bool = True,
-    progress: Progress | None = None,
 ) -> None:
     """Write the files of an answer into a folder, all or none; of an interrupted one its document and text.
 
@@ -90,12 +87,8 @@ def save_answer(
         The verb, and the answer as `document` makes it.
     page : Page, optional
         The page of that document, if it has been made already.
-    options : optional
-        With which the verb was asked: its own files may depend on them.
     pictures : bool
         Whether figures, and the page with them, are written, too.
-    progress : callable, optional
-        Called with (done, total) of what takes long.
 
     Raises
     ------
@@ -110,18 +103,20 @@ def save_answer(
             from separatrix.present.dataset import dataset, save
 
             save(dataset(found), stage / f"{verb.name}.nc")
-        if is_whole and verb.files is not None:
-            for name, content in verb.files(part_of(found), options, progress):
+            for name, content in verb.files(part_of(found)):
                 (stage / name).write_bytes(content)
 
 
-def save_page(folder: Path, name: str, page: Page, found: Document | None) -> None:
-    """Write a page of another answer and its document; without that its pictures alone."""
+def save_page(folder: Path, name: str, page: Page, found: Document) -> None:
+    """Write the page of a tool and its document."""
     with staged(folder) as stage:
-        if found is None:
-            _draw(page, stage, "")
-        else:
-            _write(stage, name, page, found)
+        _write(stage, name, page, found)
+
+
+def save_pictures(folder: Path, page: Page) -> None:
+    """Write the pictures of a page alone."""
+    with staged(folder) as stage:
+        _draw(page, stage, "")
 
 
 def _write(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Annotated
@@ -63,7 +63,6 @@ class Options:
             "Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"
         ),
     ] = None
-    animate: Annotated[str | None, Option("Also write an animation.", "gif")] = None
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
@@ -80,8 +79,6 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.verdict.response import cage_at
     from separatrix.verdict.which_ball import transmitted_force
 
-    if options.animate not in (None, "gif"):
-        raise InputError("--animate", "must be gif", got=printable(options.animate))
     if not 0 <= options.run <= MOST_RUNS:
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
     given, eta = None if options.kick is None else kick_speed(options.kick), given_factor(options)
@@ -297,21 +294,6 @@ def _view(answer: Part) -> str:
     return view(figure_heading(answer), page_scene(answer))
 
 
-def files(
-    answer: Part, options: Options | None, progress: Callable[[int, int], None] | None
-) -> Iterator[tuple[str, bytes]]:
-    """Yield the moving cage as a GIF, beside the path of its centre, if it is wanted."""
-    if options is None or options.animate is None:
-        return
-    from separatrix.present.animation import animation
-    from separatrix.verbs.parts.cage_scene import scene
-    from separatrix.verbs.parts.run_panels import orbit
-
-    at = scene(answer)
-    panels = [(orbit(answer), at.centre)]
-    yield "simulation.gif", animation(at, panels, figure_heading(answer), progress=progress)
-
-
 VERB = Verb(
     name="simulate",
     epilog="An unresolved run states its reason.",
@@ -320,6 +302,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    files=files,
     refusals=refusals,
 )

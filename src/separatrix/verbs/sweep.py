@@ -221,7 +221,7 @@ def csv_text(answer: Part) -> str:
     return stream.getvalue()
 
 
-def files(answer: Part, *_: Any) -> Iterator[tuple[str, bytes]]:
+def files(answer: Part) -> Iterator[tuple[str, bytes]]:
     """Yield the table of all cases as CSV."""
     yield "sweep.csv", csv_text(answer).encode()
 
