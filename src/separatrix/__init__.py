@@ -40,8 +40,7 @@ _PUBLIC = {
     "verdict.long_jobs": "Interrupted Runner",
     "verdict.ranking_records": "Ranking",
     "present.dataset": "dataset",
-    "verbs.answer_files": "document",
-    "verbs.shapes": "to_dataframe to_xarray",
+    "verbs.answer_files": "document to_dataframe to_xarray",
     "verdict.critical_friction": "critical_friction",
     "verdict.stability_curve": "StabilityCurve restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "

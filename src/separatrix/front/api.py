@@ -8,36 +8,33 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
-from separatrix.chain.contacts import BearingState
 from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.reading import read_study, require
 from separatrix.study.study import Study
 from separatrix.verbs import computed, tool_named, verb_named
-from separatrix.verbs.answer_records import (
-    CheckAnswer,
-    MapAnswer,
-    MobilityAnswer,
-    RankingAnswer,
-    RestitutionAnswer,
-    SensitivityAnswer,
-    SimulationAnswer,
-    StabilityAnswer,
-    TractionAnswer,
-)
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
-from separatrix.verdict.swept_cases import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from separatrix.chain.contacts import BearingState
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
+    from separatrix.verbs.cage_answers import (
+        MapAnswer,
+        RankingAnswer,
+        SensitivityAnswer,
+        SimulationAnswer,
+        StabilityAnswer,
+    )
+    from separatrix.verbs.chain_answers import CheckAnswer, MobilityAnswer, RestitutionAnswer, TractionAnswer
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool, Verb
+    from separatrix.verdict.swept_cases import Sweep
 
 Record = TypeVar("Record")
 
@@ -145,7 +142,7 @@ class Answer(ToolAnswer[Record]):
 
     def to_dataframe(self) -> pd.DataFrame:
         """One row for each ball, point, material or case."""
-        from separatrix.verbs.shapes import to_dataframe
+        from separatrix.verbs.answer_files import to_dataframe
 
         return to_dataframe(self.record)
 
@@ -403,7 +400,8 @@ def report(
     """
     from separatrix.verbs.report import report_of_study
 
-    def answered(name: str, asked: Study) -> Document:
-        return _answer(name, asked, **how).document()
-
-    return report_of_study(study if isinstance(study, Study) else read_study(study), answered)
+    asked = study if isinstance(study, Study) else read_study(study)
+    found = report_of_study(asked, lambda verb: _answer(verb.name, asked, **how).document())
+    if found is None:  # `_answer` has raised it with what was finished
+        raise Interrupted
+    return found

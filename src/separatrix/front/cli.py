@@ -44,6 +44,7 @@ from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
+    from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool, Verb
 
 FAULT, WRONG_INPUT = 1, 2
@@ -163,7 +164,7 @@ def _report(
         if place is not None:
             stack.enter_context(writable_folder(place))
         if study is None:
-            made = report_of(read_folder(usual), where=str(usual))
+            made: Report | None = report_of(read_folder(usual), where=str(usual))
         else:
             how: dict[str, Any] = {"quiet": quiet, "jobs": count, "folder": place}
 

@@ -1,4 +1,4 @@
-"""The document of an answer, and its files: the same page as text, HTML and workbook, pictures, arrays."""
+"""The document of an answer, its arrays, and its files: its page as text, HTML, workbook and pictures."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from separatrix.ground.errors import grouped, harmless, json_text
 from separatrix.ground.files import staged
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
     from separatrix.present.blocks import Page, Picture
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
@@ -24,9 +27,12 @@ def document(verb: Verb, found: Computed) -> Document:
     warnings.
     """
     from separatrix import __version__
-    from separatrix.ground.plain_data import Group, plain, units_of
+    from separatrix.ground.plain_data import Group, plain, shape, units_of
     from separatrix.study.sources import provenance_of, resolved
-    from separatrix.verbs.shapes import shape
+    from separatrix.verbs import chain_answers  # noqa: F401 - with the shapes of its records
+
+    if verb.moves_a_cage:
+        from separatrix.verbs import cage_answers  # noqa: F401
 
     left_out: list[str] = []
     study = found.study
@@ -160,3 +166,51 @@ def _draw(page: Page, stage: Path, name: str) -> None:
     if name:
         level = Level.REPORT | Level.FULL
         (stage / f"{name}.html").write_text(html(page, level=level, picture=picture), encoding="utf-8")
+
+
+def to_xarray(answer: object) -> xr.Dataset:
+    """Return the labelled arrays of an answer, with their units, without the study behind it."""
+    from separatrix.ground.plain_data import Group, node_of, plain, shape, units_of
+    from separatrix.present.dataset import arrays_of
+    from separatrix.verbs import cage_answers  # noqa: F401 - with the shapes of all records
+
+    node = Group(shape(answer))
+    return arrays_of(node_of(plain(node, left_out=[]), units_of(node)))
+
+
+def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
+    """Return the arrays of an answer that have the same dimensions as a table, a row for each place.
+
+    Parameters
+    ----------
+    answer : record
+        What a verb computed.
+    *dims : str
+        Names of the dimensions; by default those of its main table: the balls of a bearing, the points of
+        traction curves, of a stability curve and of a map, the samples of a run, the candidates in each
+        environment, the cases of a sweep. ``("environment", "material", "sample")`` are the single bearings
+        behind the probabilities of `sensitivity`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Values in SI units. A variable with one more dimension has a column for each place on it.
+    """
+    import xarray as xr
+
+    data = to_xarray(answer)
+    wanted = dims or next(one for one in MAIN if set(one) <= set(data.dims))
+    columns: dict[str, xr.DataArray] = {}
+    for name, variable in data.data_vars.items():
+        if variable.dims == wanted:
+            columns[str(name).removeprefix(f"{wanted[-1]}_")] = variable
+        elif len(wanted) == 1 and variable.dims[:1] == wanted and variable.ndim == 2:
+            columns |= {f"{name}_{i}": variable[:, i] for i in range(variable.shape[1])}
+    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe(dim_order=list(wanted))
+
+
+MAIN = (
+    *(("case",), ("y", "x"), ("time",), ("environment", "material"), ("restitution_factor",)),
+    *(("race", "increment"), ("push",), ("ball",), ("race",)),
+)
+"""Dimensions of the main tables; an answer has that of the first that it has."""

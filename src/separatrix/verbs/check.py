@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import CheckAnswer, CheckedCage
+    from separatrix.verbs.chain_answers import CheckAnswer, CheckedCage
 
 Link = TypeVar("Link")
 FIRST = {"POCKETS": "after the pockets", "LAND": "before the pockets", "BOTH": "together with the pockets"}
@@ -30,7 +30,7 @@ def compute(study: Study, _options: NoOptions) -> CheckAnswer:
     """What follows of a study in a second, the bearing at standstill, and what verbs will refuse."""
     from separatrix.chain.solution import solve
     from separatrix.verbs import refusals
-    from separatrix.verbs.answer_records import CheckAnswer, Refusal
+    from separatrix.verbs.chain_answers import CheckAnswer, Refusal
 
     at, on = study.bearing, study.operation
     still = replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))
@@ -63,7 +63,7 @@ def _cage(study: Study) -> CheckedCage | None:
 
     from separatrix.study.cage_body import cage_inertia
     from separatrix.study.pocket_shape import half_play, tilt
-    from separatrix.verbs.answer_records import CheckedCage, FirstReached
+    from separatrix.verbs.chain_answers import CheckedCage, FirstReached
 
     if study.cage is None:
         return None

@@ -23,7 +23,7 @@ from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import MapAnswer
+    from separatrix.verbs.cage_answers import MapAnswer
     from separatrix.verdict.long_jobs import Runner
 
 AXIS = "LOW..HIGH[unit][:N][:log]"
@@ -57,7 +57,7 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     from separatrix.cage import settings_for
     from separatrix.chain.solution import solve
     from separatrix.ground.errors import InputError
-    from separatrix.verbs.answer_records import MapAnswer
+    from separatrix.verbs.cage_answers import MapAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.map_records import MapQuestion, StabilityMap

@@ -28,7 +28,7 @@ from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import MobilityAnswer
+    from separatrix.verbs.chain_answers import MobilityAnswer
 
 SMALL = (
     "damping",
@@ -48,7 +48,7 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
     """How the races let a ball be pushed along its orbit."""
     from separatrix.chain.ball_mobility import SlipLaw, linear_mobility
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import MobilityAnswer
+    from separatrix.verbs.chain_answers import MobilityAnswer
 
     records = (study.bearing, study.operation, study.kinematics.model, study.film, study.traction)
     solution = solve(study)

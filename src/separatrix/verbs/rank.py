@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import RankingAnswer
+    from separatrix.verbs.cage_answers import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
     from separatrix.verdict.ranking_records import Ranking
 
@@ -107,7 +107,7 @@ MOTION = (
 
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
     """Verdict, margin, rank and reason of each candidate material."""
-    from separatrix.verbs.answer_records import RankingAnswer
+    from separatrix.verbs.cage_answers import RankingAnswer
     from separatrix.verbs.parts.cage_of_study import overdamped_notes, reference
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.ranking import rank

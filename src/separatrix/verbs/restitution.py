@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import RestitutionAnswer
+    from separatrix.verbs.chain_answers import RestitutionAnswer
 
 
 def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     from separatrix.cage.closed_forms import returned_share
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import RestitutionAnswer
+    from separatrix.verbs.chain_answers import RestitutionAnswer
     from separatrix.verbs.parts.cage_of_study import overdamped_notes
 
     solution = solve(study)

@@ -59,7 +59,7 @@ from separatrix.verbs.verb import Option, Verb
 if TYPE_CHECKING:
     from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import SensitivityAnswer
+    from separatrix.verbs.cage_answers import SensitivityAnswer
     from separatrix.verdict.long_jobs import Runner
 
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
@@ -89,7 +89,7 @@ class Options:
 
 def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
-    from separatrix.verbs.answer_records import SensitivityAnswer
+    from separatrix.verbs.cage_answers import SensitivityAnswer
     from separatrix.verbs.parts.cage_of_study import reference
     from separatrix.verdict.drawn_frictions import frictions_to_draw
     from separatrix.verdict.draws import uncertain_inputs

@@ -34,7 +34,7 @@ from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import SimulationAnswer
+    from separatrix.verbs.cage_answers import SimulationAnswer
 
 MOST_SHOWN = 20_000
 """Samples of a simulated run, at most: every step of a short one."""
@@ -72,7 +72,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.cage.closed_forms import drift_rate_law
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
-    from separatrix.verbs.answer_records import SimulationAnswer
+    from separatrix.verbs.cage_answers import SimulationAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.beyond_models import Moved, beyond_motion
     from separatrix.verdict.reasons import force_limit, outcome_sentence

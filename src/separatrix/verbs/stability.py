@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import StabilityAnswer
+    from separatrix.verbs.cage_answers import StabilityAnswer
     from separatrix.verdict.long_jobs import Runner
 
 
 def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import StabilityAnswer
+    from separatrix.verbs.cage_answers import StabilityAnswer
     from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.stability_curve import stability_curve

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import TractionAnswer
+    from separatrix.verbs.chain_answers import TractionAnswer
 
 SLOPE = ("slope", "slope_error", "free_rolling_offset")
 CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
@@ -32,7 +32,7 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
     from separatrix.chain.contacts import race_tracks
     from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import TractionAnswer
+    from separatrix.verbs.chain_answers import TractionAnswer
 
     solution = solve(study)
     _ = solution.slopes  # refused, and noted, as everything after them
