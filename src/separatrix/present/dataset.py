@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,11 +47,6 @@ def arrays_of(item: Item) -> xr.Dataset:
     if isinstance(eta, Leaf) and eta.axes is None:  # a single number with the name of a dimension
         node["chain_restitution_factor"] = node.pop("restitution_factor")
     return xr.Dataset({name: variable(leaf) for name, leaf in _flat(node).items()}, attrs=complete)
-
-
-def save(data: xr.Dataset, path: Path) -> None:
-    """Write the dataset as netCDF, for other programs."""
-    data.to_netcdf(path, engine="h5netcdf")
 
 
 def _flat(node: Node, prefix: str = "") -> Columns:

@@ -106,9 +106,9 @@ def save_answer(
         is_whole = verb.writes_data and found.get("complete") is not False
         _write(stage, verb.name, page, found, with_pictures=pictures and is_whole, is_whole=is_whole)
         if is_whole:
-            from separatrix.present.dataset import dataset, save
+            from separatrix.present.dataset import dataset
 
-            save(dataset(found), stage / f"{verb.name}.nc")
+            dataset(found).to_netcdf(stage / f"{verb.name}.nc", engine="h5netcdf")
             for name, content in verb.files(part_of(found)):
                 (stage / name).write_bytes(content)
 

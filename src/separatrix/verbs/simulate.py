@@ -289,9 +289,9 @@ def _figure(answer: Part) -> Figure:
 
 def _view(answer: Part) -> str:
     from separatrix.present.view import page as view
-    from separatrix.verbs.parts.cage_scene import page_scene
+    from separatrix.verbs.parts.cage_scene import scene
 
-    return view(figure_heading(answer), page_scene(answer))
+    return view(figure_heading(answer), scene(answer))
 
 
 VERB = Verb(
