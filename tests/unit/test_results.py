@@ -135,12 +135,6 @@ def test_a_document_leaves_out_a_number_that_is_not_finite_with_a_warning(bad):
     np.testing.assert_array_equal(to_xarray(record)["values"], [[np.nan, 1.0]])
 
 
-def test_what_has_no_plain_form_is_refused():
-    """A function in a record is a fault of ours, not text."""
-    with pytest.raises(TypeError, match="has no plain form"):
-        plain({"a": print})
-
-
 def test_a_row_that_was_not_measured_has_all_keys():
     """Null but for its name, the reason and the empty list; none of the ranked one's is missing."""
     found = plain(NotMeasured(name="A", reason="not measured"))

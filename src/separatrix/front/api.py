@@ -235,20 +235,12 @@ def map(
     return _answer("map", study, question, **how)
 
 
-def rank(
-    study: Asked,
-    **how: Unpack[Runs],
-) -> Answer[RankingAnswer]:
+def rank(study: Asked, **how: Unpack[Runs]) -> Answer[RankingAnswer]:
     """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
     return _answer("rank", study, **how)
 
 
-def sensitivity(
-    study: Asked,
-    *,
-    samples: int = 512,
-    **how: Unpack[Runs],
-) -> Answer[SensitivityAnswer]:
+def sensitivity(study: Asked, *, samples: int = 512, **how: Unpack[Runs]) -> Answer[SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
     return _answer("sensitivity", study, {"samples": samples}, **how)
 
@@ -390,10 +382,7 @@ def material(
     return _of_tool(SHOW, SHOW.compute(options))
 
 
-def report(
-    study: Asked,
-    **how: Unpack[Runs],
-) -> Report:
+def report(study: Asked, **how: Unpack[Runs]) -> Report:
     """Everything on a study as one document; parameters are those of `stability`.
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
