@@ -131,7 +131,7 @@ def _array(value: object, *, is_text: bool) -> NDArray[np.generic]:
         if (array := np.array(value)).dtype.kind in "biuf":
             return np.where(np.isfinite(array), array, np.nan) if array.dtype.kind == "f" else array
     found = np.array(value, dtype=object)
-    is_absent = np.frompyfunc(lambda one: one is None, 1, 1)(found).astype(bool)
+    is_absent = np.asarray(np.frompyfunc(lambda one: one is None, 1, 1)(found), dtype=bool)
     if any(isinstance(one, str) for one in found.flat) or (is_text and is_absent.all()):
         found[is_absent] = ""
         return found
