@@ -37,7 +37,7 @@ from separatrix.present.blocks import (
 )
 from separatrix.present.figure import BLUE, GREY, VERMILION, Across, Axis, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import value_words
-from separatrix.verbs.parts.telling import quantity
+from separatrix.verbs.parts.quantity_text import quantity
 from separatrix.verbs.saved_answers import AGAIN, VERBS, is_number, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool
 

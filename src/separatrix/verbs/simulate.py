@@ -27,8 +27,8 @@ from separatrix.present.blocks import (
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
+from separatrix.verbs.parts.quantity_text import fill, number_of, place_column, quantity, show
 from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.parts.telling import number_of, place_column, quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
@@ -157,18 +157,18 @@ def run_facts(answer: Part) -> Facts:
     friction, damping = cage["ball_cage_friction"], None
     of = f", {friction['candidate']} in {friction['environment']}" if friction["value"] is None else ""
     if "given_restitution_factor" in answer:
-        damping = told(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
-        damping += said(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
+        damping = show(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
+        damping += fill(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
     law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
     return facts(
         ("Operation", "; ".join(figure_heading(answer)[1:])),
-        ("Initial disturbance", said(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
-        ("Pocket friction", f"{told(answer.cage, 'ball_cage_friction')}{of}"),
+        ("Initial disturbance", fill(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
+        ("Pocket friction", f"{show(answer.cage, 'ball_cage_friction')}{of}"),
         ("Ball", cage["ball"]["value"]),
         ("Race damping", damping),
-        ("Judged", said(answer, "{judged_from} to {followed}; the run has {run_length}")),
-        ("Drift rate", said(answer, "{drift_rate}" + law)),
-        ("Energy balance", said(answer, "closes to {energy_imbalance} of the work done")),
+        ("Judged", fill(answer, "{judged_from} to {followed}; the run has {run_length}")),
+        ("Drift rate", fill(answer, "{drift_rate}" + law)),
+        ("Energy balance", fill(answer, "closes to {energy_imbalance} of the work done")),
     )
 
 
@@ -184,12 +184,12 @@ def motion_facts(answer: Part) -> Facts:
     orbit = "centre {orbit_speed}" + (", tilt {cone_speed}" if "cone_speed" in answer else "")
     balls = number_of(answer, "orbit_speed", answer.cage.cage_speed)
     return facts(
-        ("Offset", said(answer, offset)),
+        ("Offset", fill(answer, offset)),
         ("Tilt", _tilt(answer)),
-        ("Axial place", said(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
-        ("Whirl", said(answer, whirl)),
-        ("Orbit", f"{said(answer, orbit)}; the ball set turns at {balls}"),
-        ("Cage slip", said(answer, slip)),
+        ("Axial place", fill(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
+        ("Whirl", fill(answer, whirl)),
+        ("Orbit", f"{fill(answer, orbit)}; the ball set turns at {balls}"),
+        ("Cage slip", fill(answer, slip)),
         ("Clearance", _clearance(answer)),
     )
 
@@ -200,14 +200,14 @@ def _tilt(answer: Part) -> str:
     cone = "without a steady phase to the offset"
     if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
         cone = "{tilt_phase} ahead of the offset (0: a forward cone)"
-    return said(answer, f"{{largest_tilt}} at most; {cone}")
+    return fill(answer, f"{{largest_tilt}} at most; {cone}")
 
 
 def _clearance(answer: Part) -> str:
     cage = answer.cage
-    land = said(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
-    axial = said(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
-    return f"{land}; pockets {told(answer.chain, 'half_play')} each way{axial}"
+    land = fill(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
+    axial = fill(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
+    return f"{land}; pockets {show(answer.chain, 'half_play')} each way{axial}"
 
 
 def has_land(cage: Part) -> bool:
@@ -225,12 +225,12 @@ def force_facts(answer: Part) -> Facts:
     if answer.force_exceeds_races:
         pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
         pocket += "(`[cage] ball = 'free'` has)"
-    shares = [f"{told(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
+    shares = [f"{show(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
     power = "pocket_rubbing_power"
     heat = alone(sum(answer.get(power)), quantity(power), answer.unit(power))
     return facts(
-        ("Pocket, largest", said(answer, pocket)),
-        ("Land, largest", told(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
+        ("Pocket, largest", fill(answer, pocket)),
+        ("Land, largest", show(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
         ("Impacts", f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"),
         ("Impulse", ", ".join(shares)),
         *power_facts(answer),
@@ -245,7 +245,7 @@ def _works(answer: Part) -> str:
     known = {name: work[last] for name, work in answer.work.values.items() if work[last]}
     each = (f"{name.replace('_', ' ')} {number_of(answer.work, name, one)}" for name, one in known.items())
     left = number_of(answer, "kinetic_energy", answer.kinetic_energy[last])
-    until = "" if last == -1 else said(answer, "up to {followed}: ")
+    until = "" if last == -1 else fill(answer, "up to {followed}: ")
     return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
 
 
