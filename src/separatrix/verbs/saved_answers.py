@@ -69,23 +69,19 @@ def read_answers(path: Path) -> dict[str, Document]:
     return {str(one["verb"]): one}
 
 
-def read_answer(path: Path) -> Document:
-    """Answer of a document (.json); refused as by `read_answers`."""
+def read_answer(path: Path, named: str = "") -> Document:
+    """Answer of a document (.json), of the verb that it is `named` after; refused as by `read_answers`."""
     where = path_text(path)
     if path.suffix.casefold() == ".nc":
         cure = f"Name the {path.stem}.json that was written beside it."
         raise InputError(where, "cannot be read back: answers are read from their .json", cure=cure)
-    return _checked(_parsed(_bytes(path), where), where)
+    return _checked(_parsed(_bytes(path), where), where, named)
 
 
 def read_folder(folder: Path) -> dict[str, Document]:
     """Answers of a folder, by verb; refused as by `read_answers`."""
     files = {verb: folder / f"{verb}.json" for verb in VERBS}
-    found = {
-        verb: _checked(read_answer(file), path_text(file), verb)
-        for verb, file in files.items()
-        if file.exists()
-    }
+    found = {verb: read_answer(file, verb) for verb, file in files.items() if file.exists()}
     if not found:
         raise InputError(path_text(folder), "does not contain an answer", cure=_MAKE)
     return found
