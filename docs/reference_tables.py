@@ -22,8 +22,8 @@ from separatrix.ground.units import UNITS, format_quantity
 from separatrix.study import study
 from separatrix.study.ball_bearing import Material
 from separatrix.study.template import keys_in, remark_of, sections, study_keys
-from separatrix.verbs import answer_records as answers
-from separatrix.verbs.parts.comparison import Row
+from separatrix.verbs import cage_answers, chain_answers
+from separatrix.verbs.compare import Row
 from separatrix.verbs.parts.quantities import QUANTITIES
 from separatrix.verdict.swept_cases import Duty, Sweep, WorstCase
 
@@ -226,16 +226,16 @@ FILMS = (
     Line("lubrication_reason", meaning="why there is no `lubrication`"),
 )
 VERBS = {
-    "check": Verb((answers.CheckAnswer,), CONTACTS),
+    "check": Verb((chain_answers.CheckAnswer,), CONTACTS),
     "bearing": Verb((BearingState, Clearances), OF_BEARING),
-    "traction": Verb((answers.TractionAnswer,), TRACTION),
-    "restitution": Verb((*CHAIN_RECORDS, answers.RestitutionAnswer), FILMS),
-    "mobility": Verb((answers.MobilityAnswer,)),
-    "stability": Verb((answers.StabilityAnswer, *CHAIN_RECORDS), OF_CAGE),
-    "map": Verb((answers.MapAnswer, *CHAIN_RECORDS), (*OF_CAGE, *COUNTS)),
-    "simulate": Verb((answers.SimulationAnswer, *CHAIN_RECORDS), RUN),
-    "rank": Verb((answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
-    "sensitivity": Verb((answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
+    "traction": Verb((chain_answers.TractionAnswer,), TRACTION),
+    "restitution": Verb((*CHAIN_RECORDS, chain_answers.RestitutionAnswer), FILMS),
+    "mobility": Verb((chain_answers.MobilityAnswer,)),
+    "stability": Verb((cage_answers.StabilityAnswer, *CHAIN_RECORDS), OF_CAGE),
+    "map": Verb((cage_answers.MapAnswer, *CHAIN_RECORDS), (*OF_CAGE, *COUNTS)),
+    "simulate": Verb((cage_answers.SimulationAnswer, *CHAIN_RECORDS), RUN),
+    "rank": Verb((cage_answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
+    "sensitivity": Verb((cage_answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
     "sweep": Verb(
         (Sweep, WorstCase, Duty),
         (

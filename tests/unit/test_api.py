@@ -4,7 +4,6 @@ import copy
 import html
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import separatrix
@@ -78,18 +77,6 @@ def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
     whole = api.rank(small, folder=tmp_path / "kept")
     assert whole.document()["complete"] is True
     assert whole.document() == api.rank(small).document()
-
-
-def test_a_study_that_lacks_a_section_is_refused(tmp_path):
-    """As the command line refuses it."""
-    path = tmp_path / "bare.toml"
-    text = separatrix.shipped_studies()["le7"].read_text(encoding="utf-8")
-    path.write_text(text, encoding="utf-8")
-    study = separatrix.read_study(path)
-    if study.cage is None:
-        with pytest.raises(InputError, match=r"\[cage\]"):
-            api.restitution(study)
-    assert np.isfinite(api.bearing(study).to_dataframe()["load_inner"]).all()
 
 
 def test_a_report_of_a_study_is_a_document(small):

@@ -14,9 +14,7 @@ from commands import SMALL, work_undrawn
 from fastapi.testclient import TestClient
 
 from separatrix.front.page import editing
-from separatrix.front.page.folder import TEMPLATES
 from separatrix.front.page.server import application
-from separatrix.front.page.worker import Job
 from separatrix.ground.errors import InputError
 from separatrix.verbs.verb import Option
 
@@ -202,12 +200,3 @@ def test_a_killed_computing_process_loses_only_the_job_in_hand(page):
     assert "resume to go on" in jobs(page)[0]
     page.post("/run/small.toml", data={"verb": "bearing"})
     until(page, lambda jobs: jobs[0].startswith("finished"), but=())
-
-
-@pytest.mark.parametrize(("seconds", "is_told"), [(5.0, False), (20.0, True)])
-def test_who_waits_for_a_report_is_told_why(seconds, is_told):
-    """A new installation compiles for minutes, while the job says what it is at and no point is done."""
-    known = {"state": "running", "message": "Computing bearing for the report."}
-    job = Job(number=1, verb="report", name="a.toml", started=time.monotonic() - seconds, **known)
-    text = TEMPLATES.get_template("jobs.html").render(jobs=[job], address=lambda _: "")
-    assert ("compiles the solver" in text) == is_told

@@ -15,7 +15,7 @@ from matplotlib import image
 import separatrix
 from separatrix.front import main
 from separatrix.verbs import VERBS as NAMES
-from separatrix.verbs import answer_files, verb_named
+from separatrix.verbs import verb_named
 from separatrix.verdict.ledger import NAME
 
 ENVIRONMENTS = [
@@ -249,20 +249,6 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     assert "Materials, at the temperature of the study." in whole
 
 
-def test_a_cage_without_a_land_has_no_assumed_land(capsys):
-    """What has no effect is not told among what is assumed."""
-    shipped = resources.files("separatrix") / "examples" / "momentum-wheel.toml"
-    lines = shipped.read_text(encoding="utf-8").splitlines()
-    bare = "\n".join(line for line in lines if not line.startswith(("land_stiffness", "land_clearance")))
-    landless = "\n".join(line for line in lines if not line.startswith("land_"))
-    for guidance, text in (("outer", f"{bare}\n"), ("ball", landless)):
-        given = text.replace('guidance = "outer"', f'guidance = "{guidance}"')
-        clearance = '\nland_clearance = "0.3 mm"' if guidance == "outer" else ""
-        Path("wheel.toml").write_text(given.replace("[cage]", f"[cage]{clearance}"))
-        assert main(["check", "wheel.toml"]) == 0
-        assert " ".join(capsys.readouterr().out.split()).count("land_stiffness = ") == (guidance == "outer")
-
-
 def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(capsys):
     """DN is bore times speed; the pressure at rest is that of `bearing` at 0 rpm."""
     Path("still.toml").write_text('extends = "cryogenic-turbopump"\n[operation]\ninner_speed = "0 rpm"\n')
@@ -272,13 +258,3 @@ def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(ca
     still = json.loads(capsys.readouterr().out)["contacts"]
     for race in ("inner", "outer"):
         assert checked["static"][race]["max_pressure"] == still[race]["max_pressure"]
-
-
-def test_the_page_of_an_answer_is_made_once(tmp_path, monkeypatch, capsys):
-    """For the terminal and for the files: that of a large map takes long, and an interrupt waits for it."""
-    made, usual = [], answer_files.page_of_document
-    monkeypatch.setattr(answer_files, "page_of_document", lambda *given: made.append(1) or usual(*given))
-    assert main(["restitution", "cryogenic-turbopump", "--out", str(tmp_path)]) == 0
-    assert "restitution" in capsys.readouterr().out
-    assert (tmp_path / "restitution.txt").exists()
-    assert made == [1]

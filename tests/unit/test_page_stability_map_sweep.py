@@ -8,8 +8,7 @@ import pytest
 from separatrix.ground.document import Part, part_of
 from separatrix.verbs.map import map_figure, nearest_words, rows
 from separatrix.verbs.parts.curve_blocks import band_words, linear_law, pocket_friction
-from separatrix.verbs.parts.telling import quantity
-from separatrix.verbs.parts.varied import is_proportional
+from separatrix.verbs.parts.quantity_text import is_proportional, quantity
 from separatrix.verbs.sweep import case_tables, csv_text, envelope_figure, worst_words
 
 POINT = {"critical_friction_low": 0.1, "critical_friction_high": 0.3}
@@ -32,7 +31,7 @@ POINT = {"critical_friction_low": 0.1, "critical_friction_high": 0.3}
     ],
 )
 def test_a_band_may_lack_an_end(lacks, sentence):
-    """An end of the band that was not found is said, and is not a dash in a sentence."""
+    """An end of the band that was not found is stated, and is not a dash in a sentence."""
     at = part_of({**POINT, **dict.fromkeys(lacks)})
     assert band_words(part_of({"searched_friction": 1.0}), at) == sentence
 
@@ -143,7 +142,7 @@ def test_a_screen_has_the_worst_cases():
 
 
 def test_cases_that_are_alike_have_no_worst():
-    """Then the number that they share is told, and no line is drawn."""
+    """Then the number that they share is stated, and no line is drawn."""
     worst = {"case": 0, "quantity": "restitution_factor", "compared": 3, "alike": 3}
     assert worst_words(swept(worst=worst)).startswith("No case is the worst: all 3 with an answer have the ")
     alike, other = (len(envelope_figure(one).panels[0].marks) for one in (swept(worst=worst), swept()))

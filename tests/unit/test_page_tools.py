@@ -11,10 +11,10 @@ from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Across, Trace
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
-from separatrix.verbs import bearing, compare, computed, materials, reproduce, tribometer
+from separatrix.verbs import bearing, compare, computed, materials, tribometer
 from separatrix.verbs.answer_files import document
-from separatrix.verbs.parts.comparison import compared as compared_answers
-from separatrix.verbs.parts.comparison import difference_interval, differing, results
+from separatrix.verbs.compare import compared as compared_answers
+from separatrix.verbs.compare import difference_interval, differing, results
 from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
 from separatrix.verdict.judgement import wilson_interval
 
@@ -147,23 +147,6 @@ def test_what_cannot_be_compared_is_refused(tmp_path):
         compared_answers({"bearing": ANSWER}, {"check": ANSWER}, names=("a", "b"))
     with pytest.raises(InputError, match=r"bearing\.json is damaged|did not write"):
         compared(tmp_path, study={"ranking": {"candidates": [1]}})
-
-
-# --- an answer again ----------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    ("value", "kind", "is_one"),
-    [
-        (1, int, True),
-        (True, int, False),
-        (1.5, float | str | None, True),
-        (["a"], tuple[str, ...], True),
-        ([1], tuple[str, ...], False),
-        (["a"], str, False),
-    ],
-)
-def test_an_option_from_an_answer_has_its_type(value, kind, is_one):
-    """A number is not a truth, a list has items of its type."""
-    assert reproduce.fits(value, kind) is is_one
 
 
 # --- logs and the library -----------------------------------------------------------------------

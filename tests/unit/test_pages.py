@@ -24,7 +24,7 @@ from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document
-from separatrix.verbs.parts import telling
+from separatrix.verbs.parts import quantity_text
 from separatrix.verbs.saved_answers import refusing_damage
 from separatrix.verdict.long_jobs import Interrupted
 
@@ -111,13 +111,13 @@ def test_every_number_of_a_page_is_the_documents(verb, answers, monkeypatch):
     """Those of tables and facts, and those told in sentences, too."""
     document = json.loads(json.dumps(answers(verb).document()))
     known, told = set(numbers(document)), []
-    alone = telling.alone
+    alone = quantity_text.alone
 
     def noted(value, *rest):
         told.append(value)
         return alone(value, *rest)
 
-    monkeypatch.setattr(telling, "alone", noted)
+    monkeypatch.setattr(quantity_text, "alone", noted)
     page = verb_named(verb).page(part_of(document))
     for block in page.blocks:
         if isinstance(block, Table):

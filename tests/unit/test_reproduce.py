@@ -32,14 +32,7 @@ elastic_modulus = { value = "3 GPa", source = "a sheet", confidence = "maker" }
 poisson_ratio = { value = 0.4, source = "a sheet", confidence = "guess" }
 """
 CASES = "film.thickness\n1 um\n0.5 um\n"
-STUDIES = (
-    "ball-218",
-    "cryogenic-turbopump",
-    "le7",
-    "lox-turbopump-radial",
-    "lox-turbopump",
-    "momentum-wheel",
-)
+STUDIES = ("ball-218", "lox-turbopump-radial")
 ASKED = [
     *(("check", name) for name in STUDIES),
     *(("bearing", name) for name in STUDIES),
@@ -184,7 +177,7 @@ def test_another_version_is_named_and_computed_all_the_same(stored, put, capsys)
 
 def test_a_report_has_its_answers_in_it(stored, put, capsys):
     """Each of them is computed again."""
-    answers = {asked[0]: stored[asked] for asked in (ASKED[0], ASKED[6])}
+    answers = {asked[0]: stored[asked] for asked in (("check", "ball-218"), ("bearing", "ball-218"))}
     text = json.dumps(answers).replace("</", r"<\/")
     page = f'<html><script type="application/json" id="separatrix-answers">{text}</script></html>'
     put({})

@@ -10,7 +10,7 @@ from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import CageDesign, PocketContact, PocketShape
-from separatrix.verbs.answer_records import FirstReached
+from separatrix.verbs.chain_answers import FirstReached
 from separatrix.verbs.check import _cage as checked
 
 EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))

@@ -2,43 +2,39 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
-from separatrix.chain.contacts import BearingState
 from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.reading import read_study, require
 from separatrix.study.study import Study
-from separatrix.verbs import Computed, computed, tool_named, verb_named
-from separatrix.verbs.answer_records import (
-    CheckAnswer,
-    MapAnswer,
-    MobilityAnswer,
-    RankingAnswer,
-    RestitutionAnswer,
-    SensitivityAnswer,
-    SimulationAnswer,
-    StabilityAnswer,
-    TractionAnswer,
-)
+from separatrix.verbs import computed, tool_named, verb_named
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
-from separatrix.verdict.swept_cases import Sweep
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from separatrix.chain.contacts import BearingState
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
+    from separatrix.verbs.cage_answers import (
+        MapAnswer,
+        RankingAnswer,
+        SensitivityAnswer,
+        SimulationAnswer,
+        StabilityAnswer,
+    )
+    from separatrix.verbs.chain_answers import CheckAnswer, MobilityAnswer, RestitutionAnswer, TractionAnswer
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool, Verb
+    from separatrix.verdict.swept_cases import Sweep
 
 Record = TypeVar("Record")
 
@@ -46,15 +42,30 @@ Record = TypeVar("Record")
 Asked = Study | str | Path
 
 
-class Shown(ABC):
-    """What every answer can show of itself, from its document and its page."""
+class Runs(TypedDict, total=False):
+    """How a verb makes its many runs; `stability` explains them."""
 
-    asked: Verb | Tool
-    record: Any
+    jobs: int | None
+    folder: str | Path | None
+    cluster: str | None
+    progress: Progress | None
 
-    @abstractmethod
+
+@dataclass(frozen=True, kw_only=True)
+class ToolAnswer(Generic[Record]):
+    """What a tool answers; the names of its record are its own, too, or those of its document without one."""
+
+    asked: Verb | Tool = field(repr=False)
+    record: Record = field(repr=False)
+    made: Callable[[], Document] = field(repr=False)
+
+    @cached_property
+    def _document(self) -> Document:
+        return self.made()
+
     def document(self) -> Document:
         """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
+        return self._document
 
     def page(self) -> Page:
         """Page of blocks: what text, report, workbook and local page show."""
@@ -81,6 +92,12 @@ class Shown(ABC):
 
         return plot(self.page(), name)
 
+    def to_dataframe(self) -> pd.DataFrame:
+        """One row for each test, record or result."""
+        import pandas as pd
+
+        return pd.json_normalize(self.document()[self.asked.rows])
+
     def __getattr__(self, name: str) -> Any:
         """Name of the record; of an answer without one, of its document."""
         if name.startswith("_"):
@@ -93,25 +110,18 @@ class Shown(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Shown, Generic[Record]):
+class Answer(ToolAnswer[Record]):
     """What a verb answers to a study; the names of its record are its own, too.
 
     `record` was computed for `study`; `notes` are about where a model leaves its range.
     """
 
-    asked: Verb = field(repr=False)
-    record: Record
-    computed: Computed = field(repr=False)
+    study: Study
 
     @property
     def verb(self) -> str:
         """Name of the verb."""
         return self.asked.name
-
-    @property
-    def study(self) -> Study:
-        """The study that was asked."""
-        return self.computed.study
 
     def __repr__(self) -> str:
         """Verb and study; `summary` has the answer."""
@@ -124,16 +134,6 @@ class Answer(Shown, Generic[Record]):
 
         return notes_of(self.record, self.study)
 
-    @cached_property
-    def _document(self) -> Document:
-        from separatrix.verbs.answer_files import document
-
-        return document(self.asked, self.computed)
-
-    def document(self) -> Document:
-        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        return self._document
-
     def to_xarray(self) -> xr.Dataset:
         """Labelled arrays with their units, as they are saved in netCDF files."""
         from separatrix.present.dataset import dataset
@@ -142,36 +142,19 @@ class Answer(Shown, Generic[Record]):
 
     def to_dataframe(self) -> pd.DataFrame:
         """One row for each ball, point, material or case."""
-        from separatrix.verbs.shapes import to_dataframe
+        from separatrix.verbs.answer_files import to_dataframe
 
         return to_dataframe(self.record)
 
 
-@dataclass(frozen=True)
-class ToolAnswer(Shown):
-    """What a tool answers: the names of its record are its own, too; without one those of its document."""
-
-    asked: Tool
-    found: Document = field(repr=False)
-    record: Any = field(default=None, repr=False)
-
-    def document(self) -> Document:
-        """Plain data, as ``--json`` prints it: SI units, None where something is absent."""
-        return self.found
-
-    def to_dataframe(self) -> pd.DataFrame:
-        """One row for each test, record or result."""
-        import pandas as pd
-
-        return pd.json_normalize(self.found[self.asked.rows])
-
-
-def _answer(verb: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
+def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
     """Answer of a verb; `how` is as for `computed`."""
-    study, known = study if isinstance(study, Study) else read_study(study), verb_named(verb)
-    require(study, verb, *known.needs)
-    found = computed(known, study, known.options(**(options or {})), **how)
-    answer = Answer(asked=known, record=found.record, computed=found)
+    from separatrix.verbs.answer_files import document
+
+    study, verb = study if isinstance(study, Study) else read_study(study), verb_named(name)
+    require(study, name, *verb.needs)
+    found = computed(verb, study, verb.options(**(options or {})), **how)
+    answer = Answer(asked=verb, record=found.record, study=study, made=partial(document, verb, found))
     if not found.is_complete:
         raise Interrupted(answer)
     return answer
@@ -214,28 +197,17 @@ def simulate(
     return _answer("simulate", study, question)
 
 
-def stability(
-    study: Asked,
-    *,
-    jobs: int | None = None,
-    folder: str | Path | None = None,
-    cluster: str | None = None,
-    progress: Progress | None = None,
-) -> Answer[StabilityAnswer]:
+def stability(study: Asked, **how: Unpack[Runs]) -> Answer[StabilityAnswer]:
     """Critical friction against restitution factor.
 
     Parameters
     ----------
     study : Study, str or Path
         A study, the path of its file, or the name of a shipped one.
-    jobs : int, optional
-        Threads, by default one for each processor; the numbers do not depend on it.
-    folder : str or Path, optional
-        Where finished runs are kept: a later call takes them from there.
-    cluster : str, optional
-        Address of a Dask scheduler, or ``"local:N"`` for N processes here.
-    progress : callable, optional
-        Called with (done, total) points.
+    **how
+        `jobs`, threads, by default one for each processor; the numbers do not depend on it. `folder`, where
+        finished runs are kept: a later call takes them from there. `cluster`, address of a Dask scheduler,
+        or ``"local:N"`` for N processes here. `progress`, called with (done, total) points.
 
     Raises
     ------
@@ -244,7 +216,7 @@ def stability(
     Interrupted
         With the answer made of what was finished.
     """
-    return _answer("stability", study, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+    return _answer("stability", study, **how)
 
 
 def map(
@@ -255,42 +227,21 @@ def map(
     points: int = 100,
     runs: int = 16,
     kick: str | MetrePerSecond | None = None,
-    jobs: int | None = None,
-    folder: str | Path | None = None,
-    cluster: str | None = None,
-    progress: Progress | None = None,
+    **how: Unpack[Runs],
 ) -> Answer[MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `stability` for the rest."""
     question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick}
-    return _answer("map", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+    return _answer("map", study, question, **how)
 
 
-def rank(
-    study: Asked,
-    *,
-    jobs: int | None = None,
-    folder: str | Path | None = None,
-    cluster: str | None = None,
-    progress: Progress | None = None,
-) -> Answer[RankingAnswer]:
+def rank(study: Asked, **how: Unpack[Runs]) -> Answer[RankingAnswer]:
     """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
-    return _answer("rank", study, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+    return _answer("rank", study, **how)
 
 
-def sensitivity(
-    study: Asked,
-    *,
-    samples: int = 512,
-    jobs: int | None = None,
-    folder: str | Path | None = None,
-    cluster: str | None = None,
-    progress: Progress | None = None,
-) -> Answer[SensitivityAnswer]:
+def sensitivity(study: Asked, *, samples: int = 512, **how: Unpack[Runs]) -> Answer[SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
-    question = {"samples": samples}
-    return _answer(
-        "sensitivity", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress
-    )
+    return _answer("sensitivity", study, {"samples": samples}, **how)
 
 
 def sweep(
@@ -300,18 +251,15 @@ def sweep(
     cases: Path | Sequence[Case] | None = None,
     verdicts: bool = False,
     margins: bool = False,
-    jobs: int | None = None,
-    folder: str | Path | None = None,
-    cluster: str | None = None,
-    progress: Progress | None = None,
+    **how: Unpack[Runs],
 ) -> Answer[Sweep]:
     """Chain and verdict of many cases: see `stability` for the other parameters."""
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
     question = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
-    return _answer("sweep", study, question, jobs=jobs, folder=folder, cluster=cluster, progress=progress)
+    return _answer("sweep", study, question, **how)
 
 
-def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> ToolAnswer:
+def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> ToolAnswer[Any]:
     """Two answers of one verb: what differs, and whether by more than counting noise.
 
     Parameters
@@ -324,7 +272,7 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     InputError
         One of them is not an answer, or they are of different verbs.
     """
-    from separatrix.verbs.parts.comparison import compared
+    from separatrix.verbs.compare import compared
     from separatrix.verbs.saved_answers import read_answers
 
     sides = [
@@ -332,7 +280,11 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
         for one in (first, second)
     ]
     names = [one.study.name if isinstance(one, Answer) else str(one) for one in (first, second)]
-    return ToolAnswer(tool_named("compare"), compared(*sides, names=(names[0], names[1])))
+    return _of_tool(tool_named("compare"), compared(*sides, names=(names[0], names[1])))
+
+
+def _of_tool(tool: Tool, found: Document, record: Any = None) -> ToolAnswer[Any]:
+    return ToolAnswer(asked=tool, record=record, made=partial(dict, found))
 
 
 def load(path: str | Path) -> xr.Dataset:
@@ -359,7 +311,7 @@ def tribometer(
     complete: bool = False,
     jobs: int = 1,
     progress: Progress | None = None,
-) -> ToolAnswer:
+) -> ToolAnswer[Any]:
     """Read logs of tribometers and reduce each test to its steady friction.
 
     Parameters
@@ -390,10 +342,10 @@ def tribometer(
     given: Any = Path(column_map) if isinstance(column_map, str) else column_map
     options = Options(files=tuple(Path(one) for one in files), column_map=given, run_in=run_in, join=join)
     found = reduced(options, jobs, progress, complete=complete)
-    return ToolAnswer(tool_named("tribometer"), document(found), found)
+    return _of_tool(tool_named("tribometer"), document(found), found)
 
 
-def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) -> ToolAnswer:
+def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) -> ToolAnswer[Any]:
     """Records of the library: the shipped ones, those of the current folder, and those of `libraries`.
 
     Parameters
@@ -411,7 +363,7 @@ def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) 
     from separatrix.verbs.materials import LIST
 
     options = LIST.options(kind=kind, library=tuple(str(one) for one in libraries))
-    return ToolAnswer(LIST, LIST.compute(options))
+    return _of_tool(LIST, LIST.compute(options))
 
 
 def material(
@@ -420,27 +372,16 @@ def material(
     kind: str | None = None,
     temperature: str | None = None,
     libraries: Sequence[str | Path] = (),
-) -> ToolAnswer:
+) -> ToolAnswer[Any]:
     """Records of a name, whole; at a temperature, such as ``"77 K"``, with what serves there."""
     from separatrix.verbs.materials import SHOW
 
-    asked = {
-        "name": name,
-        "kind": kind,
-        "temperature": temperature,
-        "library": tuple(str(one) for one in libraries),
-    }
-    return ToolAnswer(SHOW, SHOW.compute(SHOW.options(**asked)))
+    files = tuple(str(one) for one in libraries)
+    options = SHOW.options(name=name, kind=kind, temperature=temperature, library=files)
+    return _of_tool(SHOW, SHOW.compute(options))
 
 
-def report(
-    study: Asked,
-    *,
-    jobs: int | None = None,
-    folder: str | Path | None = None,
-    cluster: str | None = None,
-    progress: Progress | None = None,
-) -> Report:
+def report(study: Asked, **how: Unpack[Runs]) -> Report:
     """Everything on a study as one document; parameters are those of `stability`.
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
@@ -448,13 +389,7 @@ def report(
     from separatrix.verbs.report import report_of_study
 
     asked = study if isinstance(study, Study) else read_study(study)
-
-    def compute(verb: Verb) -> Computed:
-        return _answer(
-            verb.name, asked, jobs=jobs, folder=folder, cluster=cluster, progress=progress
-        ).computed
-
-    found = report_of_study(asked, None, compute)
+    found = report_of_study(asked, lambda verb: _answer(verb.name, asked, **how).document())
     if found is None:  # `_answer` has raised it with what was finished
         raise Interrupted
     return found

@@ -18,25 +18,24 @@ from separatrix.front.commands import (
     Json,
     Quiet,
     command,
-    compute_tool,
     computed_with_progress,
+    deliver,
     folder,
     named,
     options_of,
-    run_tool,
+    print_place,
     threads,
     tool_command,
     verb_command,
     whole_number,
+    with_progress,
 )
 from separatrix.front.console import (
     answer,
     answer_json,
-    breakable,
     complain,
     interrupted,
     interruptible,
-    progress_bar,
 )
 from separatrix.ground.errors import InputError, SeparatrixError, harmless
 from separatrix.ground.files import refuse_existing, staged, writable_folder, write_new
@@ -44,12 +43,9 @@ from separatrix.ground.units import printable, shown
 from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
 
 if TYPE_CHECKING:
-    from separatrix.friction.log_series import ReducedLogs
     from separatrix.ground.document import Document
-    from separatrix.study.study import Study
-    from separatrix.verbs import Computed
     from separatrix.verbs.report import Report
-    from separatrix.verbs.verb import Tool
+    from separatrix.verbs.verb import Tool, Verb
 
 FAULT, WRONG_INPUT = 1, 2
 
@@ -70,7 +66,7 @@ MOST_PORT = 65535
 
 REPORT = "Everything on one study as a document: HTML, and PDF with --pdf."
 REPORT_EPILOG = (
-    "Of a folder: from the answers in it; nothing long is computed. Of a study: bearing, traction, "
+    "Of a folder: from the answers in it. Of a study: bearing, traction, "
     "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
     "same inputs that are there already are taken. The HTML needs no other file and no network."
 )
@@ -147,7 +143,7 @@ def _report(
     jobs: Jobs = None,
 ) -> int:
     """Write the report of a study or of a folder, and return the exit status."""
-    to, compute = folder(out), partial(computed_with_progress, quiet=quiet, jobs=threads(jobs))
+    to, count = folder(out), threads(jobs)
     if pdf:
         from separatrix.present.pdf import typesetter
 
@@ -156,7 +152,9 @@ def _report(
         typesetter()
     from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
-    from separatrix.verbs.report import report_of_study
+    from separatrix.verbs.answer_files import document
+    from separatrix.verbs.report import report_of, report_of_study
+    from separatrix.verbs.saved_answers import read_folder
 
     with interruptible("no report was written."), contextlib.ExitStack() as stack:
         is_folder = Path(asked).is_dir() and asked not in shipped_studies()
@@ -166,9 +164,14 @@ def _report(
         if place is not None:
             stack.enter_context(writable_folder(place))
         if study is None:
-            made: Report | None = _of_folder(usual, compute)
+            made: Report | None = report_of(read_folder(usual), where=str(usual))
         else:
-            made = report_of_study(study, place, partial(compute, study=study, folder=place))
+            how: dict[str, Any] = {"quiet": quiet, "jobs": count, "folder": place}
+
+            def computed(verb: Verb) -> Document:
+                return document(verb, computed_with_progress(verb, study, **how))
+
+            made = report_of_study(study, computed, place)
         if made is None:
             return interrupted("no report was written. Run the same command to resume.")
         files = [] if place is None else made.write(place, with_pdf=pdf)
@@ -180,44 +183,7 @@ def _report(
     return ANSWERED
 
 
-def _of_folder(place: Path, compute: Callable[..., Computed]) -> Report:
-    """Return the report of a folder, with what its chain lacks if its study can be read back."""
-    from separatrix.verbs.answer_files import document
-    from separatrix.verbs.report import CHAIN, add_missing, report_of, wanted
-    from separatrix.verbs.saved_answers import read_folder
-
-    found, missing = read_folder(place), list[str]()
-    study = _read_back(next(iter(found.values())))
-    if study is not None:
-
-        def computed(name: str) -> Document:
-            return document(verb_named(name), compute(verb_named(name), study, folder=None))
-
-        missing = add_missing(found, [verb for verb in wanted(study) if verb in CHAIN], computed)
-    return report_of(found, missing, str(place))
-
-
-def _read_back(found: Document) -> Study | None:
-    """Return the study of an answer, from what it keeps; None where that has another one."""
-    from separatrix.ground.plain_data import plain
-    from separatrix.study.reading import study_again
-    from separatrix.study.sources import resolved
-
-    try:
-        study = study_again(found["provenance"]["study"])
-    except (InputError, KeyError, TypeError):  # it keeps no study, or that of another version
-        return None
-    return study if plain(resolved(study), "study") == found["study"] else None
-
-
-# Tools that write files.
-
-
-def _compare(tool: Tool, given: Mapping[str, Any]) -> int:
-    """Compare two answers; write document, text and pictures."""
-    to = folder(given["out"]) or (None if given["json"] else Path("compare"))
-    what = "Text, data and figures"
-    return run_tool(tool, given, ended="nothing was compared.", folder=to, what=what)
+# The friction of logs.
 
 
 FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
@@ -230,20 +196,24 @@ WRITTEN: dict[str, tuple[Any, Any]] = {
 
 def _reduce(tool: Tool, given: Mapping[str, Any]) -> int:
     """Reduce logs; write a friction file and pictures of the tests."""
+    from separatrix.ground.document import part_of
+    from separatrix.verbs.answer_files import save_pictures
+
     to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
     if to is not None:
         _refuse_out(to)
         pages = pages or to.with_name(f"{to.stem}-plots")
-    with contextlib.nullcontext() if to is None else writable_folder(to.parent):
-        return run_tool(
-            tool,
-            given,
-            ended="no friction file was written.",
-            compute=partial(_reduced, tool, given, to),
-            folder=pages,
-            what="Pictures of the tests",
-            pictures_only=True,
-        )
+    with interruptible("no friction file was written."), contextlib.ExitStack() as stack:
+        for place in filter(None, (to and to.parent, pages)):
+            stack.enter_context(writable_folder(place))
+        found = _reduced(tool, given, to)
+        page = tool.page(part_of(found))
+        if pages is not None:
+            save_pictures(pages, page)
+        deliver(found, lambda: page, given)
+        if pages is not None:
+            print_place("Pictures of the tests", pages, given)
+    return ANSWERED
 
 
 def _reduced(tool: Tool, given: Mapping[str, Any], to: Path | None) -> Document:
@@ -252,20 +222,17 @@ def _reduced(tool: Tool, given: Mapping[str, Any], to: Path | None) -> Document:
     from separatrix.verbs.tribometer import document, reduced
 
     try:
-        if to is None:
-            return compute_tool(tool, given)
-        options, count = options_of(tool, given), threads(given["jobs"])
-        with progress_bar(tool.name, quiet=given["quiet"]) as progress:
-            found: ReducedLogs = breakable(partial(reduced, options, count, progress, complete=True))
+        compute = partial(reduced, options_of(tool, given), complete=to is not None)
+        found = with_progress(tool, compute, given)
     except UnmappedError as error:
         raise error.with_draft_written() from None
-    if found.friction_tests is not None:
+    if to is not None and found.friction_tests is not None:
         from separatrix.friction.friction_file import friction_text
 
         with staged(to.parent) as stage:
             (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
             refuse_existing(to)  # it may have been made since the first check
-    return document(found, str(to))
+    return document(found, None if to is None else str(to))
 
 
 def _refuse_out(out: Path) -> None:
@@ -304,9 +271,7 @@ def _command(name: str) -> Any:
     elif name in TOOLS:
         tool = tool_named(name)
         made, epilog = tool_command(tool), tool.epilog
-        if name == "compare":
-            made = command(_compare, tool, "full", "json", "out", "quiet")
-        elif name == "tribometer":
+        if name == "tribometer":
             made = command(_reduce, tool, "full", "json", "quiet", "jobs", more=WRITTEN)
     else:
         made, epilog = OWN[name]

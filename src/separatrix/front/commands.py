@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 import inspect
 from collections.abc import Callable, Mapping
+from dataclasses import MISSING
 from functools import cache, partial
 from pathlib import Path
 from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, Union, get_args, get_origin
 
 import typer
 
@@ -25,7 +26,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
 from separatrix.verbs import asked_study, computed, processors
-from separatrix.verbs.verb import REQUIRED, Option
+from separatrix.verbs.verb import Option
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
     from separatrix.verbs.verb import Tool, Verb
+
+Result = TypeVar("Result")
 
 ANSWERED = 0
 MOST_JOBS = 1024
@@ -100,7 +103,7 @@ def named(text: str | None, option: str, what: str, cure: str = "") -> Path | No
 
 def command(
     run: Callable[[Any, Mapping[str, Any]], int],
-    asked: Verb | Tool,
+    asked: Tool,
     *beside: str,
     more: Mapping[str, tuple[Any, Any]] | None = None,
 ) -> Callable[..., int]:
@@ -125,7 +128,7 @@ def command(
 def _typed(name: str, kind: Any, note: Option, default: Any) -> tuple[Any, Any]:
     """Return the type of an option with its help as typer takes it, and its default."""
     base, is_many = _base(kind)
-    default = inspect.Parameter.empty if default is REQUIRED else default
+    default = inspect.Parameter.empty if default is MISSING else default
     text: Any = bool if base is bool else str
     if is_many:
         text, default = list[str] if note.is_argument else list[str] | None, default or None
@@ -152,7 +155,7 @@ def _base(kind: Any) -> tuple[Any, bool]:
     return kind, False
 
 
-def options_of(asked: Verb | Tool, given: Mapping[str, Any]) -> Any:
+def options_of(asked: Tool, given: Mapping[str, Any]) -> Any:
     """Return the options of a verb or tool from the values of its command."""
     values = {}
     for name, (kind, note, _) in asked.shown_options().items():
@@ -177,12 +180,12 @@ def verb_command(verb: Verb) -> Callable[..., int]:
 
 def run(verb: Verb, given: Mapping[str, Any]) -> int:
     """Answer one question and return the exit status."""
-    json, cluster = given["json"], given.get("cluster")
+    from separatrix.verbs.answer_files import document, page_of_document, save_answer
+
+    json, cluster, quiet = given["json"], given.get("cluster"), given["quiet"]
     named(cluster, "--cluster", "a scheduler, or local:N")
     place, jobs = folder(given["out"]), threads(given["jobs"])
     is_kept = verb.keeps_runs and not (json and place is None)
-    if given.get("animate") is not None and json and place is None:
-        raise InputError("--animate", "needs a folder with --json", cure="Give --out DIR.")
     ended = "runs that were finished are kept." if is_kept else "no file was written."
     with interruptible(ended), contextlib.ExitStack() as stack:
         options = options_of(verb, given)
@@ -190,9 +193,15 @@ def run(verb: Verb, given: Mapping[str, Any]) -> int:
         to = Path(study.name) if place is None and verb.writes_data and not json else place
         if to is not None:
             stack.enter_context(writable_folder(to))
-        how = {"quiet": given["quiet"], "jobs": jobs, "folder": to, "cluster": cluster}
+        how = {"quiet": quiet, "jobs": jobs, "folder": to, "cluster": cluster}
         found = computed_with_progress(verb, study, options, **how)
-        _deliver(found, verb, to, given)
+        made = document(verb, found)
+        page = cache(partial(page_of_document, verb, made))
+        deliver(made, page, given)
+        if to is not None:  # this takes as long again
+            with progress_bar("files", quiet=quiet):
+                save_answer(to, verb, made, page=page())
+            print_place("Text, figures and data", to, given)
     if found.is_complete:
         return ANSWERED
     more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
@@ -221,19 +230,6 @@ def computed_with_progress(
     return found
 
 
-def _deliver(found: Computed, verb: Verb, folder: Path | None, given: Mapping[str, Any]) -> None:
-    """Print the answer, then write the files, which take as long again, and print where they are."""
-    from separatrix.verbs.answer_files import document, page_of_document, save_answer
-
-    made, quiet = document(verb, found), given["quiet"]
-    page = cache(partial(page_of_document, verb, made))
-    deliver(made, page, given)
-    if folder is not None:
-        with progress_bar("files", quiet=quiet) as progress:
-            save_answer(folder, verb, made, page=page(), options=found.options, progress=progress)
-        tell_place("Text, figures and data", folder, given)
-
-
 def deliver(made: Document, page: Callable[[], Page], given: Mapping[str, Any]) -> None:
     """Print a document, or its page; with `--quiet` without its notes."""
     from separatrix.present.blocks import Level
@@ -246,7 +242,7 @@ def deliver(made: Document, page: Callable[[], Page], given: Mapping[str, Any]) 
     answer(text(shown, Level.FULL if given.get("full") else Level.BRIEF))
 
 
-def tell_place(what: str, folder: Path, given: Mapping[str, Any]) -> None:
+def print_place(what: str, folder: Path, given: Mapping[str, Any]) -> None:
     """Print where files are."""
     if not given["json"] and not given["quiet"]:
         answer(f"\n{what} are in {folder}/\n")
@@ -256,44 +252,36 @@ def tell_place(what: str, folder: Path, given: Mapping[str, Any]) -> None:
 
 
 def tool_command(tool: Tool) -> Callable[..., int]:
-    """Return the function behind the command of a tool that prints its page and writes no file."""
-    beside = [*("full",) * tool.has_full, "json", *("quiet", "jobs") * tool.takes_time]
-    return command(run_tool, tool, *beside)
+    """Return the function behind the command of a tool."""
+    out = ("out",) * bool(tool.folder)
+    quiet = ("quiet",) * bool(tool.takes_time or tool.folder)
+    return command(
+        run_tool, tool, *("full",) * tool.has_full, "json", *out, *quiet, *("jobs",) * tool.takes_time
+    )
 
 
-def run_tool(
-    tool: Tool,
-    given: Mapping[str, Any],
-    *,
-    ended: str = "no answer was given.",
-    compute: Callable[[], Document] | None = None,
-    folder: Path | None = None,
-    what: str = "",
-    pictures_only: bool = False,
-) -> int:
-    """Answer a tool's question and return the exit status.
-
-    Into a folder go the document and its page as text, HTML and workbook with pictures, or those alone.
-    """
+def run_tool(tool: Tool, given: Mapping[str, Any]) -> int:
+    """Answer a tool's question and return the exit status."""
     from separatrix.ground.document import part_of
     from separatrix.verbs.answer_files import save_page
 
-    with interruptible(ended), contextlib.nullcontext() if folder is None else writable_folder(folder):
-        found = (compute or partial(compute_tool, tool, given))()
+    usual = Path(tool.folder) if tool.folder and not given["json"] else None
+    to = folder(given.get("out")) or usual
+    place = contextlib.nullcontext() if to is None else writable_folder(to)
+    with interruptible("no answer was given."), place:
+        compute = partial(tool.compute, options_of(tool, given))
+        found = with_progress(tool, compute, given) if tool.takes_time else breakable(compute)
         page = tool.page(part_of(found))
-        if folder is not None:
-            save_page(folder, tool.name, page, None if pictures_only else found)
+        if to is not None:
+            save_page(to, tool.name, page, found)
         deliver(found, lambda: page, given)
-        if folder is not None:
-            tell_place(what, folder, given)
+        if to is not None:
+            print_place("Text, data and figures", to, given)
     return ANSWERED
 
 
-def compute_tool(tool: Tool, given: Mapping[str, Any]) -> Document:
-    """Compute the document of a tool, with a bar of progress where that takes time."""
-    options = options_of(tool, given)
-    if not tool.takes_time:
-        return breakable(partial(tool.compute, options))
+def with_progress(tool: Tool, compute: Callable[..., Result], given: Mapping[str, Any]) -> Result:
+    """Return what takes threads and progress, with a bar."""
     count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:
-        return breakable(partial(tool.compute, options, count, progress))
+        return breakable(partial(compute, count, progress))

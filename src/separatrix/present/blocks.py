@@ -85,6 +85,11 @@ class ShownColumn:
         """Whether its numbers have intervals."""
         return any(isinstance(one.value, Estimate) and one.value.has_ends for one in self.cells)
 
+    @property
+    def title(self) -> str:
+        """Its head with its unit."""
+        return self.head + f" [{self.unit}]" * bool(self.unit) + " (95 %)" * self.has_ends
+
 
 @dataclass(frozen=True, slots=True)
 class Heading:

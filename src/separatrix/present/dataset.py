@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,11 +47,6 @@ def arrays_of(item: Item) -> xr.Dataset:
     if isinstance(eta, Leaf) and eta.axes is None:  # a single number with the name of a dimension
         node["chain_restitution_factor"] = node.pop("restitution_factor")
     return xr.Dataset({name: variable(leaf) for name, leaf in _flat(node).items()}, attrs=complete)
-
-
-def save(data: xr.Dataset, path: Path) -> None:
-    """Write the dataset as netCDF, for other programs."""
-    data.to_netcdf(path, engine="h5netcdf")
 
 
 def _flat(node: Node, prefix: str = "") -> Columns:
@@ -136,26 +130,13 @@ def _array(value: object, *, is_text: bool) -> NDArray[np.generic]:
     with contextlib.suppress(ValueError):  # some rows are shorter than others
         if (array := np.array(value)).dtype.kind in "biuf":
             return np.where(np.isfinite(array), array, np.nan) if array.dtype.kind == "f" else array
-    found = list(_leaves(value))
-    if any(isinstance(one, str) for one in found) or (is_text and all(one is None for one in found)):
-        return np.array(_without_none(value, ""), dtype=object)
-    if any(one is None for one in found):
-        return np.array(_without_none(value, np.nan), dtype=float)
-    return np.array(value)
-
-
-def _leaves(values: object) -> Iterator[object]:
-    if not isinstance(values, list):
-        yield values
-        return
-    for value in values:
-        yield from _leaves(value)
-
-
-def _without_none(values: object, missing: object) -> object:
-    if isinstance(values, list):
-        return [_without_none(value, missing) for value in values]
-    return missing if values is None else values
+    found = np.array(value, dtype=object)
+    is_absent = np.asarray(np.frompyfunc(lambda one: one is None, 1, 1)(found), dtype=bool)
+    if any(isinstance(one, str) for one in found.flat) or (is_text and is_absent.all()):
+        found[is_absent] = ""
+        return found
+    found[is_absent] = np.nan
+    return found.astype(float)
 
 
 def _sizes(values: list[Any], axes: int) -> list[int]:

@@ -117,7 +117,10 @@ def _block(block: Block, picture: PictureHtml, view: Callable[[View], str]) -> s
         case Heading(text=text, depth=depth):
             return f'<h{depth} id="{_id(text)}">{inline(text)}</h{depth}>'
         case Facts(pairs=pairs):
-            rows = (f"<div><dt>{inline(label)}</dt><dd>{_inside(cell)}</dd></div>" for label, cell in pairs)
+            rows = (
+                f"<div><dt>{inline(label)}</dt><dd>{_meant(cell, cell.text)}</dd></div>"
+                for label, cell in pairs
+            )
             return f"<dl>{''.join(rows)}</dl>"
         case Table():
             return _table(block)
@@ -134,7 +137,7 @@ def _block(block: Block, picture: PictureHtml, view: Callable[[View], str]) -> s
 
 def _table(table: Table) -> str:
     columns = table.shown
-    heads = "".join(f'<th scope="col" class="{_side(one)}">{_head(one)}</th>' for one in columns)
+    heads = "".join(f'<th scope="col" class="{_side(one)}">{inline(one.title)}</th>' for one in columns)
     rows = "".join(
         f"<tr>{''.join(_cell(one, place, is_first=one is columns[0]) for one in columns)}</tr>"
         for place in range(len(table.rows))
@@ -158,20 +161,8 @@ def _cell(column: ShownColumn, place: int, *, is_first: bool) -> str:
     return f'<td class="{kinds}">{_meant(column.cells[place], text)}</td>'
 
 
-def _head(one: ShownColumn) -> str:
-    return (
-        inline(one.head)
-        + (f" [{escape(one.unit)}]" if one.unit else "")
-        + (" (95 %)" if one.has_ends else "")
-    )
-
-
 def _side(one: ShownColumn) -> str:
     return "" if one.is_text else "n"
-
-
-def _inside(cell: Cell) -> str:
-    return _meant(cell, cell.text)
 
 
 def _meant(cell: Cell, text: str) -> str:

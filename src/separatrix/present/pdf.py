@@ -73,10 +73,6 @@ def _drawn(one: draw.Drawing) -> dict[str, Any]:
 
 def _table(block: Table) -> dict[str, Any]:
     columns = block.shown
-    heads = [
-        one.head + (f" [{one.unit}]" if one.unit else "") + (" (95 %)" if one.has_ends else "")
-        for one in columns
-    ]
     rows = [
         [
             {
@@ -91,7 +87,7 @@ def _table(block: Table) -> dict[str, Any]:
     ]
     return {
         "kind": "table",
-        "heads": [_spans(head) for head in heads],
+        "heads": [_spans(one.title) for one in columns],
         "is-text": [one.is_text for one in columns],
         "rows": rows,
         "caption": _spans(block.caption),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
+from typing import Any
 
 from separatrix.present.blocks import (
     Block,
@@ -86,33 +87,26 @@ def _table(table: Table) -> str:
     signs = ["<" if one.is_text else ">" for one in columns]
     room = TABLE - sum(widths[:-1]) - 2 * len(widths)
     if columns[-1].is_text and LEAST <= room < widths[-1]:
-        return _wrapped(heads, cells, [*widths[:-1], room], signs)
+        rows: list[Sequence[str]] = []
+        for *row, last in zip(*cells, strict=True):
+            first, *rest = textwrap.wrap(last, room) or [""]
+            rows += [[*row, first], *([""] * len(row) + [more] for more in rest)]
+        return _lines([heads, [*widths[:-1], room], signs], rows)
     parts = []
     for part in _parts(widths):
-        tall = max(len(heads[i]) for i in part)
-        above = [["", *[""] * (tall - len(heads[i]) - 1), *heads[i]][-tall:] for i in part]
-        body = [*zip(*above, strict=True), ["-" * widths[i] for i in part]]
-        body += zip(*(cells[i] for i in part), strict=True)
-        looks = [f"{signs[i]}{widths[i]}" for i in part]
-        parts.append("\n".join("  " + "  ".join(map(format, line, looks)).rstrip() for line in body))
+        rows = [*zip(*(cells[i] for i in part), strict=True)]
+        parts.append(_lines([[one[i] for i in part] for one in (heads, widths, signs)], rows))
     return "\n\n".join(parts)
 
 
-def _wrapped(
-    heads: Sequence[Sequence[str]],
-    cells: Sequence[Sequence[str]],
-    widths: Sequence[int],
-    signs: Sequence[str],
-) -> str:
-    """Return a table whose last column is broken into lines."""
+def _lines(columns: Sequence[Sequence[Any]], rows: Sequence[Sequence[str]]) -> str:
+    """Return rows below their heads; `columns` has the heads of all, their widths, and their sides."""
+    heads, widths, signs = columns
     tall = max(map(len, heads))
     above = [[*[""] * (tall - len(one)), *one] for one in heads]
-    lines = [*zip(*above, strict=True), ["-" * width for width in widths]]
-    for *row, last in zip(*cells, strict=True):
-        first, *rest = textwrap.wrap(last, widths[-1]) or [""]
-        lines += [[*row, first], *([""] * len(row) + [more] for more in rest)]
     looks = [f"{sign}{width}" for sign, width in zip(signs, widths, strict=True)]
-    return "\n".join("  " + "  ".join(map(format, line, looks)).rstrip() for line in lines)
+    body = [*zip(*above, strict=True), ["-" * width for width in widths], *rows]
+    return "\n".join("  " + "  ".join(map(format, line, looks)).rstrip() for line in body)
 
 
 def _parts(widths: Sequence[int]) -> list[list[int]]:

@@ -60,21 +60,6 @@ class Scene:
     enlarged: float  # factor by which movements and clearances are drawn too large at first
 
 
-def force_key(at: Scene) -> str:
-    """Return which colours the forces have."""
-    forces = [f"0 to {format_number(one, 3)} N {where}" for one, where in zip(at.largest, WHERE, strict=True)]
-    shown = ", ".join(forces[: 1 + (at.largest[1] > 0.0)])
-    return f"{shown}; root scale, the largest since the frame before"
-
-
-def span_key(at: Scene) -> str:
-    """Return which times the frames show."""
-    spans = " and ".join(
-        f"{format_quantity(first, 's')} to {format_quantity(last, 's')}" for first, last in at.parts
-    )
-    return f"Frames show {spans}."
-
-
 def page(heading: Sequence[str], at: Scene) -> str:
     """Return a page that needs no other file; its heading is a title and lines below it, all escaped."""
     title, *about = heading
@@ -82,11 +67,14 @@ def page(heading: Sequence[str], at: Scene) -> str:
     found = json.dumps(_plain(at), allow_nan=False, separators=(",", ":"))
     for sign in "<>&\u2028\u2029":
         found = found.replace(sign, f"\\u{ord(sign):04x}")
+    forces = [f"0 to {format_number(one, 3)} N {where}" for one, where in zip(at.largest, WHERE, strict=True)]
+    shown = ", ".join(forces[: 1 + (at.largest[1] > 0.0)])
+    spans = " and ".join(" to ".join(format_quantity(end, "s") for end in part) for part in at.parts)
     parts = {
         "TITLE": html.escape(title),
         "ABOUT": html.escape("\n".join(about)),
-        "MOST": force_key(at),
-        "SHOWN": span_key(at),
+        "MOST": f"{shown}; root scale, the largest since the frame before",
+        "SHOWN": f"Frames show {spans}.",
         "DATA": found,
         "STYLE": _static("cage.css"),
         "SCRIPT": _static("cage.js"),

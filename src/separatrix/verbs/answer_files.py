@@ -1,21 +1,23 @@
-"""The document of an answer, and its files: the same page as text, HTML and workbook, pictures, arrays."""
+"""The document of an answer, its arrays, and its files: its page as text, HTML, workbook and pictures."""
 
 from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import grouped, harmless, json_text
 from separatrix.ground.files import staged
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
     from separatrix.present.blocks import Page, Picture
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
     from separatrix.verbs.verb import Tool, Verb
-    from separatrix.verdict.long_jobs import Progress
 
 
 def document(verb: Verb, found: Computed) -> Document:
@@ -25,9 +27,12 @@ def document(verb: Verb, found: Computed) -> Document:
     warnings.
     """
     from separatrix import __version__
-    from separatrix.ground.plain_data import Group, plain, units_of
+    from separatrix.ground.plain_data import Group, plain, shape, units_of
     from separatrix.study.sources import provenance_of, resolved
-    from separatrix.verbs.shapes import shape
+    from separatrix.verbs import chain_answers  # noqa: F401 - with the shapes of its records
+
+    if verb.moves_a_cage:
+        from separatrix.verbs import cage_answers  # noqa: F401
 
     left_out: list[str] = []
     study = found.study
@@ -62,7 +67,7 @@ def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
     return tuple(grouped([*asked.notes, *own]))
 
 
-def page_of_document(verb: Verb | Tool, found: Document, where: str = "The answer") -> Page:
+def page_of_document(verb: Tool, found: Document, where: str = "The answer") -> Page:
     """Return the page of a document; one that is not what its page takes is refused under `where`."""
     from separatrix.verbs.saved_answers import refusing_damage
 
@@ -76,9 +81,7 @@ def save_answer(
     found: Document,
     *,
     page: Page | None = None,
-    options: Any = None,
     pictures: bool = True,
-    progress: Progress | None = None,
 ) -> None:
     """Write the files of an answer into a folder, all or none; of an interrupted one its document and text.
 
@@ -90,12 +93,8 @@ def save_answer(
         The verb, and the answer as `document` makes it.
     page : Page, optional
         The page of that document, if it has been made already.
-    options : optional
-        With which the verb was asked: its own files may depend on them.
     pictures : bool
         Whether figures, and the page with them, are written, too.
-    progress : callable, optional
-        Called with (done, total) of what takes long.
 
     Raises
     ------
@@ -107,21 +106,23 @@ def save_answer(
         is_whole = verb.writes_data and found.get("complete") is not False
         _write(stage, verb.name, page, found, with_pictures=pictures and is_whole, is_whole=is_whole)
         if is_whole:
-            from separatrix.present.dataset import dataset, save
+            from separatrix.present.dataset import dataset
 
-            save(dataset(found), stage / f"{verb.name}.nc")
-        if is_whole and verb.files is not None:
-            for name, content in verb.files(part_of(found), options, progress):
+            dataset(found).to_netcdf(stage / f"{verb.name}.nc", engine="h5netcdf")
+            for name, content in verb.files(part_of(found)):
                 (stage / name).write_bytes(content)
 
 
-def save_page(folder: Path, name: str, page: Page, found: Document | None) -> None:
-    """Write a page of another answer and its document; without that its pictures alone."""
+def save_page(folder: Path, name: str, page: Page, found: Document) -> None:
+    """Write the page of a tool and its document."""
     with staged(folder) as stage:
-        if found is None:
-            _draw(page, stage, "")
-        else:
-            _write(stage, name, page, found)
+        _write(stage, name, page, found)
+
+
+def save_pictures(folder: Path, page: Page) -> None:
+    """Write the pictures of a page alone."""
+    with staged(folder) as stage:
+        _draw(page, stage, "")
 
 
 def _write(
@@ -165,3 +166,51 @@ def _draw(page: Page, stage: Path, name: str) -> None:
     if name:
         level = Level.REPORT | Level.FULL
         (stage / f"{name}.html").write_text(html(page, level=level, picture=picture), encoding="utf-8")
+
+
+def to_xarray(answer: object) -> xr.Dataset:
+    """Return the labelled arrays of an answer, with their units, without the study behind it."""
+    from separatrix.ground.plain_data import Group, node_of, plain, shape, units_of
+    from separatrix.present.dataset import arrays_of
+    from separatrix.verbs import cage_answers  # noqa: F401 - with the shapes of all records
+
+    node = Group(shape(answer))
+    return arrays_of(node_of(plain(node, left_out=[]), units_of(node)))
+
+
+def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
+    """Return the arrays of an answer that have the same dimensions as a table, a row for each place.
+
+    Parameters
+    ----------
+    answer : record
+        What a verb computed.
+    *dims : str
+        Names of the dimensions; by default those of its main table: the balls of a bearing, the points of
+        traction curves, of a stability curve and of a map, the samples of a run, the candidates in each
+        environment, the cases of a sweep. ``("environment", "material", "sample")`` are the single bearings
+        behind the probabilities of `sensitivity`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Values in SI units. A variable with one more dimension has a column for each place on it.
+    """
+    import xarray as xr
+
+    data = to_xarray(answer)
+    wanted = dims or next(one for one in MAIN if set(one) <= set(data.dims))
+    columns: dict[str, xr.DataArray] = {}
+    for name, variable in data.data_vars.items():
+        if variable.dims == wanted:
+            columns[str(name).removeprefix(f"{wanted[-1]}_")] = variable
+        elif len(wanted) == 1 and variable.dims[:1] == wanted and variable.ndim == 2:
+            columns |= {f"{name}_{i}": variable[:, i] for i in range(variable.shape[1])}
+    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe(dim_order=list(wanted))
+
+
+MAIN = (
+    *(("case",), ("y", "x"), ("time",), ("environment", "material"), ("restitution_factor",)),
+    *(("race", "increment"), ("push",), ("ball",), ("race",)),
+)
+"""Dimensions of the main tables; an answer has that of the first that it has."""

@@ -11,7 +11,7 @@ from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, f
 from separatrix.present.figure import Figure, Label, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import RACES, clearance_blocks, contact_blocks
-from separatrix.verbs.parts.telling import axis, cell, column, fact, told
+from separatrix.verbs.parts.quantity_text import axis, cell, column, fact, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def page(answer: Part) -> Page:
             ("Kinematics", answer.model),
             fact(answer, "axial_displacement"),
             fact(answer, "radial_displacement"),
-            ("Tilt", f"{told(answer, 'tilt')} ({tilt})"),
+            ("Tilt", f"{show(answer, 'tilt')} ({tilt})"),
             fact(answer, "moment"),
         ),
         Heading("Balls"),
@@ -81,7 +81,7 @@ def balls(answer: Part) -> Table:
 def are_alike(answer: Part) -> bool:
     """Whether every ball carries the same to the digits shown."""
     names = ("load_inner", "load_outer", "contact_angle_inner", "contact_angle_outer", "orbital_speed")
-    return len({tuple(told(ball, name) for name in names) for ball in answer.balls}) == 1
+    return len({tuple(show(ball, name) for name in names) for ball in answer.balls}) == 1
 
 
 AROUND = "Ball loads and contact angles around the bearing."

@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Heading, Level, Note, Page, facts, grouped
-from separatrix.verbs.parts.answer_page import APPENDIX, entry_words, page_of
+from separatrix.verbs.parts.answer_page import APPENDIX, bearing_facts, entry_words, page_of
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 from separatrix.verbs.parts.chain_blocks import clearance_facts
-from separatrix.verbs.parts.study_facts import bearing_facts
-from separatrix.verbs.parts.telling import fact, said, told
+from separatrix.verbs.parts.quantity_text import fact, fill, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import CheckAnswer, CheckedCage
+    from separatrix.verbs.chain_answers import CheckAnswer, CheckedCage
 
 Link = TypeVar("Link")
 FIRST = {"POCKETS": "after the pockets", "LAND": "before the pockets", "BOTH": "together with the pockets"}
@@ -30,7 +29,7 @@ def compute(study: Study, _options: NoOptions) -> CheckAnswer:
     """What follows of a study in a second, the bearing at standstill, and what verbs will refuse."""
     from separatrix.chain.solution import solve
     from separatrix.verbs import refusals
-    from separatrix.verbs.answer_records import CheckAnswer, Refusal
+    from separatrix.verbs.chain_answers import CheckAnswer, Refusal
 
     at, on = study.bearing, study.operation
     still = replace(study, operation=replace(on, inner_speed=0.0, outer_speed=0.0))
@@ -63,7 +62,7 @@ def _cage(study: Study) -> CheckedCage | None:
 
     from separatrix.study.cage_body import cage_inertia
     from separatrix.study.pocket_shape import half_play, tilt
-    from separatrix.verbs.answer_records import CheckedCage, FirstReached
+    from separatrix.verbs.chain_answers import CheckedCage, FirstReached
 
     if study.cage is None:
         return None
@@ -112,10 +111,10 @@ def ring_facts(answer: Part) -> list[tuple[str, str]]:
     speed = f"{{speed_parameter}} ({'bore' if has_bore else 'pitch diameter'} x speed)"
     pressure = f"not found: {answer.static_reason}"
     if answer.static is not None:
-        inner, outer = (told(one, "max_pressure") for one in (answer.static.inner, answer.static.outer))
+        inner, outer = (show(one, "max_pressure") for one in (answer.static.inner, answer.static.outer))
         words = "maximum of Hertz, most loaded ball; the mean is two thirds of it"
         pressure = f"inner {inner}, outer {outer} ({words})"
-    return [("Speed parameter", said(answer, speed)), ("Pressure at rest", pressure)]
+    return [("Speed parameter", fill(answer, speed)), ("Pressure at rest", pressure)]
 
 
 def cage_facts(answer: Part) -> list[Any]:
@@ -127,14 +126,14 @@ def cage_facts(answer: Part) -> list[Any]:
     when = "" if state == RUNNING else f", {state}"
     guided = "guided by the balls" if guidance == "ball" else f"{guidance}-guided"
     name = (stated.get("material") or {}).get("name")
-    pocket = said(found, "{half_play} each way along the circumference")
+    pocket = fill(found, "{half_play} each way along the circumference")
     land = "no land: the balls guide the cage"
     if "land_gap" in found:
         least = " at the least" if stated["land_out_of_round"]["value"] else ""
-        gap = f"{told(found, 'land_gap')} radial{least}, reached {FIRST[found.first_reached]}"
+        gap = f"{show(found, 'land_gap')} radial{least}, reached {FIRST[found.first_reached]}"
         land = f"{entry_words(stated['land_clearance'])}: {gap}{when}"
     return [
-        ("Cage", ", ".join(filter(None, [name, told(found, "mass"), guided]))),
+        ("Cage", ", ".join(filter(None, [name, show(found, "mass"), guided]))),
         ("Pocket clearance", f"{entry_words(stated['pocket_clearance'])}: {pocket}{when}"),
         *([fact(found, "lean")] if found.lean != 0.0 else []),
         ("Land clearance", land),

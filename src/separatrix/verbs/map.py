@@ -15,14 +15,13 @@ from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, 
 from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
+from separatrix.verbs.parts.quantity_text import all_numbers, fill, parameter_axis, quantity, show, value_of
 from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.parts.telling import all_numbers, quantity, said, told
-from separatrix.verbs.parts.varied import parameter_axis, value_of
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import MapAnswer
+    from separatrix.verbs.cage_answers import MapAnswer
     from separatrix.verdict.long_jobs import Runner
 
 AXIS = "LOW..HIGH[unit][:N][:log]"
@@ -53,7 +52,7 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     from separatrix.cage import settings_for
     from separatrix.chain.solution import solve
     from separatrix.ground.errors import InputError
-    from separatrix.verbs.answer_records import MapAnswer
+    from separatrix.verbs.cage_answers import MapAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.parameter_axes import checked_points, read_axis
@@ -93,7 +92,7 @@ def page(answer: Part) -> Page:
     """Return the page of `map`."""
     refused = [one for one in answer.points if one.get("state") == "REFUSED"]
     friction = [] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]
-    scatter = ("Scatter of the balls", told(answer, "ball_scatter"))
+    scatter = ("Scatter of the balls", show(answer, "ball_scatter"))
     return page_of(
         answer,
         Note(" ".join(filter(None, [counted(answer), nearest_words(answer)])), "lead"),
@@ -196,13 +195,13 @@ def nearest_words(answer: Part) -> str:
 
 def runs_words(answer: Part) -> str:
     """Return how many runs a point has, of which length, from which disturbance."""
-    words = said(
+    words = fill(
         answer.stopping,
         "up to {most_runs}, stopped after {agreeing_runs} that agree (risk of the wrong side "
         "{wrong_side_probability}, of another decision {other_decision_probability})",
     )
-    kick = "" if KICK in _names(answer) else said(answer, ", from an initial disturbance of {kick}")
-    return f"{words}, each of {told(answer, 'duration')}{kick}"
+    kick = "" if KICK in _names(answer) else fill(answer, ", from an initial disturbance of {kick}")
+    return f"{words}, each of {show(answer, 'duration')}{kick}"
 
 
 # Where the answer changes.
@@ -287,7 +286,7 @@ def map_figure(answer: Part) -> Figure:
         parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
         for one in (answer.x, answer.y)
     ]
-    kick = "" if KICK in _names(answer) else said(answer, ", initial disturbance {kick}")
+    kick = "" if KICK in _names(answer) else fill(answer, ", initial disturbance {kick}")
     panel = Panel(
         title=f"Share of the runs that whirl{kick}",
         x=axes[0],
@@ -329,7 +328,7 @@ def _hover(answer: Part, point: Part) -> str:
     at = f"{_at(answer.x, point.x)}, {_at(answer.y, point.y)}"
     if point.decision is None:
         return f"{at}: {point.reason}"
-    share = f"share that whirls {told(point, 'probability_whirl')}, {point.runs} runs"
+    share = f"share that whirls {show(point, 'probability_whirl')}, {point.runs} runs"
     return f"{at}: {point.decision}; {share}"
 
 

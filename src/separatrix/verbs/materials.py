@@ -26,7 +26,7 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.verbs.parts.answer_page import friction_columns
-from separatrix.verbs.parts.telling import known_columns
+from separatrix.verbs.parts.quantity_text import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:

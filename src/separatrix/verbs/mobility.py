@@ -22,13 +22,13 @@ from separatrix.present.blocks import (
 )
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
+from separatrix.verbs.parts.quantity_text import axis, cell, fill, named, place_column, quantity, show
 from separatrix.verbs.parts.refused import push, refused, rolling
-from separatrix.verbs.parts.telling import axis, cell, named, place_column, quantity, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import MobilityAnswer
+    from separatrix.verbs.chain_answers import MobilityAnswer
 
 SMALL = (
     "damping",
@@ -48,7 +48,7 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
     """How the races let a ball be pushed along its orbit."""
     from separatrix.chain.ball_mobility import SlipLaw, linear_mobility
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import MobilityAnswer
+    from separatrix.verbs.chain_answers import MobilityAnswer
 
     records = (study.bearing, study.operation, study.kinematics.model, study.film, study.traction)
     solution = solve(study)
@@ -71,7 +71,7 @@ def page(answer: Part) -> Page:
     columns = map(partial(place_column, answer), ("speed", "force_forward", "force_backward", "force_law"))
     return page_of(
         answer,
-        Note(said(answer, lead), "lead"),
+        Note(fill(answer, lead), "lead"),
         Heading("Small motion of the most loaded ball"),
         small_motion(answer),
         Heading("Modes"),
@@ -84,9 +84,9 @@ def page(answer: Part) -> Page:
         ),
         facts(
             ("Capacity $f_BT$ ($N_I$ + $N_E$)", cell(answer, "capacity")),
-            ("Law of traction: slope $C$ and knee $v$", f"{told(law, 'slope')}, {told(law, 'speed')}"),
-            ("Largest error of the law", said(answer, "{law_error} of the capacity")),
-            ("Forward and backward differ by", said(answer, "up to {asymmetry} of the capacity")),
+            ("Law of traction: slope $C$ and knee $v$", f"{show(law, 'slope')}, {show(law, 'speed')}"),
+            ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
+            ("Forward and backward differ by", fill(answer, "up to {asymmetry} of the capacity")),
         ),
         Table("pushes", tuple(columns), tuple(range(len(answer.speed))), level=Level.SHEET),
         Picture(
@@ -121,9 +121,9 @@ def modes(answer: Part) -> Table:
 def push_figure(answer: Part) -> Figure:
     """Return F(u) of the slip fields both ways, the law, its slope and the capacity."""
     u, capacity = [0.0, *answer.speed], answer.capacity
-    top, name = 1.15 * capacity, said(answer, "$C_f$ $u$, damping {damping}")
+    top, name = 1.15 * capacity, fill(answer, "$C_f$ $u$, damping {damping}")
     marks: list[Mark] = [
-        Across(at=capacity, axis="y", name=said(answer, "capacity {capacity}"), colour=GREY, line="--"),
+        Across(at=capacity, axis="y", name=fill(answer, "capacity {capacity}"), colour=GREY, line="--"),
         Trace(x=[0.0, top / answer.damping], y=[0.0, top], name=name, line=":", width=1.0),
     ]
     for way, name, colour, line in (

@@ -43,18 +43,18 @@ from separatrix.present.figure import (
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
 from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
-from separatrix.verbs.parts.refused import candidate_cages, refused
-from separatrix.verbs.parts.telling import (
+from separatrix.verbs.parts.quantity_text import (
     axis,
     begun,
     column,
     estimate,
     fact,
+    fill,
     marks,
     quantity,
-    said,
-    told,
+    show,
 )
+from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import RankingAnswer
+    from separatrix.verbs.cage_answers import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
     from separatrix.verdict.ranking_records import Ranking
 
@@ -107,7 +107,7 @@ MOTION = (
 
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
     """Verdict, margin, rank and reason of each candidate material."""
-    from separatrix.verbs.answer_records import RankingAnswer
+    from separatrix.verbs.cage_answers import RankingAnswer
     from separatrix.verbs.parts.cage_of_study import overdamped_notes, reference
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.ranking import rank
@@ -142,7 +142,7 @@ def page(answer: Part) -> Page:
         *by_paper(answer, known),
         *over_inputs(answer, rows),
         *pictures(answer),
-        Heading(said(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {_speeds(answer)}")),
+        Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {_speeds(answer)}")),
         evidence(own.name, known),
         Note(EVIDENCE, "legend", LONG),
         *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
@@ -207,12 +207,12 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
         column("paper_probability_stable"),
         text_column("verdict", lambda row: row.paper_verdict),
     )
-    model = said(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
+    model = fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
     each = grouped((row.paper_verdict, row) for row in rows)
     apart = [row.name for row in rows if row.paper_verdict != row.verdict]
     why = ""
     if apart:
-        why = f" It differs for {', '.join(apart)}: " + said(
+        why = f" It differs for {', '.join(apart)}: " + fill(
             answer.chain,
             "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
             "from an impact.",
@@ -221,7 +221,7 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
 
     def numbers(row: Part) -> str:
         words = ("threshold ", "margin ") if row is first else ("", "")
-        return f"{words[0]}{threshold_alone(row)}, {words[1]}{told(row, 'margin')}"
+        return f"{words[0]}{threshold_alone(row)}, {words[1]}{show(row, 'margin')}"
 
     listed = by_verdict({word: [f"{row.name} ({numbers(row)})" for row in who] for word, who in each.items()})
     heading = Heading("The paper's method", LONG, 3)
@@ -269,7 +269,7 @@ def _runs(head: str, *keys: str) -> Column:
 
 def motion(name: str, rows: Sequence[Part], level: Level = LONG) -> Table:
     """Return how the cage moves; the bearing's own restitution factor only where candidates differ in it."""
-    differ = len({told(row, "restitution_factor") for row in rows}) > 1
+    differ = len({show(row, "restitution_factor") for row in rows}) > 1
     known = [one for one in MOTION if any(one in row for row in rows)]
     eta = [column("restitution_factor")] if differ else []
     columns = (_name(), motion_column(), *eta, *map(evidence_column, known))
@@ -326,7 +326,7 @@ def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
     if not known:
         return []
     each = grouped(
-        (row.uncertain_verdict, f"{row.name} {told(row, 'uncertain_probability_stable')}") for row in known
+        (row.uncertain_verdict, f"{row.name} {show(row, 'uncertain_probability_stable')}") for row in known
     )
     names = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
     words = f"with a bearing drawn for each of {known[0].uncertain_runs} runs from each initial disturbance"
@@ -350,13 +350,13 @@ def ensemble_facts(answer: Part) -> list[tuple[str, str]]:
     """Return the ensemble in a few words."""
     return [
         ("Initial disturbances", _speeds(answer)),
-        ("Runs", said(answer, f"{answer.runs} from each, of {{duration}}")),
+        ("Runs", fill(answer, f"{answer.runs} from each, of {{duration}}")),
     ]
 
 
 def _speeds(answer: Part) -> str:
     """Return the initial disturbances."""
-    return ", ".join(told(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in answer.kicks)
+    return ", ".join(show(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in answer.kicks)
 
 
 def holds_for(answer: Part) -> list[tuple[str, Any]]:
@@ -364,11 +364,11 @@ def holds_for(answer: Part) -> list[tuple[str, Any]]:
     rows = [row for one in answer.environments for row in one.materials if "friction" in row]
     scatter = "none: every friction has its measured scatter"
     if any(row.friction_scatter_assumed for row in rows):
-        scatter = said(answer, "assumed to scatter by {friction_scatter} of their mean: a guess")
+        scatter = fill(answer, "assumed to scatter by {friction_scatter} of their mean: a guess")
     film = []
     if answer.restitution_factor < answer.solid_lubrication_limit:
         words = "The contact model predicts {restitution_factor} for this film, below this bound"
-        film = [("This film", said(answer, f"{words} of {{solid_lubrication_limit}}. Both are shown."))]
+        film = [("This film", fill(answer, f"{words} of {{solid_lubrication_limit}}. Both are shown."))]
     return [
         ("Unrepeated tests", scatter),
         *_differing(answer.overall, "Mass of the cage", "cage_mass"),
@@ -381,7 +381,7 @@ def holds_for(answer: Part) -> list[tuple[str, Any]]:
 
 def _differing(rows: Sequence[Part], label: str, name: str) -> list[tuple[str, str]]:
     """Return a quantity of each candidate where they differ in it."""
-    each = [f"{row.name} {told(row, name)}" for row in rows if name in row]
+    each = [f"{row.name} {show(row, name)}" for row in rows if name in row]
     return [(label, "; ".join(each))] if len({getattr(row, name) for row in rows}) > 1 else []
 
 
@@ -461,7 +461,7 @@ def on_the_curve(answer: Part, place: Part) -> Figure:
     labels = tuple(
         Label(
             y=row.friction,
-            text=f"{ranks[row.name]}  {row.name}  {told(row, 'friction')}{MARK * bool(row.extrapolation)}",
+            text=f"{ranks[row.name]}  {row.name}  {show(row, 'friction')}{MARK * bool(row.extrapolation)}",
         )
         for row in rows
     )
@@ -500,10 +500,10 @@ def _colour(row: Part) -> str:
 
 def hover(row: Part) -> str:
     """Return what a candidate's mark says under the pointer."""
-    parts = [f"{row.name}: {verdict(row)}", f"friction {told(row, 'friction')}"]
+    parts = [f"{row.name}: {verdict(row)}", f"friction {show(row, 'friction')}"]
     compared = ("safety_factor",) if has_safety([row]) else ("restitution_threshold", "margin")
     for name in (*compared, "probability_stable"):
-        parts += [f"{quantity(name).label} {told(row, name)}"] if row.get("verdict") else []
+        parts += [f"{quantity(name).label} {show(row, name)}"] if row.get("verdict") else []
     return "; ".join(parts)
 
 

@@ -16,7 +16,6 @@ from separatrix.verbs.parts.bearing_drawing import bearing_picture
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs import Computed
     from separatrix.verbs.verb import Verb
 
 ORDER = (
@@ -24,9 +23,6 @@ ORDER = (
     *("sensitivity", "simulate"),
 )
 """Verbs in the order of a report: the answer first, then the chain behind it, then what varies it."""
-
-CHAIN = ("bearing", "traction", "restitution")
-"""Verbs that take seconds: computed for the report of a folder that lacks them."""
 
 HANDED = ("name", "verdict", "rank", "margin", "probability_stable", "probability_low", "probability_high")
 """What the document of a report has of each candidate."""
@@ -106,6 +102,8 @@ def report_of(
     pages = {
         verb: page_of_document(verb_named(verb), one, f"{where}: {verb}.json") for verb, one in kept.items()
     }
+    if not pages:
+        raise InputError(where, "has no answer that a report shows", cure="Name the study instead.")
     main = next(iter(pages))
     caveats = [Note(text, "caveat") for text in [*missing, *_differing(kept)]]
     bearing = kept.get("bearing")
@@ -147,14 +145,6 @@ def _inputs(found: Document) -> dict[str, object]:
     return known | {"version of separatrix": found["separatrix_version"]}
 
 
-def wanted(study: Study) -> Iterator[str]:
-    """Yield the verbs that a report of a study needs."""
-    yield from ("bearing", "traction")
-    if study.cage is not None:
-        yield "restitution"
-        yield "stability" if study.ranking is None else "rank"
-
-
 def asked_by(study: Study) -> Document:
     """Return what each answer to a study has of the study, with this version."""
     from separatrix import __version__
@@ -167,8 +157,8 @@ def asked_by(study: Study) -> Document:
 
 def report_of_study(
     study: Study,
-    folder: Path | None,
-    compute: Callable[[Verb], Computed],
+    compute: Callable[[Verb], Document],
+    folder: Path | None = None,
     *,
     pictures: bool = False,
 ) -> Report | None:
@@ -178,47 +168,29 @@ def report_of_study(
     and written there, their `pictures` if that is asked for.
     """
     from separatrix.study.reading import require
-    from separatrix.verbs.answer_files import document, save_answer
+    from separatrix.verbs.answer_files import save_answer
     from separatrix.verbs.saved_answers import read_answer
 
-    asked, found = asked_by(study), dict[str, Document]()
+    asked, found, missing = asked_by(study), dict[str, Document](), list[str]()
     for path in [folder / f"{verb}.json" for verb in ORDER] if folder is not None else []:
         one = read_answer(path) if path.exists() else {}
         if one.get("complete", True) is True and asked.items() <= one.items():
             found[path.stem] = one
-
-    def computed(name: str) -> Document:
-        verb = verb_named(name)
-        require(study, name, *verb.needs)
-        made = document(verb, compute(verb))
-        if folder is not None:
-            save_answer(folder, verb, made, pictures=pictures)
-        return made
-
-    missing = add_missing(found, wanted(study), computed)
-    if any(one.get("complete") is False for one in found.values()):
-        return None
-    return report_of(found, missing, str(folder or study.name))
-
-
-def add_missing(
-    found: dict[str, Document], verbs: Iterator[str] | Sequence[str], compute: Callable[[str], Document]
-) -> list[str]:
-    """Compute the answers that are not there; return what was refused, a sentence each.
-
-    It ends with the first that is interrupted.
-    """
-    missing = []
-    for verb in verbs:
-        if verb in found:
+    of_cage = ("restitution", "stability" if study.ranking is None else "rank")
+    for name in ("bearing", "traction", *(of_cage if study.cage is not None else ())):
+        if name in found:
             continue
+        verb = verb_named(name)
         try:
-            found[verb] = compute(verb)
+            require(study, name, *verb.needs)
+            found[name] = compute(verb)
         except InputError as error:
             if not found:
                 raise
-            missing.append(f"`{verb}` was not computed: {error}")
+            missing.append(f"`{name}` was not computed: {error}")
             continue
-        if found[verb].get("complete") is False:
-            break
-    return missing
+        if folder is not None:
+            save_answer(folder, verb, found[name], pictures=pictures)
+        if found[name].get("complete") is False:
+            return None
+    return report_of(found, missing, str(folder or study.name))

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import types
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
@@ -90,32 +89,21 @@ def kept_by(stored: Document, where: str) -> Document:
 
 def options_from(verb: Verb, given: object) -> Any:
     """Return the options of a verb from an answer, each of its type; the verb judges their values."""
+    from pydantic import TypeAdapter, ValidationError
+
     if not isinstance(given, dict):
         raise InputError("question", "must be the options of the verb", shown(given))
     known, found = verb.shown_options(), {}
     for name, value in given.items():
         if name not in known:
             raise InputError(f"--{printable(str(name), 40)}", f"is not an option of {verb.name}")
-        if not fits(value, known[name][0]):
-            raise InputError(f"--{name}", "has a value that is not one of this option", shown(value))
-        found[name] = tuple(value) if isinstance(value, list) else value
+        try:
+            found[name] = TypeAdapter(known[name][0]).validate_json(json.dumps(value), strict=True)
+        except ValidationError:
+            raise InputError(
+                f"--{name}", "has a value that is not one of this option", shown(value)
+            ) from None
     return verb.options(**found)
-
-
-def fits(value: object, kind: Any) -> bool:
-    """Whether a value of a document is one of the type of an option."""
-    origin, inside = get_origin(kind), get_args(kind)
-    if origin in (Union, types.UnionType):
-        return any(fits(value, one) for one in inside)
-    if origin in (Annotated, Literal):
-        return value in inside if origin is Literal else fits(value, inside[0])
-    if isinstance(value, Mapping):
-        is_table = isinstance(origin, type) and issubclass(origin, Mapping)
-        return is_table and all(map(is_number, value.values()))
-    if isinstance(value, list):
-        is_list = isinstance(origin, type) and not issubclass(origin, Mapping)
-        return is_list and all(fits(one, inside[0]) for one in value)
-    return is_number(value) if kind is float else type(value) is kind
 
 
 def agreement(stored: Document, computed: Document) -> Document:
@@ -199,14 +187,14 @@ def _blocks(one: Part) -> Iterator[Block]:
         yield Note(f"Other versions here: {', '.join(others)}.")
 
 
-def _told(value: object) -> str:
+def _words(value: object) -> str:
     return ABSENT if value is None else printable(str(value), 60)
 
 
 COLUMNS = (
     text_column("key", lambda row: row.key),
-    text_column("in the answer", lambda row: _told(row.stored)),
-    text_column("now", lambda row: _told(row.computed)),
+    text_column("in the answer", lambda row: _words(row.stored)),
+    text_column("now", lambda row: _words(row.computed)),
     Column("relative difference", lambda row: Cell(row.relative, RELATIVE)),
 )
 

@@ -12,22 +12,22 @@ from separatrix.present.blocks import Block, Cell, Column, Level, Note, Page, Pi
 from separatrix.present.figure import SEQUENCE, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import entry_words, figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks, restitution_blocks
+from separatrix.verbs.parts.quantity_text import axis, fill, number_of, place_column, quantity
 from separatrix.verbs.parts.refused import impact, refused, rolling
-from separatrix.verbs.parts.telling import axis, number_of, place_column, quantity, said
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import RestitutionAnswer
+    from separatrix.verbs.chain_answers import RestitutionAnswer
 
 
 def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     """Restitution factor from the traction slopes, and what other films would give."""
     from separatrix.cage.closed_forms import returned_share
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import RestitutionAnswer
+    from separatrix.verbs.chain_answers import RestitutionAnswer
     from separatrix.verbs.parts.cage_of_study import overdamped_notes
 
     solution = solve(study)
@@ -61,7 +61,7 @@ def page(answer: Part) -> Page:
     )
     return page_of(
         answer,
-        Note(said(answer, lead), "lead"),
+        Note(fill(answer, lead), "lead"),
         *restitution_blocks(answer, Level.ALWAYS),
         *clearance_blocks(answer.clearances),
         *film_blocks(answer, answer.lubrication),

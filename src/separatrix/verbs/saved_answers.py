@@ -69,22 +69,19 @@ def read_answers(path: Path) -> dict[str, Document]:
     return {str(one["verb"]): one}
 
 
-def read_answer(path: Path) -> Document:
-    """Answer of a document (.json); refused as by `read_answers`."""
+def read_answer(path: Path, named: str = "") -> Document:
+    """Answer of a document (.json), of the verb that it is `named` after; refused as by `read_answers`."""
     where = path_text(path)
     if path.suffix.casefold() == ".nc":
         cure = f"Name the {path.stem}.json that was written beside it."
         raise InputError(where, "cannot be read back: answers are read from their .json", cure=cure)
-    return _checked(_parsed(_bytes(path), where), where)
+    return _checked(_parsed(_bytes(path), where), where, named)
 
 
 def read_folder(folder: Path) -> dict[str, Document]:
     """Answers of a folder, by verb; refused as by `read_answers`."""
     files = {verb: folder / f"{verb}.json" for verb in VERBS}
-    found = {verb: read_answer(file) for verb, file in files.items() if file.exists()}
-    for verb, one in found.items():
-        if one["verb"] != verb:
-            raise InputError(path_text(files[verb]), f"must be an answer of {verb}", one["verb"])
+    found = {verb: read_answer(file, verb) for verb, file in files.items() if file.exists()}
     if not found:
         raise InputError(path_text(folder), "does not contain an answer", cure=_MAKE)
     return found
@@ -104,24 +101,26 @@ def refusing_damage(where: str) -> Iterator[None]:
 def _read_report(path: Path) -> dict[str, Document]:
     where = path_text(path)
     match = REPORT.search(_bytes(path))
-    found = {verb: _checked(one, where) for verb, one in _parsed(match[1], where).items()} if match else {}
+    answers = _parsed(match[1], where) if match else {}
+    found = {verb: _checked(one, where, verb) for verb, one in answers.items()}
     if not found:
         raise InputError(where, "is not a report with its answers in it", cure=_MAKE)
-    for verb, one in found.items():
-        if one["verb"] != verb:
-            rule = f"must have the answer of {printable(verb, 40)} under that name"
-            raise InputError(where, rule, one["verb"])
     return found
 
 
-def _checked(found: object, where: str) -> Document:
-    """Return a document that has what every answer has; that of its verb is checked where it is used."""
+def _checked(found: object, where: str, named: str = "") -> Document:
+    """Return a document that has what every answer has; that of its verb is checked where it is used.
+
+    `named` is the verb whose name it has there.
+    """
     if not isinstance(found, dict) or not isinstance(found.get("study"), dict):
         raise InputError(where, "is not the document of an answer", cure=_MAKE)
     verb = found.get("verb")
     if verb not in VERBS:
         got = shown(verb) if isinstance(verb, str) else "none"
         raise InputError(where, f"must be an answer of {', '.join(VERBS)}", got=got)
+    if named not in ("", verb):
+        raise InputError(where, f"must be an answer of {printable(named, 40)}", verb)
     for key, (kind, words) in ENVELOPE.items():
         if key not in found:
             raise InputError(where, f"lacks {key}", cure=AGAIN)

@@ -35,15 +35,15 @@ from separatrix.present.figure import (
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.refused import candidate_cages, refused
-from separatrix.verbs.parts.telling import (
+from separatrix.verbs.parts.quantity_text import (
     all_numbers,
     column,
+    fill,
     marks,
     number_of,
-    said,
-    told,
+    show,
 )
+from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
@@ -59,7 +59,7 @@ from separatrix.verbs.verb import Option, Verb
 if TYPE_CHECKING:
     from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import SensitivityAnswer
+    from separatrix.verbs.cage_answers import SensitivityAnswer
     from separatrix.verdict.long_jobs import Runner
 
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
@@ -89,7 +89,7 @@ class Options:
 
 def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
-    from separatrix.verbs.answer_records import SensitivityAnswer
+    from separatrix.verbs.cage_answers import SensitivityAnswer
     from separatrix.verbs.parts.cage_of_study import reference
     from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
     from separatrix.verdict.long_jobs import made_into
@@ -201,14 +201,14 @@ def friction_mark(row: Part) -> str:
 
 def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
     """Yield the restitution factors in the study's environment, and what the marks beside frictions mean."""
-    etas = grouped((told(row, "restitution_factor"), row.name) for row in own if "restitution_factor" in row)
+    etas = grouped((show(row, "restitution_factor"), row.name) for row in own if "restitution_factor" in row)
     if etas:
         each = by_verdict(etas) if len(etas) > 1 else next(iter(etas))
         yield Note(f"Restitution factor $eta$ of the drawn bearings, median (nine in ten): {each}.", "legend")
     rows = [row for one in answer.environments for row in one.materials if "friction" in row]
     if any(row.friction_scatter_assumed for row in rows):
         assumed = "its scatter from sample to sample was not measured: {default_scatter} of the mean is "
-        yield Note(said(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
+        yield Note(fill(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
     words = dict.fromkeys(text for row in rows for text in row.extrapolation)
     if words:
         yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend", LONG)
@@ -221,14 +221,14 @@ def holds_for(answer: Part) -> Iterator[tuple[str, str]]:
     origins = Counter(SOURCES[row.source] for row in answer.inputs if is_friction(row.name))
     yield "Frictions", ", ".join(f"{count} {source}" for source, count in origins.items())
     failed = f", of which {answer.failed} make no bearing" if answer.failed else ""
-    yield "Bearings drawn", f"{told(answer, 'bearings')}{failed}; seed {answer.seed}"
+    yield "Bearings drawn", f"{show(answer, 'bearings')}{failed}; seed {answer.seed}"
     yield "Initial disturbances", ", ".join(number_of(answer, "kicks", one) for one in answer.kicks)
-    yield "Runs", f"{told(answer, 'runs')} in all"
+    yield "Runs", f"{show(answer, 'runs')} in all"
     drifting = [row for row in answer.overall if "drift_rate" in row]
     if drifting:
         fastest = max(drifting, key=lambda row: row.drift_rate)
-        yield "Largest drift", f"{told(fastest, 'drift_rate')} (median of a case)"
-    yield "Ended early", said(answer, "at a risk of {stopped_risk} of another verdict at each look")
+        yield "Largest drift", f"{show(fastest, 'drift_rate')} (median of a case)"
+    yield "Ended early", fill(answer, "at a risk of {stopped_risk} of another verdict at each look")
 
 
 # What decides, and what to test.
@@ -303,10 +303,10 @@ def allowed_frictions(answer: Part) -> Iterator[Note]:
         pocket = f" in the pockets of {', '.join(one.names)}" if answer.allowed_friction[1:] else ""
         wanted = f"with a probability of {{probability}}{pocket}"
         if one.friction is None:
-            yield Note(said(one, f"To be stable {wanted}, no friction can be named: {one.reason}."))
+            yield Note(fill(one, f"To be stable {wanted}, no friction can be named: {one.reason}."))
         else:
             most = "At most {friction}, if it scatters by {scatter} of itself"
-            yield Note(said(one, f"{most}, to be stable {wanted}."))
+            yield Note(fill(one, f"{most}, to be stable {wanted}."))
 
 
 # The workbook.
@@ -357,7 +357,7 @@ def _panel(name: str, rows: Sequence[Part]) -> Panel:
 
 
 def _hover(row: Part) -> str:
-    return f"{row.name}: {row.verdict}, P(stable) {told(row, 'probability_stable')}"
+    return f"{row.name}: {row.verdict}, P(stable) {show(row, 'probability_stable')}"
 
 
 VERB = Verb(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Annotated
@@ -27,14 +27,14 @@ from separatrix.present.blocks import (
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
+from separatrix.verbs.parts.quantity_text import fill, number_of, place_column, quantity, show
 from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.parts.telling import number_of, place_column, quantity, said, told
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import SimulationAnswer
+    from separatrix.verbs.cage_answers import SimulationAnswer
 
 MOST_SHOWN = 20_000
 """Samples of a simulated run, at most: every step of a short one."""
@@ -63,7 +63,6 @@ class Options:
             "Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"
         ),
     ] = None
-    animate: Annotated[str | None, Option("Also write an animation.", "gif")] = None
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
@@ -73,15 +72,13 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.cage.closed_forms import drift_rate_law
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
-    from separatrix.verbs.answer_records import SimulationAnswer
+    from separatrix.verbs.cage_answers import SimulationAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.beyond_models import Moved, beyond_motion
     from separatrix.verdict.crossing import cage_at
     from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.reasons import force_limit, outcome_sentence
 
-    if options.animate not in (None, "gif"):
-        raise InputError("--animate", "must be gif", got=printable(options.animate))
     if not 0 <= options.run <= MOST_RUNS:
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
     given, eta = None if options.kick is None else kick_speed(options.kick), given_factor(options)
@@ -160,18 +157,18 @@ def run_facts(answer: Part) -> Facts:
     friction, damping = cage["ball_cage_friction"], None
     of = f", {friction['candidate']} in {friction['environment']}" if friction["value"] is None else ""
     if "given_restitution_factor" in answer:
-        damping = told(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
-        damping += said(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
+        damping = show(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
+        damping += fill(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
     law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
     return facts(
         ("Operation", "; ".join(figure_heading(answer)[1:])),
-        ("Initial disturbance", said(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
-        ("Pocket friction", f"{told(answer.cage, 'ball_cage_friction')}{of}"),
+        ("Initial disturbance", fill(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
+        ("Pocket friction", f"{show(answer.cage, 'ball_cage_friction')}{of}"),
         ("Ball", cage["ball"]["value"]),
         ("Race damping", damping),
-        ("Judged", said(answer, "{judged_from} to {followed}; the run has {run_length}")),
-        ("Drift rate", said(answer, "{drift_rate}" + law)),
-        ("Energy balance", said(answer, "closes to {energy_imbalance} of the work done")),
+        ("Judged", fill(answer, "{judged_from} to {followed}; the run has {run_length}")),
+        ("Drift rate", fill(answer, "{drift_rate}" + law)),
+        ("Energy balance", fill(answer, "closes to {energy_imbalance} of the work done")),
     )
 
 
@@ -187,12 +184,12 @@ def motion_facts(answer: Part) -> Facts:
     orbit = "centre {orbit_speed}" + (", tilt {cone_speed}" if "cone_speed" in answer else "")
     balls = number_of(answer, "orbit_speed", answer.cage.cage_speed)
     return facts(
-        ("Offset", said(answer, offset)),
+        ("Offset", fill(answer, offset)),
         ("Tilt", _tilt(answer)),
-        ("Axial place", said(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
-        ("Whirl", said(answer, whirl)),
-        ("Orbit", f"{said(answer, orbit)}; the ball set turns at {balls}"),
-        ("Cage slip", said(answer, slip)),
+        ("Axial place", fill(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
+        ("Whirl", fill(answer, whirl)),
+        ("Orbit", f"{fill(answer, orbit)}; the ball set turns at {balls}"),
+        ("Cage slip", fill(answer, slip)),
         ("Clearance", _clearance(answer)),
     )
 
@@ -203,14 +200,14 @@ def _tilt(answer: Part) -> str:
     cone = "without a steady phase to the offset"
     if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
         cone = "{tilt_phase} ahead of the offset (0: a forward cone)"
-    return said(answer, f"{{largest_tilt}} at most; {cone}")
+    return fill(answer, f"{{largest_tilt}} at most; {cone}")
 
 
 def _clearance(answer: Part) -> str:
     cage = answer.cage
-    land = said(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
-    axial = said(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
-    return f"{land}; pockets {told(answer.chain, 'half_play')} each way{axial}"
+    land = fill(cage, f"{cage.guidance} land {{land_clearance}} in diameter") if has_land(cage) else "no land"
+    axial = fill(cage, ", {axial_half_play} along the axis") if "axial_half_play" in cage else ""
+    return f"{land}; pockets {show(answer.chain, 'half_play')} each way{axial}"
 
 
 def has_land(cage: Part) -> bool:
@@ -228,12 +225,12 @@ def force_facts(answer: Part) -> Facts:
     if answer.force_exceeds_races:
         pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
         pocket += "(`[cage] ball = 'free'` has)"
-    shares = [f"{told(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
+    shares = [f"{show(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
     power = "pocket_rubbing_power"
     heat = alone(sum(answer.get(power)), quantity(power), answer.unit(power))
     return facts(
-        ("Pocket, largest", said(answer, pocket)),
-        ("Land, largest", told(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
+        ("Pocket, largest", fill(answer, pocket)),
+        ("Land, largest", show(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
         ("Impacts", f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"),
         ("Impulse", ", ".join(shares)),
         *power_facts(answer),
@@ -248,7 +245,7 @@ def _works(answer: Part) -> str:
     known = {name: work[last] for name, work in answer.work.values.items() if work[last]}
     each = (f"{name.replace('_', ' ')} {number_of(answer.work, name, one)}" for name, one in known.items())
     left = number_of(answer, "kinetic_energy", answer.kinetic_energy[last])
-    until = "" if last == -1 else said(answer, "up to {followed}: ")
+    until = "" if last == -1 else fill(answer, "up to {followed}: ")
     return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
 
 
@@ -292,24 +289,9 @@ def _figure(answer: Part) -> Figure:
 
 def _view(answer: Part) -> str:
     from separatrix.present.view import page as view
-    from separatrix.verbs.parts.cage_scene import page_scene
-
-    return view(figure_heading(answer), page_scene(answer))
-
-
-def files(
-    answer: Part, options: Options | None, progress: Callable[[int, int], None] | None
-) -> Iterator[tuple[str, bytes]]:
-    """Yield the moving cage as a GIF, beside the path of its centre, if it is wanted."""
-    if options is None or options.animate is None:
-        return
-    from separatrix.present.animation import animation
     from separatrix.verbs.parts.cage_scene import scene
-    from separatrix.verbs.parts.run_panels import orbit
 
-    at = scene(answer)
-    panels = [(orbit(answer), at.centre)]
-    yield "simulation.gif", animation(at, panels, figure_heading(answer), progress=progress)
+    return view(figure_heading(answer), scene(answer))
 
 
 VERB = Verb(
@@ -320,6 +302,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    files=files,
     refusals=refusals,
 )

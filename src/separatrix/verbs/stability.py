@@ -17,22 +17,22 @@ from separatrix.verbs.parts.curve_blocks import (
     own_point,
     pocket_friction,
 )
+from separatrix.verbs.parts.quantity_text import fill
 from separatrix.verbs.parts.refused import cage_motion, refused
-from separatrix.verbs.parts.telling import said
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import StabilityAnswer
+    from separatrix.verbs.cage_answers import StabilityAnswer
     from separatrix.verdict.long_jobs import Runner
 
 
 def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     """Critical friction against restitution factor."""
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import StabilityAnswer
+    from separatrix.verbs.cage_answers import StabilityAnswer
     from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
     from separatrix.verdict.long_jobs import made_into
     from separatrix.verdict.stability_curve import stability_curve
@@ -96,7 +96,7 @@ def curve_figure(answer: Part) -> Figure:
     friction, words = answer.cage.ball_cage_friction, pocket_friction(answer)
     own: list[Mark] = []
     if words:
-        name = said(answer.cage, "the cage's friction, {ball_cage_friction}")
+        name = fill(answer.cage, "the cage's friction, {ball_cage_friction}")
         look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
         own = [Trace(x=[answer.chain.restitution_factor], y=[friction], **look)]
     panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])

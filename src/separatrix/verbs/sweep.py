@@ -40,8 +40,17 @@ from separatrix.present.figure import (
     Trace,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.telling import all_numbers, axis, cell, column, marks, quantity, told
-from separatrix.verbs.parts.varied import parameter_axis, value_of
+from separatrix.verbs.parts.quantity_text import (
+    all_numbers,
+    axis,
+    cell,
+    column,
+    marks,
+    parameter_axis,
+    quantity,
+    show,
+    value_of,
+)
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -162,7 +171,7 @@ def worst_words(answer: Part) -> str:
         return lacks if has(answer, "cage_speed") else "No case has an answer."
     name = worst.quantity
     first = next(one for one in answer.cases if one.case == worst.case)
-    number = f"{quantity(name).label}, {told(first, name)}"
+    number = f"{quantity(name).label}, {show(first, name)}"
     more = "; --margins or --verdicts compare the stability" if name == ETA else ""
     if worst_case(answer) is None:
         return f"No case is the worst: all {worst.alike} with an answer have the same {number}{more}."
@@ -221,7 +230,7 @@ def csv_text(answer: Part) -> str:
     return stream.getvalue()
 
 
-def files(answer: Part, *_: Any) -> Iterator[tuple[str, bytes]]:
+def files(answer: Part) -> Iterator[tuple[str, bytes]]:
     """Yield the table of all cases as CSV."""
     yield "sweep.csv", csv_text(answer).encode()
 
@@ -319,7 +328,7 @@ def _over(answer: Part, cases: Sequence[Part], way: Way, what: str, **look: Any)
     label = quantity(what).label
 
     def hover(case: Part) -> str:
-        return f"{case_words(answer, case)}: {label} {told(case, what)}"
+        return f"{case_words(answer, case)}: {label} {show(case, what)}"
 
     return marks(cases, way.name, what, hover=hover, **({"name": label} | look))
 

@@ -11,15 +11,15 @@ from separatrix.ground.quantity import Quantity
 from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
+from separatrix.verbs.parts.quantity_text import axis, by_race, column, fill, number_of, place_column, show
 from separatrix.verbs.parts.refused import refused, rolling
-from separatrix.verbs.parts.telling import axis, by_race, column, number_of, place_column, said, told
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from separatrix.study.study import Study
-    from separatrix.verbs.answer_records import TractionAnswer
+    from separatrix.verbs.chain_answers import TractionAnswer
 
 SLOPE = ("slope", "slope_error", "free_rolling_offset")
 CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
@@ -32,7 +32,7 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
     from separatrix.chain.contacts import race_tracks
     from separatrix.chain.race_traction import beyond_strips, curves_by_ratio, shear, shown_curve
     from separatrix.chain.solution import solve
-    from separatrix.verbs.answer_records import TractionAnswer
+    from separatrix.verbs.chain_answers import TractionAnswer
 
     solution = solve(study)
     _ = solution.slopes  # refused, and noted, as everything after them
@@ -59,7 +59,7 @@ def refusals(study: Study) -> Iterator[str]:
 
 def page(answer: Part) -> Page:
     """Return the page of `traction`."""
-    inner, outer = (told(one, "slope") for one in (answer.inner, answer.outer))
+    inner, outer = (show(one, "slope") for one in (answer.inner, answer.outer))
     lead = f"{inner} at the inner race, {outer} at the outer race."
     return page_of(
         answer,
@@ -110,7 +110,7 @@ def curve_table(part: Part, race: str) -> Table:
     """Return the points of the curves of a race, for the workbook."""
     columns = [place_column(part, name) for name in ("creep_increment", "traction_coefficient")]
     for one in part.by_spin_roll_ratio:
-        head = f"traction coefficient at {told(one, 'spin_roll_ratio')}"
+        head = f"traction coefficient at {show(one, 'spin_roll_ratio')}"
         columns.append(place_column(one, "traction_coefficient", head=head))
     rows = tuple(range(len(part.creep_increment)))
     return Table(f"curves, {race} race", tuple(columns), rows, level=Level.SHEET)
@@ -140,7 +140,7 @@ def curves_panel(part: Part, title: str, y: Axis) -> Panel:
     tangent = "slope $alpha$ at the origin"
     marks.append(Trace(x=[-run, run], y=[-rise, rise], line="--", width=0.9, name=tangent))
     return Panel(
-        title=said(part, title + ": ratio {spin_roll_ratio}; $alpha$ = {slope}"),
+        title=fill(part, title + ": ratio {spin_roll_ratio}; $alpha$ = {slope}"),
         x=axis("creep_increment", part.unit("creep_increment"), [], low=x[0], high=x[-1]),
         y=y,
         marks=tuple(marks),

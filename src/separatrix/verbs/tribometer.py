@@ -38,7 +38,7 @@ from separatrix.present.figure import (
     Panel,
     Trace,
 )
-from separatrix.verbs.parts.telling import axis, column, itself, known_columns, quantity, told
+from separatrix.verbs.parts.quantity_text import axis, column, itself, known_columns, quantity, show
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
@@ -232,7 +232,7 @@ def _along(test: Part, name: str) -> Cell:
 def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
     """Yield the answer: friction of each material, or of the tests."""
     for one in answer.fits or ():
-        error, scatter = (told(one, name) for name in ("standard_error", "standard_deviation"))
+        error, scatter = (show(one, name) for name in ("standard_error", "standard_deviation"))
         friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
         yield f"{friction} (standard error {error}, scatter of a new sample {scatter})."
     if not answer.fits and len(tests) == 1:
@@ -309,12 +309,12 @@ def _fits(answer: Part) -> Iterator[Block]:
     for one in answer.fits:
         yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
     if "components" not in answer:
-        share = told(answer, "default_scatter")
+        share = show(answer, "default_scatter")
         yield Note(f"No test was repeated: each is assumed to scatter by {share} of its mean, a guess.")
         return
     between = {"between_samples": "between samples", "between_tests": "between tests of one sample"}
     found = answer.components
-    words = ", ".join(f"{name} {told(found, key)}" for key, name in between.items() if key in found)
+    words = ", ".join(f"{name} {show(found, key)}" for key, name in between.items() if key in found)
     yield Note(f"Scatter over all materials, by restricted maximum likelihood: {words}.")
 
 
@@ -364,7 +364,7 @@ def _conditions(test: Part) -> Iterator[str]:
     yield from (f"{name} {known.get(name)}" for name in ("sample", "test") if name in known)
     for name in ("temperature", "slip_speed", "pressure", "normal_force", "cycle_time"):
         if name in known:
-            yield f"{_plain(name)} {told(known, name)}"
+            yield f"{_plain(name)} {show(known, name)}"
 
 
 def _plain(name: str) -> str:

@@ -23,8 +23,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft
 
 from separatrix.chain.exact.grid import Grid, end_normals
 from separatrix.chain.exact.influence import Body, flexibility, half_space_flexibility, influence, pair_images
@@ -84,7 +84,7 @@ def shift_operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | No
 def _operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None, *, rolls: bool) -> Operator:
     stencil = ROLLING if rolls else SHIFT
     rows, columns = grid.shape
-    padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
+    padded = scipy.fft.next_fast_len(2 * rows - 1), scipy.fft.next_fast_len(2 * columns - 1, real=True)
     table = influence(grid.shape, (grid.dy, grid.dx), pair_images(*bodies), stencil)[:3]
     f, L = grid.fraction, np.zeros(grid.shape) if compliance is None else compliance
     if rolls:
@@ -183,7 +183,7 @@ def spectrum(table: Array, padded: tuple[int, int]) -> Complex:
     offsets = np.arange(1 - columns, columns) % padded[1]
     circular[:, :rows, offsets] = table
     circular[:, padded[0] - rows + 1 :, offsets] = odd * table[:, :0:-1]
-    return np.asarray(fft.rfft2(circular, workers=1), dtype=np.complex128)
+    return np.asarray(scipy.fft.rfft2(circular, workers=1), dtype=np.complex128)
 
 
 def series_film(fraction: Array, compliance: Array) -> tuple[Array, Array]:
@@ -229,9 +229,9 @@ def displacement(spectra: Complex, padded: tuple[int, int], traction: Array) -> 
 
 
 def _padded_product(spectra: Complex, padded: tuple[int, int], traction: Array) -> Array:
-    waves = fft.rfft2(traction, s=padded, workers=1)
+    waves = scipy.fft.rfft2(traction, s=padded, workers=1)
     multiply(waves, spectra)
-    return np.asarray(fft.irfft2(waves, s=padded, overwrite_x=True, workers=1))
+    return np.asarray(scipy.fft.irfft2(waves, s=padded, overwrite_x=True, workers=1))
 
 
 @kernel

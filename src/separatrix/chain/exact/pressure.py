@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, ndimage
+import scipy
 
 from separatrix.chain.exact.grid import Grid, pressed_grid
 from separatrix.chain.exact.influence import Body, Images, flexibility, influence, pair_images
@@ -60,11 +60,11 @@ def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton
     if not np.isfinite(gap).all():
         raise InputError("press: gap", "must be finite [m]", "nan or inf")
     rows, columns = gap.shape
-    padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
+    padded = scipy.fft.next_fast_len(2 * rows - 1), scipy.fft.next_fast_len(2 * columns - 1, real=True)
     waves = spectrum(influence(gap.shape, spacing, images, SHIFT)[3:4], padded)[0]
 
     def displacement(p: Array) -> Array:
-        product = fft.irfft2(fft.rfft2(p, s=padded, workers=1) * waves, s=padded, workers=1)
+        product = scipy.fft.irfft2(scipy.fft.rfft2(p, s=padded, workers=1) * waves, s=padded, workers=1)
         return np.asarray(product[:rows, :columns])
 
     total = load / (spacing[0] * spacing[1])
@@ -182,30 +182,30 @@ def pressure_slip(grid: Grid, pressure: Array, bodies: tuple[Body, Body]) -> Arr
     far = float(_difference(np.zeros(1), bodies)[0])
     # between unlike bases the field of a dipole reaches far: a square box, else one of the contact's shape
     sides = BOX * (np.full(2, contact.max()) if far != 0.0 else contact)
-    nx, ny = (fft.next_fast_len(int(min(n, LARGEST_COUNT)), real=True) for n in sides / contact * FINE)
+    nx, ny = (scipy.fft.next_fast_len(int(min(n, LARGEST_COUNT)), real=True) for n in sides / contact * FINE)
     dx, dy = sides / (nx, ny)
     x, y = dx * (np.arange(nx) - 0.5 * nx) + grid.x.mean(), dy * (np.arange(ny) - 0.5 * ny) + grid.y.mean()
     p = _smooth_pressure(grid, pressure, x, y)
-    kx, ky = 2.0 * np.pi * fft.rfftfreq(nx, dx), 2.0 * np.pi * fft.fftfreq(ny, dy)[:, None]
+    kx, ky = 2.0 * np.pi * scipy.fft.rfftfreq(nx, dx), 2.0 * np.pi * scipy.fft.fftfreq(ny, dy)[:, None]
     k2 = kx * kx + ky * ky
     k2[0, 0] = 1.0
-    waves = fft.rfft2(p, workers=1) * _difference(np.sqrt(k2), bodies) * kx / k2
+    waves = scipy.fft.rfft2(p, workers=1) * _difference(np.sqrt(k2), bodies) * kx / k2
     along, across = waves * kx, waves * ky
     along[0, 0] = 0.5 * p.sum() * far  # the mean of a dipole's field over a square around it
     places = np.meshgrid((grid.y - y[0]) / dy, (grid.x - x[0]) / dx, indexing="ij")
-    fields = [fft.irfft2(wave, s=(ny, nx), workers=1) for wave in (along, across)]
-    return np.array([ndimage.map_coordinates(f, places, order=1) for f in fields])
+    fields = [scipy.fft.irfft2(wave, s=(ny, nx), workers=1) for wave in (along, across)]
+    return np.array([scipy.ndimage.map_coordinates(f, places, order=1) for f in fields])
 
 
 def _in_the_plane(grid: Grid, pressure: Array, bodies: tuple[Body, Body]) -> Array:
     """W_c = F^-1[dc_rz p] of a contact in the plane, shape (2, 1, column) [-]."""
     width = BOX * grid.dx * grid.x.size
-    count = fft.next_fast_len(int(BOX * FINE[0]), real=True)
+    count = scipy.fft.next_fast_len(int(BOX * FINE[0]), real=True)
     x = width / count * (np.arange(count) - 0.5 * count) + grid.x.mean()
     places = np.append(np.append(grid.x[0] - grid.dx, grid.x), grid.x[-1] + grid.dx)
     p = np.sqrt(np.interp(x, places, np.pad(pressure[0] ** 2, 1)))
-    k = 2.0 * np.pi * fft.rfftfreq(count, width / count)
-    slip = fft.irfft(fft.rfft(p) * _difference(k, bodies), n=count)
+    k = 2.0 * np.pi * scipy.fft.rfftfreq(count, width / count)
+    slip = scipy.fft.irfft(scipy.fft.rfft(p) * _difference(k, bodies), n=count)
     return np.stack([np.interp(grid.x, x, slip)[None], np.zeros((1, grid.x.size))])
 
 
@@ -220,5 +220,5 @@ def _smooth_pressure(grid: Grid, pressure: Array, x: Array, y: Array) -> Array:
     """Pressure at other places: p^2, which has no vertical slope at the edge, is interpolated linearly."""
     squared = np.pad(pressure * pressure, 1)
     places = np.meshgrid((y - grid.y[0]) / grid.dy + 1.0, (x - grid.x[0]) / grid.dx + 1.0, indexing="ij")
-    fine = np.sqrt(ndimage.map_coordinates(squared, places, order=1, mode="constant"))
+    fine = np.sqrt(scipy.ndimage.map_coordinates(squared, places, order=1, mode="constant"))
     return np.asarray(fine * (pressure.sum() * grid.cell_area / (fine.sum() * (x[1] - x[0]) * (y[1] - y[0]))))

@@ -12,7 +12,7 @@ being Dundurs' constant.
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from separatrix.chain.exact.grid import Grid, cell_counts, pressed_grid
 from separatrix.chain.exact.influence import Images, influence, pair_images
@@ -91,7 +91,7 @@ def solve_two_way(
 def _lift_waves(images: Images, x: Array, y: Array) -> Complex:
     """Transforms of K_xz and K_yz on the fine cells, shape (2, row, column)."""
     shape, spacing = (y.size, x.size), (float(y[1] - y[0]), float(x[1] - x[0]))
-    padded = fft.next_fast_len(2 * y.size - 1), fft.next_fast_len(2 * x.size - 1, real=True)
+    padded = scipy.fft.next_fast_len(2 * y.size - 1), scipy.fft.next_fast_len(2 * x.size - 1, real=True)
     table = influence(shape, spacing, images, SHIFT)
     return spectrum(table[[4, 4, 5]], padded)[[0, 2]]  # the last of three is odd across
 
@@ -99,9 +99,9 @@ def _lift_waves(images: Images, x: Array, y: Array) -> Complex:
 def _lift(waves: Complex, traction: Array) -> Array:
     """Widening of the gap by tractions on the fine cells, shape (row, column) [m]."""
     _, rows, columns = traction.shape
-    padded = fft.next_fast_len(2 * rows - 1), fft.next_fast_len(2 * columns - 1, real=True)
-    both = fft.rfft2(traction, s=padded, workers=1) * waves
-    return -np.asarray(fft.irfft2(both.sum(axis=0), s=padded, workers=1)[:rows, :columns])
+    padded = scipy.fft.next_fast_len(2 * rows - 1), scipy.fft.next_fast_len(2 * columns - 1, real=True)
+    both = scipy.fft.rfft2(traction, s=padded, workers=1) * waves
+    return -np.asarray(scipy.fft.irfft2(both.sum(axis=0), s=padded, workers=1)[:rows, :columns])
 
 
 def _on_fine_cells(grid: Grid, traction: Array, x: Array, y: Array) -> Array:

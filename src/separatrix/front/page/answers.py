@@ -27,7 +27,7 @@ from separatrix.verbs.map import at_point
 from separatrix.verbs.parts.answer_page import is_chosen
 from separatrix.verbs.report import asked_by, differing
 from separatrix.verbs.saved_answers import AGAIN, refusing_damage
-from separatrix.verbs.verb import Tool, Verb
+from separatrix.verbs.verb import Tool
 from separatrix.verdict.ledger import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
@@ -125,7 +125,7 @@ def routes(page: Page) -> APIRouter:
     return router
 
 
-def _asked(verb: str) -> Tool | Verb:
+def _asked(verb: str) -> Tool:
     return tool_named(verb) if verb == LOG else verb_named(verb)
 
 

@@ -1,50 +1,255 @@
-"""Routes of the studies: the list, the text with the form beside it, and running a verb."""
+"""A study while it is edited: its text and form, what is wrong with it, one key changed, and its routes."""
 
 from __future__ import annotations
 
+import hashlib
 import re
-from collections.abc import Mapping
+import tomllib
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, MutableMapping
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, get_args, get_origin
+from typing import Any, NamedTuple, get_args, get_origin
 
+import tomlkit
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Array, Table
 
-from separatrix.front.page import drafts as draft
 from separatrix.front.page.folder import REPORT, Form, Page
-from separatrix.ground.errors import InputError
-from separatrix.ground.units import shown
-from separatrix.study.study import CageModel, shipped_studies
-from separatrix.study.template import template
+from separatrix.ground.errors import InputError, grouped
+from separatrix.ground.files import is_inside, reading_only_in
+from separatrix.ground.reader import document_of
+from separatrix.ground.toml import MOST_BYTES, read_text
+from separatrix.ground.units import NUMBER, shown
+from separatrix.study.reading import read_study
+from separatrix.study.study import ORDER, CageModel, Study, shipped_studies
+from separatrix.study.template import StudyKey, remark_of, study_keys, template
 from separatrix.verbs import VERBS, verb_named
 
 CHANGED = "Another tab changed this study; its text is shown now. Make your change again."
+MEND = "Mend it in the text first."
+
+_KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
+_LINE = re.compile(r"line (\d+)")
+
+
+class Fault(NamedTuple):
+    """One thing that is wrong: its line (0 if unknown), its key (empty texts for the file as a whole), words.
+
+    `short` leaves out where it is.
+    """
+
+    line: int
+    section: str
+    key: str
+    message: str
+    short: str
+
+
+class Checked(NamedTuple):
+    """A text, the study that it makes (None if it is refused), its faults, and the notes of a sound one."""
+
+    text: str
+    study: Study | None = None
+    faults: tuple[Fault, ...] = ()
+    notes: tuple[str, ...] = ()
+    inherited: Mapping[str, Any] = {}
+    """Its content over that of the file that it extends."""
+
+
+# ---- the draft, beside the study: a server that is killed loses no edit
+
+
+def draft_path(study: Path) -> Path:
+    """Return where the draft of a study is kept."""
+    return study.with_name(f".{study.name}.draft")
+
+
+def has_draft(study: Path) -> bool:
+    """Whether a study has a draft; a link that leads out of its folder is none."""
+    draft = draft_path(study)
+    return draft.is_file() and is_inside(draft, study.parent)
+
+
+def current(study: Path) -> Path:
+    """Return the draft of a study, or the study if it has none."""
+    return draft_path(study) if has_draft(study) else study
+
+
+def version_of(text: str) -> str:
+    """Return a checksum of a text: a tab that has another one edits an older state."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def keep(study: Path, text: str) -> None:
+    """Keep a text as the draft of a study; one like the study itself is none."""
+    if len(text.encode()) > MOST_BYTES:
+        raise InputError(study.name, f"is larger than a study can be, {MOST_BYTES // 1024} kB")
+    is_new = text != read_text(study)
+    draft_path(study).unlink(missing_ok=True)  # also a link in its place
+    if is_new:
+        draft_path(study).write_text(text, encoding="utf-8", newline="\n")
+
+
+# ---- what is wrong
+
+
+def check(study: Path, root: Path) -> Checked:
+    """Read the draft of a study as every verb would, without files outside `root`."""
+    path = current(study)
+    text, inherited = "", dict[str, Any]()
+    try:
+        text = read_text(path)
+        with reading_only_in(root):
+            with suppress(InputError):  # which the reading below meets, too
+                inherited |= document_of(Study, path).data
+            found = read_study(path)
+    except InputError as error:
+        return Checked(text=text, faults=faults_in(error, study.name, path.name), inherited=inherited)
+    return Checked(text=text, study=found, notes=tuple(grouped(found.notes)), inherited=inherited)
+
+
+def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
+    """Return the faults of a file, which the messages call by a name in place of its label."""
+    faults = []
+    for one in error.problems or (error,):
+        at, line = _KEY.search(one.path), _LINE.search(one.path)
+        section, key = (at["section"], at["key"] or "") if at else ("", "")
+        message, short = str(one).replace(label, name), str(one.at("")).strip()
+        message = message.removeprefix(f"{name}, line {line[1]}: ") if line else message
+        faults.append(Fault(int(line[1]) if line else 0, section, key, message, short))
+    return tuple(faults)
+
+
+# ---- the form
+
+
+class FormSection(NamedTuple):
+    """A section of the form: values by key, those of the file that it extends, and messages by key."""
+
+    name: str
+    remark: str
+    keys: tuple[StudyKey, ...]
+    given: Mapping[str, Any]
+    inherited: Mapping[str, Any]
+    faults: Mapping[str, list[str]]
+
+
+def form(checked: Checked) -> Iterator[FormSection]:
+    """Yield the sections of the form of a text; without valid TOML its fields are empty."""
+    data: dict[str, Any] = {}
+    with suppress(ValueError, RecursionError):
+        data = tomllib.loads(checked.text)
+    for name in ("", *ORDER):
+        faults = defaultdict[str, list[str]](list)
+        for one in checked.faults:
+            if one.section == name:
+                faults[one.key].append(one.message)
+        values = (one.get(name) if name else one for one in (data, checked.inherited))
+        given, inherited = (one if isinstance(one, Mapping) else {} for one in values)
+        yield FormSection(name, remark_of(name), study_keys(name), given, inherited, faults)
+
+
+def as_typed(value: object) -> str:
+    """Return a value as it is typed into a field: text as it is, lists and tables as TOML has them."""
+    if value is None or isinstance(value, str):
+        return value or ""
+    table = tomlkit.inline_table()
+    if isinstance(value, dict):
+        table.update(value)
+        return table.as_string()
+    return str(tomlkit.item(value).as_string())
+
+
+# ---- one key changed
+
+
+def edited(text: str, section: str, key: str, value: str) -> str:
+    """Return the text with one key set as a form gives it, comments kept; an empty value removes the key.
+
+    Parameters
+    ----------
+    text : str
+        Of a study file.
+    section, key : str
+        Of the study; an empty section is above the first one.
+    value : str
+        As typed: a number, a quantity, a word, or a list or table as TOML writes it.
+
+    Raises
+    ------
+    InputError
+        The text is not TOML, or the change would lose comments in a list.
+    """
+    try:
+        document = tomlkit.parse(text)
+        table = document.setdefault(section, tomlkit.table()) if section else document
+        if not isinstance(table, MutableMapping):
+            raise InputError(f"[{section}]", "is not a section", cure=MEND)
+        is_name = any(one.is_name for one in study_keys(section) if one.name == key)
+        _put(table, key, _typed(value.strip(), is_name=is_name))
+        return tomlkit.dumps(document)
+    except (TOMLKitError, RecursionError) as error:  # not TOML, or in an order that tomlkit does not take
+        raise InputError("The form", f"cannot change this text: {error}", cure=MEND) from None
+
+
+def _put(table: MutableMapping[str, Any], key: str, value: object) -> None:
+    """Set a key, or remove it; a new one stands above comments at the end, which are about what follows."""
+    old, behind = table.get(key), []
+    if value is None:
+        table.pop(key, None)
+    if value in (None, old):
+        return
+    if isinstance(old, Array) and "#" in old.as_string():
+        raise InputError(key, "has comments in its list", cure="Change it in the text.")
+    body = table.value.body if isinstance(table, Table) and key not in table else []
+    while body and body[-1][0] is None:
+        behind.append(body.pop())
+    table[key] = value
+    body.extend(reversed(behind))
+
+
+def _typed(value: str, *, is_name: bool) -> object:
+    """Return a value of a form as TOML has it: a number unless it is a name, a list or table, else text."""
+    if not is_name and re.fullmatch(NUMBER, value):
+        return float(value) if re.search(r"[.eE]", value) else int(value)
+    if value[:1] not in ("[", "{"):
+        return value or None
+    try:
+        return tomlkit.value(value)
+    except (TOMLKitError, RecursionError):
+        raise InputError(shown(value), "is not a list or table of TOML") from None
+
+
+# ---- the routes: the list of studies, the text with the form beside it, and running a verb
 
 
 def routes(page: Page) -> APIRouter:
     """Return the routes of the studies."""
     router = APIRouter(default_response_class=HTMLResponse)
 
-    def editor(name: str, problem: str = "", template: str = "editor.html", **more: object) -> Response:
+    def editor(name: str, problem: str = "", page_of: str = "editor.html", **more: object) -> Response:
         """Return the text and the form beside it; nothing of a workbook, which is not `checked`."""
         path = page.folder.study(name)
-        checked = draft.check(path, page.folder.root) if path.suffix == ".toml" else None
+        checked = check(path, page.folder.root) if path.suffix == ".toml" else None
         return page.html(
-            template,
+            page_of,
             name=name,
             checked=checked,
-            version=draft.version_of(checked.text) if checked else "",
-            sections=[*draft.form(checked)] if checked else (),
-            as_typed=draft.as_typed,
+            version=version_of(checked.text) if checked else "",
+            sections=[*form(checked)] if checked else (),
+            as_typed=as_typed,
             problem=problem,
-            has_draft=draft.has_draft(path),
+            has_draft=has_draft(path),
             **more,
         )
 
     @router.get("/")
     def studies() -> Response:
         rows = [
-            (name, page.title(name), page.answered(name), draft.has_draft(page.folder.study(name)))
+            (name, page.title(name), page.answered(name), has_draft(page.folder.study(name)))
             for name in page.folder.studies()
         ]
         return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
@@ -62,9 +267,10 @@ def routes(page: Page) -> APIRouter:
     def study(name: str) -> Response:
         return editor(
             name,
-            template="study.html",
+            page_of="study.html",
             title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
+            helps=VERBS,
             kind_of=kind_of,
             models=[one.value for one in CageModel],
             tables=page.folder.tables(name),
@@ -74,35 +280,39 @@ def routes(page: Page) -> APIRouter:
     @router.post("/edit/{name:path}")
     def edit(name: str, sent: Form) -> Response:
         path = page.folder.study(name)
-        text = draft.current_text(path)
-        if sent.get("version") != draft.version_of(text):
+        text = read_text(current(path))
+        if sent.get("version") != version_of(text):
             return editor(name, CHANGED)
         try:
             if "text" in sent:
                 text = sent["text"].replace("\r\n", "\n")
             else:
                 section, _, key = sent.get("field", "").partition(".")
-                text = draft.edited(text, section, key, sent.get("value", ""))
-            draft.keep(path, text)
+                text = edited(text, section, key, sent.get("value", ""))
+            keep(path, text)
         except InputError as error:
             return editor(name, str(error))
         return editor(name)
 
     @router.post("/save/{name:path}")
     def save(name: str) -> Response:
-        draft.save(page.folder.study(name))
+        path = page.folder.study(name)
+        current(path).replace(path)
         return editor(name)
 
     @router.post("/discard/{name:path}")
     def discard(name: str) -> Response:
-        draft.draft_path(page.folder.study(name)).unlink(missing_ok=True)
+        draft_path(page.folder.study(name)).unlink(missing_ok=True)
         return editor(name)
 
     @router.post("/run/{name:path}")
     def run(name: str, sent: Form) -> Response:
         verb = sent.get("verb", "")
         question = {} if verb == REPORT else asked(page, name, verb, sent)
-        draft.save_to_run(page.folder.study(name), page.folder.root)
+        path = page.folder.study(name)
+        if path.suffix == ".toml" and (faults := check(path, page.folder.root).faults):
+            raise InputError(path.name, f"is not run: {faults[0].message}")
+        current(path).replace(path)
         page.jobs.ask(verb, name, question)
         return page.running()
 

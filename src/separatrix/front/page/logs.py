@@ -12,7 +12,7 @@ from fastapi.responses import HTMLResponse, Response
 from separatrix.friction.friction_file import UNITS
 from separatrix.friction.logs.column_map import column_map_of
 from separatrix.front.page.answers import body_of
-from separatrix.front.page.drafts import Fault, faults_in
+from separatrix.front.page.editing import Fault, faults_in
 from separatrix.front.page.folder import LOG, LOGS, MAP, Form, Page
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import read_text

@@ -26,6 +26,7 @@ from separatrix.ground.errors import InputError, SeparatrixError, json_text
 from separatrix.ground.files import reading_only_in, staged
 
 if TYPE_CHECKING:
+    from separatrix.ground.document import Document
     from separatrix.verdict.long_jobs import Progress
 
 WAITING, RUNNING = "waiting", "running"
@@ -259,7 +260,7 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
         study, options = asked_study(verb, source, str(model) if model else None), verb.options(**question)
         found = computed(verb, study, options, folder=place, progress=reporting(send))
         send(message="Drawing the figures and writing the files.")
-        save_answer(place, verb, document(verb, found), options=options)
+        save_answer(place, verb, document(verb, found))
         if not found.is_complete:
             return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
@@ -269,17 +270,18 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
 def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
     """Write the report of a study; answers that it lacks are computed first, as the command does."""
     from separatrix.study.reading import read_study
-    from separatrix.verbs import Computed, computed
+    from separatrix.verbs import computed
+    from separatrix.verbs.answer_files import document
     from separatrix.verbs.report import report_of_study
     from separatrix.verbs.verb import Verb
 
     study = read_study(source)
 
-    def compute(verb: Verb) -> Computed:
+    def compute(verb: Verb) -> Document:
         send(message=f"Computing {verb.name} for the report.")
-        return computed(verb, study, folder=place, progress=reporting(send))
+        return document(verb, computed(verb, study, folder=place, progress=reporting(send)))
 
-    report = report_of_study(study, place, compute, pictures=True)
+    report = report_of_study(study, compute, place, pictures=True)
     if report is None:
         return INTERRUPTED
     send(message="Writing the report.")

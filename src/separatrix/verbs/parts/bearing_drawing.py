@@ -16,7 +16,7 @@ from separatrix.ground.units import Metre, Radian
 from separatrix.present.blocks import Picture
 from separatrix.present.figure import BLACK, GREY, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
 from separatrix.verbs.parts.answer_page import entry_words, figure
-from separatrix.verbs.parts.telling import told
+from separatrix.verbs.parts.quantity_text import show
 
 Point = tuple[float, float]
 
@@ -123,7 +123,7 @@ def _section(of: Shape, answer: Part, contacts: Part | None) -> Panel:
     if contacts is not None:
         both = contacts.inner, contacts.outer
         angles = [one.contact_angle for one in both]
-        words = " inner, ".join(told(one, "contact_angle") for one in both) + " outer"
+        words = " inner, ".join(show(one, "contact_angle") for one in both) + " outer"
     marks: list[Mark] = []
     for sign, alpha, groove, land, rim in zip((-1, 1), angles, of.grooves, of.lands, of.rims, strict=True):
         middle = -sign * (groove - r) * sin(alpha), centre - sign * (groove - r) * cos(alpha)

@@ -23,12 +23,12 @@ the radius of one ball, from which a boundary does not exist."""
 SHORTEST, STRONG, PRESENT = 8, 0.3, 0.05
 """Least samples of a spectrum; shares of its largest amplitude from which a whirl is strong, and is shown."""
 
-MOST_FRAMES, A_TURN, GAP = 240, 6, 1.5
-"""Most frames of a GIF; least frames in a turn of the fastest strong whirl: fewer may reverse its sense;
-steps over the usual one from which frames have a gap."""
+A_TURN, GAP = 6, 1.5
+"""Least frames in a turn of the fastest strong whirl: fewer may reverse its sense; steps over the usual one
+from which frames have a gap."""
 
-PAGE_FRAMES, PAGE_NUMBERS = 1200, 75_000
-"""Most frames of a page, and most numbers in all: they keep it under 1 MB."""
+MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
+"""Most frames, and most numbers in all: they keep a page under 1 MB."""
 
 BAR_SHARE, FARTHEST = 0.4, 0.25
 """Least share of the bar in the room between two balls; largest movement drawn over the pitch radius."""
@@ -159,18 +159,13 @@ def turned_by(cage: Part, time: Array) -> Array:
     return np.asarray(speed * (time - (1 - start) * within + (1 - start) * within**2 / (2 * ramp)))
 
 
-def page_scene(answer: Part) -> Scene:
-    """Return the scene of a page, with as many frames as it may have."""
-    numbers = 9 + 3 * len(answer.pocket_angle)
-    return scene(answer, max(2, min(PAGE_FRAMES, PAGE_NUMBERS // numbers)))
-
-
-def scene(answer: Part, most: int = MOST_FRAMES) -> Scene:
-    """Return sizes and movements of a run at some samples, at most so many.
+def scene(answer: Part) -> Scene:
+    """Return sizes and movements of a run at some samples.
 
     Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
     two pockets, the pockets within the cage, and the cage in the picture.
     """
+    most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (9 + 3 * len(answer.pocket_angle))))
     moments, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
     plays, land, in_space = array(answer, "half_play"), land_boundary(answer), "lean" in answer
     radius, pitch = float(cage.pitch_radius), 2.0 * np.pi * cage.pitch_radius / max(3, plays.size)

@@ -18,9 +18,8 @@ from separatrix.present.blocks import (
     text_column,
 )
 from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import figure
-from separatrix.verbs.parts.study_facts import bearing_facts
-from separatrix.verbs.parts.telling import axis, by_race, cell, fact, named, said, told
+from separatrix.verbs.parts.answer_page import bearing_facts, figure
+from separatrix.verbs.parts.quantity_text import axis, by_race, cell, fact, fill, named, show
 
 RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
 ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
@@ -99,12 +98,12 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
     ):
         if rest in found and runs in found:
             text = f"{{{runs}}} at {{temperature}} and a cage speed of {{cage_speed}}, "
-            rows.append((words, said(found, f"{text}{{{rest}}} at 293 K at rest")))
+            rows.append((words, fill(found, f"{text}{{{rest}}} at 293 K at rest")))
     strains = (("cage", "cage_strain"), ("balls", "ball_strain"), ("rings", "ring_strain"))
-    known = [said(found, f"{part} {{{key}}}") for part, key in strains if key in found]
-    grown = [said(found, "cage {hoop_strain} at its pitch radius")]
+    known = [fill(found, f"{part} {{{key}}}") for part, key in strains if key in found]
+    grown = [fill(found, "cage {hoop_strain} at its pitch radius")]
     lands = (("its land", "cage_land_growth"), ("the ring's land", "ring_land_growth"))
-    grown += [said(found, f"{part} {{{key}}} in radius") for part, key in lands if found.get(key)]
+    grown += [fill(found, f"{part} {{{key}}} in radius") for part, key in lands if found.get(key)]
     return [*rows, ("Thermal strain", ", ".join(known)), ("Growth by rotation", ", ".join(grown))]
 
 
@@ -146,12 +145,12 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
             "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
         ),
         by_race(
-            "dampings", chain.inner, chain.outer, *DAMPING, level=level, caption=said(chain, DAMPING_LEGEND)
+            "dampings", chain.inner, chain.outer, *DAMPING, level=level, caption=fill(chain, DAMPING_LEGEND)
         ),
         facts(
-            (named(stiffness), f"{told(chain, stiffness)} ({chain.stiffness_source})"),
+            (named(stiffness), f"{show(chain, stiffness)} ({chain.stiffness_source})"),
             fact(chain, "cage_mass", named("cage_mass")),
-            ("$eta$ of a Hertzian pocket", said(chain, hertz)),
+            ("$eta$ of a Hertzian pocket", fill(chain, hertz)),
             level=level,
         ),
     ]
@@ -162,7 +161,7 @@ def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
     chain = answer.chain
 
     def both(name: str) -> str:
-        return f"{told(chain.inner, name)} inner, {told(chain.outer, name)} outer"
+        return f"{show(chain.inner, name)} inner, {show(chain.outer, name)} outer"
 
     over = OVERDAMPED if chain.restitution_factor_free_spin == 0.0 else ""
     eta = (
@@ -175,8 +174,8 @@ def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
         ("Loads of the ball", both("load")),
         ("Traction slopes", both("slope")),
         fact(chain, "race_damping", named("race_damping")),
-        (named("restitution_factor"), said(chain, eta)),
-        ("Stiffness of ball and pocket", f"{told(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
+        (named("restitution_factor"), fill(chain, eta)),
+        ("Stiffness of ball and pocket", f"{show(chain, 'ball_cage_stiffness')}, {chain.stiffness_source}"),
     ]
     rows += [] if chain.clearances is None else clearance_facts(chain.clearances)
     if "orbital_share" in chain:  # of a bearing whose balls do not run alike
@@ -184,5 +183,5 @@ def basis_facts(answer: Part) -> list[tuple[str, str | Cell]]:
             "up to {lead_amplitude} (pockets {half_play} each way); the harmonics used contain "
             "{orbital_share} of the speed variance"
         )
-        rows.append(("Free balls lead and lag", said(chain, lead)))
+        rows.append(("Free balls lead and lag", fill(chain, lead)))
     return rows

@@ -9,15 +9,15 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Block, Cell, Column, Equation, Level, Note, Table
 from separatrix.present.figure import BLUE, GREY, Across, Band, Label, Mark, Panel, Trace
-from separatrix.verbs.parts.telling import (
+from separatrix.verbs.parts.quantity_text import (
     all_numbers,
     axis,
     column,
+    fill,
     marks,
     number_of,
     quantity,
-    said,
-    told,
+    show,
 )
 
 HIGHEST = 0.5
@@ -49,7 +49,7 @@ def curve_marks(curve: Part, top: float) -> list[Mark]:
     eta = [one.restitution_factor for one in points]
     half = [one.critical_friction for one in points]
     scatter: dict[str, Any] = {end: [one.get(f"scatter_{end}") for one in points] for end in ("low", "high")}
-    words = f"half of {told(curve, 'runs')} runs whirl, disturbance {told(curve, 'middle_kick')}"
+    words = f"half of {show(curve, 'runs')} runs whirl, disturbance {show(curve, 'middle_kick')}"
     found: list[Mark] = [
         Trace(x=eta, y=half, name=words, colour=BLUE, marker="o", size=3.0),
         Band(x=eta, **scatter, name="its 95 % interval"),
@@ -108,7 +108,7 @@ def own_marks(answer: Part, curve: Part, top: float) -> list[Mark]:
     found: list[Mark] = []
     for name, words, line in (("", "this bearing", "-"), ("_free_spin", "the same, balls free to spin", ":")):
         key = f"restitution_factor{name}"
-        text = f"{words}, $eta$ = {told(answer.chain, key)}"
+        text = f"{words}, $eta$ = {show(answer.chain, key)}"
         found.append(Across(at=answer.chain.get(key), name=text, line=line, hover=text))
     here = curve.get("here")
     if here is None:
@@ -119,7 +119,7 @@ def own_marks(answer: Part, curve: Part, top: float) -> list[Mark]:
         found.append(Band(x=(at - WIDE, at + WIDE), low=[low] * 2, high=[high] * 2, **look))
     if "critical_friction" in here:
         look = {"marker": "D", "size": 4.5, "is_open": True}
-        look["name"] = f"its critical friction, {told(here, 'critical_friction')}"
+        look["name"] = f"its critical friction, {show(here, 'critical_friction')}"
         found.append(marks([here], "restitution_factor", "critical_friction", **look))
     return found
 
@@ -162,17 +162,17 @@ def own_lead(curve: Part) -> str:
     here = curve.get("here")
     if here is None:
         return "The critical friction at the bearing's own restitution factor was not finished."
-    at = said(here, "At this bearing's restitution factor of {restitution_factor} ")
+    at = fill(here, "At this bearing's restitution factor of {restitution_factor} ")
     if "critical_friction" not in here:
         return f"{at}no critical friction was found: {here.reason}."
-    return f"{at}half of the runs whirl at a pocket friction of {told(here, 'critical_friction')}."
+    return f"{at}half of the runs whirl at a pocket friction of {show(here, 'critical_friction')}."
 
 
 def drift_words(curve: Part) -> str:
     """Return that a cage without a land is stable nowhere, and how fast it drifts; empty if it has one."""
     if not curve.drifts:
         return ""
-    pace = said(curve, ", by the linear law at {drift_rate_law}") if curve.get("drift_rate_law") else ""
+    pace = fill(curve, ", by the linear law at {drift_rate_law}") if curve.get("drift_rate_law") else ""
     return (
         f"The cage has no land and drifts at any friction{pace}. Below the curve disturbances decay, but no "
         "verdict there is STABLE."
@@ -197,10 +197,10 @@ def band_words(curve: Part, at: Part) -> str:
     """Return between which frictions the disturbance decides at a point."""
     low = "There is no friction at which runs settle or roll from every disturbance"
     if "critical_friction_low" in at:
-        low = f"From every disturbance runs settle or roll below {told(at, 'critical_friction_low')}"
-    high = f"up to {told(curve, 'searched_friction')} there is none above which they whirl from every one"
+        low = f"From every disturbance runs settle or roll below {show(at, 'critical_friction_low')}"
+    high = f"up to {show(curve, 'searched_friction')} there is none above which they whirl from every one"
     if "critical_friction_high" in at:
-        high = f"they whirl from every one above {told(at, 'critical_friction_high')}"
+        high = f"they whirl from every one above {show(at, 'critical_friction_high')}"
     return f"{low}; {high}."
 
 
@@ -222,8 +222,8 @@ def curve_blocks(curve: Part, level: Level = Level.ALWAYS) -> list[Block]:
         "from every disturbance above its high end."
     )
     caption = (
-        f"Critical friction: {said(curve, 'half of {runs} runs of {duration} whirl from the reference')} "
-        f"disturbance, {told(curve, 'middle_kick')}; fewer below, more above.{band if curve.band else ''} "
+        f"Critical friction: {fill(curve, 'half of {runs} runs of {duration} whirl from the reference')} "
+        f"disturbance, {show(curve, 'middle_kick')}; fewer below, more above.{band if curve.band else ''} "
         f"Disturbances: {', '.join(disturbances(curve))}. Linear limit: no clearance, balls at rest."
     )
     columns = (
@@ -258,7 +258,7 @@ def pocket_friction(answer: Part) -> str:
     stated = (answer.values["study"]["cage"].get("ball_cage_friction") or {}).get("value") is not None
     if not stated and not answer.cage.ball_cage_friction:
         return ""
-    return told(answer.cage, "ball_cage_friction") + ("" if stated else f", {_material(answer)}")
+    return show(answer.cage, "ball_cage_friction") + ("" if stated else f", {_material(answer)}")
 
 
 def _material(answer: Part) -> str:

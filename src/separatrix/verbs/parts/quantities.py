@@ -1,4 +1,4 @@
-"""How each quantity of an answer is told: its name in the documents, its label, symbol and digits.
+"""How each quantity of an answer is written: its name in the documents, its label, symbol and digits.
 
 The unit stands at the field of its record and in every document; so does the meaning, in the reference of
 answers. A name means the same everywhere, so each stands here once.

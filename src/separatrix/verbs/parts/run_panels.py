@@ -41,7 +41,7 @@ from separatrix.verbs.parts.cage_scene import (
     spectrum_reach,
     whirl_spectrum,
 )
-from separatrix.verbs.parts.telling import axis, told
+from separatrix.verbs.parts.quantity_text import axis, show
 
 SHOWN = 1600
 """Points of a course in time, at most."""
@@ -167,7 +167,7 @@ def spectrum(answer: Part) -> Panel:
     marks: list[Mark] = [Across(at=0.0, colour=GREY)]
     if "whirl_frequency" in answer and answer.whirl_direction:
         place = answer.whirl_direction * answer.whirl_frequency
-        text, is_outward = told(answer, "whirl_frequency"), abs(place) < 0.4 * most
+        text, is_outward = show(answer, "whirl_frequency"), abs(place) < 0.4 * most
         side = "right" if (place > 0.0) == is_outward else "left"  # across neither zero nor the panel's end
         marks.append(Across(at=place, colour=VERMILION, line="--"))
         marks.append(Words(x=place, y=1.1, text=f"judged part: {text}", colour=VERMILION, side=side))

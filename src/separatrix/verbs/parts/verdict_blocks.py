@@ -8,7 +8,7 @@ from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Cell, Column, Table, grouped, text_column
-from separatrix.verbs.parts.telling import all_numbers, cell, column, fact, said, told
+from separatrix.verbs.parts.quantity_text import all_numbers, cell, column, fact, fill, show
 
 MOTIONS = {
     "CENTRED": "the cage rests among its balls, clear of its land",
@@ -92,10 +92,10 @@ def motion_column() -> Column:
 def verdict_facts(row: Part) -> list[tuple[str, Any]]:
     """Return a verdict with its evidence, a fact each."""
     motion = row.cage_motion
-    drift = said(row, "{drift_rate}") + (
-        said(row, "; by the linear law {drift_rate_law}") if row.drift_rate_law else ""
+    drift = fill(row, "{drift_rate}") + (
+        fill(row, "; by the linear law {drift_rate_law}") if row.drift_rate_law else ""
     )
-    growth = said(row, "{growth_rate}, from {worst_kick}, the worst initial disturbance")
+    growth = fill(row, "{growth_rate}, from {worst_kick}, the worst initial disturbance")
     offset = "{largest_offset} at most; {mean_offset} at the end, relative spread {orbit_evenness}"
     return [
         ("Verdict", f"{row.verdict}. {row.reason}"),
@@ -103,33 +103,33 @@ def verdict_facts(row: Part) -> list[tuple[str, Any]]:
         fact(row, "probability_stable"),
         ("Ball", f"{row.ball}. {row.ball_reason or 'The study asks for it.'}"),
         ("Growth rate", growth),
-        ("Offset", said(row, offset)),
+        ("Offset", fill(row, offset)),
         *_space_facts(row),
         ("Drift rate", drift),
-        ("Largest forces", f"{_force_words(row)}; {told(row, 'largest_land_force')} at the land"),
+        ("Largest forces", f"{_force_words(row)}; {show(row, 'largest_land_force')} at the land"),
         *_left_facts(row),
         ("Impacts", _impacts(row)),
         ("Whirl", _whirl(row)),
-        ("Energy at the end", said(row, "{end_energy}; frame and loads alone can supply {drive_energy}")),
+        ("Energy at the end", fill(row, "{end_energy}; frame and loads alone can supply {drive_energy}")),
         *power_facts(row),
-        ("Runs", said(row, f"{row.runs} from each initial disturbance, of up to {{longest_run}}")),
+        ("Runs", fill(row, f"{row.runs} from each initial disturbance, of up to {{longest_run}}")),
     ]
 
 
 def _force_words(row: Part) -> str:
     if row.force_exceeds_races:
-        return said(row, "above what the races hold, {force_limit}, at a pocket")
-    return said(row, "{largest_contact_force} at a pocket")
+        return fill(row, "above what the races hold, {force_limit}, at a pocket")
+    return fill(row, "{largest_contact_force} at a pocket")
 
 
 def _space_facts(row: Part) -> list[tuple[str, str]]:
     if row.largest_tilt is None or row.axial_travel is None:
         return []
-    cone = said(row, "; its lean goes round at {cone_ratio} of the balls") if "cone_ratio" in row else ""
+    cone = fill(row, "; its lean goes round at {cone_ratio} of the balls") if "cone_ratio" in row else ""
     return [
-        ("Tilt", said(row, "{largest_tilt} at most") + cone),
-        ("Axial motion", said(row, "{axial_travel} from end to end")),
-        ("Impacts at pockets", said(row, "{impact_rate} in the last part")),
+        ("Tilt", fill(row, "{largest_tilt} at most") + cone),
+        ("Axial motion", fill(row, "{axial_travel} from end to end")),
+        ("Impacts at pockets", fill(row, "{impact_rate} in the last part")),
     ]
 
 
@@ -142,11 +142,11 @@ def _left_facts(row: Part) -> list[tuple[str, str]]:
 def power_facts(row: Part) -> list[tuple[str, str]]:
     """Return what friction feeds into the cage or takes from it, and what rubs on the land."""
     powers = (("pocket", "pocket_power"), ("land", "land_power"))
-    each = [f"{told(row, name)} by the {where}" for where, name in powers if getattr(row, name)]
+    each = [f"{show(row, name)} by the {where}" for where, name in powers if getattr(row, name)]
     rows = [("Friction power into the cage", ", ".join(each) or "none")]
     if row.rubbing_force > 0.0:
         rows.append(
-            ("Rubbing on the land", said(row, "{rubbing_force} at {rubbing_speed}, {rubbing_power} of heat"))
+            ("Rubbing on the land", fill(row, "{rubbing_force} at {rubbing_speed}, {rubbing_power} of heat"))
         )
     return rows
 
@@ -157,17 +157,17 @@ def _impacts(row: Part) -> str:
     if not any(shares):
         return f"none at a pocket, {'all' if row.land_impact_share else 'none'} at the land"
     most = max(range(len(shares)), key=shares.__getitem__)
-    share = told(Part({"pocket_impact_shares": shares[most]}, {}), "pocket_impact_shares")
-    land = said(row, "; {land_impact_share} of all impacts are at the land")
+    share = show(Part({"pocket_impact_shares": shares[most]}, {}), "pocket_impact_shares")
+    land = fill(row, "; {land_impact_share} of all impacts are at the land")
     return f"pocket {most + 1} takes {share} of the impacts at {len(shares)} pockets{land}"
 
 
 def _whirl(row: Part) -> str:
     """Return frequency and direction in the turning frame, and the whirl ratio in the fixed one."""
-    seen = f"{told(row, 'whirl_frequency')} {DIRECTIONS[row.whirl_direction] or 'without direction'}"
+    seen = f"{show(row, 'whirl_frequency')} {DIRECTIONS[row.whirl_direction] or 'without direction'}"
     if row.whirl_ratio is None:
         return f"{seen}; the ball set is at rest"
-    return said(
+    return fill(
         row, f"{seen}, seen from the balls; the centre orbits at {{whirl_ratio}} of the ball set's speed"
     )
 
@@ -188,7 +188,7 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     if has_safety(first):
         return f"{lead} {_safety(first)} {rest}"
     limits = (
-        told(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
+        show(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
     )
     whose = "The cage" if len(first) == 1 else "Their cages"
     up_to = f"{whose} remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
@@ -209,7 +209,7 @@ def _safety(first: Sequence[Part]) -> str:
     """Return the safety factors of the candidates that rank first, and what they are made of."""
     criticals, frictions = span(first, "own_critical_friction"), span(first, "friction")
     lowest = min(first, key=lambda row: row.get("safety_factor_low") or inf)
-    factor = told(lowest, "safety_factor")
+    factor = show(lowest, "safety_factor")
     at = "at least " if len(first) > 1 and not factor.startswith(">") else ""
     return (
         f"Safety factor {at}{factor}: half the runs whirl at a friction of {criticals}, the pockets have "
@@ -225,7 +225,7 @@ def is_any(row: Part) -> bool:
 def threshold_alone(row: Part) -> str:
     """Return the restitution threshold of a row without its interval."""
     name = "restitution_threshold"
-    return "any" if is_any(row) else told(Part({name: row.restitution_threshold}, {}), name)
+    return "any" if is_any(row) else show(Part({name: row.restitution_threshold}, {}), name)
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
@@ -234,7 +234,7 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     if not judged or not has_safety(judged):
         return
     best = judged[0]
-    both = said(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
+    both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
     if answer.get("wide_land_clearance") is not None:
         least = answer.wide_land_critical_friction_low
         critical = answer.get("wide_land_critical_friction")
@@ -242,15 +242,15 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         words = f"The land stops the cage before its pockets can drive it ({both}): at a land clearance of "
         words += f"{{wide_land_clearance}} the critical friction of {answer.candidate} would be "
         whose = f", less than the friction of {', '.join(above)}" if above else ""
-        yield said(answer, words + "{wide_land_critical_friction}") + f"{whose}."
+        yield fill(answer, words + "{wide_land_critical_friction}") + f"{whose}."
     elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in judged):
-        yield said(
+        yield fill(
             best, "The pockets decide, not the land (clearances {pocket_clearance}, {land_clearance})."
         )
     weak = [row for row in judged if row.cage_motion == "ROLLING" and row.verdict == "STABLE"]
     if weak:
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
-        yield f"{weak[0].name} rolls in its pockets: {said(weak[0], words)}."
+        yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
     beyond = [row.name for row in judged if row.extrapolation]
     if beyond:
         yield f"{'All' if len(beyond) == len(judged) else 'Some'} frictions are extrapolated."
@@ -260,9 +260,9 @@ def span(rows: Sequence[Part], name: str) -> str:
     """Return the least and the largest value of a quantity among some rows, one where they look alike."""
     known = sorted((row for row in rows if name in row), key=lambda row: getattr(row, name))
     if not known:
-        return told(rows[0], name)
+        return show(rows[0], name)
     ends = [Part({name: getattr(row, name)}, row.units) for row in (known[0], known[-1])]
-    return " to ".join(dict.fromkeys(told(one, name) for one in ends))
+    return " to ".join(dict.fromkeys(show(one, name) for one in ends))
 
 
 def candidate_numbers(answer: Part) -> Table:

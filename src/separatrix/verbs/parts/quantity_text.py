@@ -1,10 +1,11 @@
-"""Numbers of an answer as facts, columns, sentences and axes, each told as `quantities` describes it."""
+"""Numbers of an answer as facts, columns, sentences and axes, each as `quantities` describes it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from separatrix.ground.document import Part
@@ -23,9 +24,9 @@ def itself(row: Any) -> Any:
 
 
 def quantity(name: str) -> Quantity:
-    """Return how a quantity of this name is told; one that only full tables have, by its name.
+    """Return the label and form of a quantity of this name; one that only full tables have, by its name.
 
-    A key of a study, as ``film.thickness``, is told by its words, with its section where these need it.
+    A key of a study, as ``film.thickness``, has its own words, with its section where these need it.
     """
     if name in QUANTITIES:
         return QUANTITIES[name]
@@ -137,7 +138,7 @@ def by_race(
     return Table(name, columns, names, caption, level)
 
 
-def told(part: Part, name: str) -> str:
+def show(part: Part, name: str) -> str:
     """Return a number of a part as it stands in a sentence."""
     return alone(estimate(part, name), quantity(name), part.unit(name))
 
@@ -147,9 +148,9 @@ def number_of(part: Part, name: str, value: float | None) -> str:
     return alone(value, quantity(name), part.unit(name))
 
 
-def said(part: Part, template: str) -> str:
-    """Return a sentence in which ``{name}`` stands for a number of a part, as it is told."""
-    return re.sub(r"\{(\w+)\}", lambda name: told(part, name[1]), template)
+def fill(part: Part, template: str) -> str:
+    """Return a sentence in which ``{name}`` stands for a number of a part."""
+    return re.sub(r"\{(\w+)\}", lambda name: show(part, name[1]), template)
 
 
 def axis(
@@ -184,3 +185,31 @@ def marks(
             values = [one.value for one in known]
         found[way] = values
     return Trace(hover=tuple(hover(row) for row in rows) if hover else (), **found)
+
+
+# Parameters of a study that are varied.
+
+
+SPACE = 1.5
+"""Ratio of the last step of an axis to its first beyond which values in proportion are logarithmic."""
+
+
+def parameter_axis(name: str, unit: str, values: Sequence[float], *, is_tight: bool = False) -> Axis:
+    """Return the axis of a parameter; a tight one ends at its first and last value."""
+    low, high = min(values), max(values)
+    ends = (low, high) if is_tight and low < high else (None, None)
+    return axis(name, unit, values, is_log=is_proportional(values), low=ends[0], high=ends[1])
+
+
+def is_proportional(values: Sequence[float]) -> bool:
+    """Whether values rise by a factor rather than by a step: their axis is logarithmic."""
+    if len(values) < 3 or not values[0] > 0.0:
+        return False
+    factors = [b / a for a, b in pairwise(values)]
+    is_spread = values[-1] - values[-2] > SPACE * (values[1] - values[0])
+    return is_spread and max(factors) < 1.05 * min(factors)
+
+
+def value_of(parameter: Part, name: str, value: float | None) -> Cell:
+    """Return a value of a parameter of this name, in its unit."""
+    return Cell(value, quantity(name), parameter.get("unit") or "-")

@@ -1,6 +1,6 @@
-"""What each verb answers: records of the chain and of ensembles, with what belongs beside them.
+"""Answers of the chain: their records, with what belongs beside them, and how these are arranged.
 
-The answer of `bearing` is a `BearingState`, that of `sweep` a `Sweep`.
+The answer of `bearing` is a `BearingState`.
 """
 
 from __future__ import annotations
@@ -8,28 +8,25 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
+import numpy as np
+
 from separatrix.chain.ball_mobility import LinearMobility, Mobility
 from separatrix.chain.clearances import Clearances
-from separatrix.chain.contacts import BearingState
+from separatrix.chain.contacts import BearingState, RaceContact
+from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.impact_restitution import LubricationCurve
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import ShearField, TractionCurve
+from separatrix.ground.plain_data import Group, Leaf, Node, Table, fields_of, shape
 from separatrix.ground.units import (
     Kilogram,
     Metre,
     MetrePerSecond,
     MetreRadianPerSecond,
-    Newton,
-    PerSecond,
     Radian,
     Ratio,
-    Watt,
+    Rows,
 )
-from separatrix.verdict.ranking_records import Ranking
-from separatrix.verdict.stability_curve import StabilityCurve
-from separatrix.verdict.stability_map import StabilityMap
-from separatrix.verdict.uncertain_study import UncertainStudy
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,63 +111,89 @@ class MobilityAnswer:
     notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OfCage:
-    """The chain, and the cage that an answer is for."""
-
-    solution: Solution  # the chain
-    cage: MovingCage  # the cage with its pockets, land and balls, as the runs use it
-    notes: tuple[str, ...] = ()  # where a model leaves its range, a sentence each
+# How these records, and those in them, are arranged otherwise than field by field.
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StabilityAnswer(OfCage):
-    """Stability curve of the cage."""
-
-    curve: StabilityCurve  # critical friction against the restitution factor
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapAnswer(OfCage):
-    """The map, and the cage of the study itself."""
-
-    map: StabilityMap  # the two axes, the points and the boundary between them
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationAnswer(OfCage):
-    """One run of the ensemble, from one kick.
-
-    `force_limit` is the force of a pocket beyond which its ball has no meaning: None without one.
-    """
-
-    kick: MetrePerSecond
-    run: int  # number of the run in the ensemble, from 0
-    given_restitution_factor: Ratio | None  # to which the races are damped; null for that of the study
-    outcome_sentence: str  # where the motion ends, in words
-    force_limit: Newton | None  # its friction is all that the races hold of a ball; null without such a limit
-    force_exceeds_races: bool  # whether the largest force is beyond what the races hold
-    drift_rate_law: PerSecond  # growth rate of the offset by the linear law
-    rubbing_power: Watt  # power that rubbing on the land turns to heat at the end of the run
-    history: History  # the motion, sampled
-    analysis: CourseAnalysis  # means, extremes, whirl and spectra
-
-    @property
-    def whirls(self) -> bool:
-        """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
-        lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
-        return lasts or self.history.cause is Cause.LAND_FRICTION
+@shape.register
+def _(found: Equilibrium) -> Node:
+    """A row for each ball."""
+    node = fields_of(found)
+    rows: list[Node] = [{"ball": Leaf(ball)} for ball in range(found.azimuth.size)]
+    for name, item in [*node.items()]:
+        if isinstance(item, Leaf) and item.axes and item.axes[0] == "ball":
+            del node[name]
+            for row, value in zip(rows, np.asarray(item.value), strict=True):
+                row[name] = Leaf(value, item.unit, item.axes[1:])
+    return {"balls": Table(rows, Rows("ball", label="ball")), "most_loaded": Leaf(found.most_loaded), **node}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RankingAnswer(OfCage):
-    """The ranking, and the cage of its reference candidate."""
+@shape.register
+def _(at: RaceContact) -> Node:
+    """Ellipse and creep on the level of the contact."""
+    node = fields_of(at)
+    del node["ellipse"], node["creep"]
+    creep = {f"creep_{name}": item for name, item in shape(at.creep).items()}
+    return node | shape(at.ellipse) | creep
 
-    ranking: Ranking  # the candidates in each environment
+
+@shape.register
+def _(found: BearingState) -> Node:
+    return shape(found.equilibrium) | {"contacts": _contacts(found)} | fields_of(found, "clearances")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensitivityAnswer(OfCage):
-    """The uncertain study, and the cage of its reference candidate."""
+def _contacts(found: BearingState) -> Group:
+    return Group(fields_of(found, "inner", "outer"), "contact_")
 
-    uncertain: UncertainStudy  # verdicts over the uncertain inputs, and what decides them
+
+@shape.register
+def _(found: CheckAnswer) -> Node:
+    """At standstill the contacts alone."""
+    return fields_of(found) | ({"static": _contacts(found.static)} if found.static else {})
+
+
+@shape.register
+def _(found: TractionAnswer) -> Node:
+    """Each race with its contact; the curves at other ratios are at the same increments as its own."""
+    races: Node = {}
+    names = ("spin_roll_ratio", "slope", "slope_error", "traction_coefficient")
+    for race in ("inner", "outer"):
+        at = getattr(found.bearing, race)
+        curve, others, shear = (getattr(found, f"{race}{part}") for part in ("", "_others", "_shear"))
+        by_ratio = Table([fields_of(other, *names) for other in others], Rows("ratio", "ratio_"))
+        more: Node = {"by_spin_roll_ratio": by_ratio, "shear": Group(shape(shear))}
+        races[race] = Group(shape(at) | shape(curve) | more)
+    return fields_of(found, "race_friction") | races | fields_of(found, "outside")
+
+
+def chain_node(found: Solution) -> Node:
+    """Restitution and the contacts, which have the slopes of their traction curves."""
+    clearances = Leaf(None) if found.clearances is None else Group(shape(found.clearances))
+    more: Node = {"stiffness_source": Leaf(found.stiffness_source), "clearances": clearances}
+    for race in ("inner", "outer"):
+        at, curve = (getattr(part, race) for part in (found.bearing, found.slopes))
+        more[race] = Group(shape(at) | fields_of(curve, "slope", "slope_error", "free_rolling_offset"))
+    return shape(found.restitution) | more
+
+
+RETURNED = ("impact_speed", "effective_restitution_factor")
+
+
+@shape.register
+def _(found: RestitutionAnswer) -> Node:
+    node = chain_node(found.solution) | fields_of(found, *RETURNED, "film_thickness_here", "lubrication")
+    reason = Leaf("The study names no film material.")
+    return node if found.lubrication else node | {"lubrication_reason": reason}
+
+
+@shape.register
+def _(found: Mobility) -> Node:
+    """The small motion on the level of the mobility; the law with what it carries at most."""
+    node = fields_of(found)
+    del node["linear"], node["traction"]
+    law: Node = fields_of(found.traction) | {"capacity": Leaf(found.traction.capacity, "N")}
+    return shape(found.linear) | node | {"traction": Group(law)}
+
+
+@shape.register
+def _(found: MobilityAnswer) -> Node:
+    return shape(found.mobility) | fields_of(found, "rigid")
