@@ -24,10 +24,8 @@ _PUBLIC = {
     "chain.impact_restitution": "LubricationCurve Restitution ball_pocket_stiffness damping_ratio "
     "lubrication_curve race_damping restitution_factor",
     "chain.solution": "Solution solve",
-    "chain.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
-    "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
-    "chain.exact.cases": "ContactAnswer ContactCase ContactMotion ContactQuestion ContactSetup Gap "
-    "SolvedCase exact_contact rolling_cases",
+    "chain.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact Solid "
+    "creep_of_force gap_contact rigid_slip rolling_contact solid solve_each worn_band",
     "chain.film_compliance": "film_compliance",
     "chain.traction_curve": "ShearField TractionCurve shear_field traction_curve traction_slope",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError",

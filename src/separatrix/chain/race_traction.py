@@ -115,7 +115,7 @@ def contact_traction(
         slope_error=found.slope_error,
         free_rolling_offset=found.free_rolling_offset,
         nodes=COLUMNS[1],
-        notes=found.notes,
+        notes=found.solution.notes,
     )
 
 

@@ -5,6 +5,7 @@ from separatrix.chain.exact.rolling import (
     ContactProblem,
     ContactSolution,
     RollingContact,
+    creep_of_force,
     gap_contact,
     rigid_slip,
     rolling_contact,
@@ -13,8 +14,6 @@ from separatrix.chain.exact.rolling import (
 )
 from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import RaceSlope, traction_slope
-from separatrix.chain.exact.transient import shift, transient
-from separatrix.chain.exact.two_way import solve_two_way
 from separatrix.chain.film_compliance import Profile, worn_band
 
 __all__ = [
@@ -27,15 +26,13 @@ __all__ = [
     "RaceSlope",
     "RollingContact",
     "Solid",
+    "creep_of_force",
     "gap_contact",
     "rigid_slip",
     "rolling_contact",
-    "shift",
     "solid",
     "solve",
     "solve_each",
-    "solve_two_way",
     "traction_slope",
-    "transient",
     "worn_band",
 ]
