@@ -13,10 +13,10 @@ With z = p - c S, c = 1/A_ii, Coulomb's law is p = Proj(z), the projection on th
 This is Newton's method on p - Proj(p - c S) with the slipping cells kept on their circles. |p| and not the
 bound is the measure, since tractions may be far below it.
 
-The linear step is solved by generalised conjugate residuals (Eisenstat, Elman & Schultz 1983), the iterates of
-GMRES without its triangle. The preconditioner is an approximate inverse row by row: a run of m sticking cells
-takes the inverse of the leading m x m block of the row's Toeplitz matrix, a run of slipping cells the banded LU
-of its turns along the tangents; cut cells take their diagonal.
+The linear step is solved by generalised conjugate residuals (Eisenstat, Elman & Schultz 1983), the iterates
+of GMRES without its triangle. The preconditioner is an approximate inverse row by row: a run of m sticking
+cells takes the inverse of the leading m x m block of the row's Toeplitz matrix, a run of slipping cells the
+banded LU of its turns along the tangents; cut cells take their diagonal.
 """
 
 from __future__ import annotations
