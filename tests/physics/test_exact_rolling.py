@@ -296,7 +296,7 @@ def test_a_case_that_does_not_settle_is_its_error(monkeypatch):
 
 def test_a_film_that_is_compressed_is_noted():
     """By 0.2 of its thickness."""
-    (note,) = contact(0.3, race=body(0.25, (1.4e-3, 0.3, 0.01))).notes
+    note, _ = contact(0.3, race=body(0.25, (1.4e-3, 0.3, 0.01))).notes
     assert "compressed by 0.2" in note
 
 

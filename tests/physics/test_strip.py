@@ -86,7 +86,8 @@ def test_without_the_entry_condition_the_net_traction_vanishes():
 @pytest.mark.parametrize("lam", [0.0, 0.03, 1.0, 30.0])
 def test_levinsons_recursion_is_the_active_set(lam):
     """The master curve's knots are not near the direct solutions but equal to them."""
-    c, F, _ = nested_sticks(strip_influence(100, lam), node_pressure(100))
+    p = node_pressure(100)
+    c, F, _ = nested_sticks(strip_influence(100, lam), p, toeplitz(100, lam) @ p)
     for m in (20, 40, 60, 95):  # near saturation the first elements, bare, do not stick in order
         below = c[m] * (1.0 - 1e-9)  # a knot's last element is neither in nor out
         strip = solve_strip(below, lam, nodes=100)

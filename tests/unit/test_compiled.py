@@ -19,10 +19,11 @@ PACKAGE = Path(separatrix.__file__).parent
 SOME_KERNELS = """
 import json
 from separatrix.chain import hertz
-from separatrix.chain import strip
+from separatrix.chain import traction_curve
 
-values = [*hertz.ellipse_shape(3.0, 0.0), *strip.strip_influence(20, 0.3), *strip.node_pressure(20)]
-stats = [kernel.stats for kernel in (hertz.ellipse_shape, strip.strip_influence, strip.node_pressure)]
+edges = traction_curve.panel_edges(0.1, 0.2, 0.0, traction_curve.LEVELS, 1)
+values = [*hertz.ellipse_shape(3.0, 0.0), *edges]
+stats = [kernel.stats for kernel in (hertz.ellipse_shape, traction_curve.panel_edges)]
 hits, misses = (sum(sum(getattr(s, name).values()) for s in stats) for name in ("cache_hits", "cache_misses"))
 print(json.dumps([values, hits, misses]))
 """

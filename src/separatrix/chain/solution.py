@@ -295,11 +295,3 @@ class Solution:
         """How the balls run faster and slower around, beyond their mean."""
         found = self.bearing.equilibrium
         return orbital_waves(found.orbital_speed, found.azimuth, self.study.bearing.pitch_diameter / 2.0)
-
-    @property
-    def orbital_share(self) -> Ratio | None:
-        """Share of the variance of the balls' orbital speeds that the cage's harmonics hold [-].
-
-        None where all balls run alike, as under an axial load.
-        """
-        return self.orbital_waves.share

@@ -21,7 +21,7 @@ from separatrix.chain.creep import Creep
 from separatrix.chain.film_compliance import Profile, pieces_across
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.master_curve import MasterTable, film_tables, master_traction
-from separatrix.chain.strip import solve_strip, stick_solution, strip_influence
+from separatrix.chain.strip import solve_strip
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Metre, Ratio, format_quantity
@@ -413,11 +413,9 @@ def shear_field(
     xi = creep.ratio(y * ellipse.semi_major, offset + creep_increment)
     half = np.sqrt(1.0 - y * y)  # b(y)/b, and p0(y)/p0
     films, shares = case.local(y)
-    each = list(zip(xi / (case.saturation * shares * half), films / half, strict=True))
-    solved = [solve_strip(c, lam, nodes=nodes) for c, lam in each]
-    none, step = np.zeros(nodes), 4.0 / nodes
-    stuck = [
-        stick_solution(strip_influence(nodes, lam), none, np.full(nodes, step * c), none) for c, lam in each
+    solved = [
+        solve_strip(c, lam, nodes=nodes)
+        for c, lam in zip(xi / (case.saturation * shares * half), films / half, strict=True)
     ]
     pressure = ellipse.max_pressure * half[:, None]
     bound = case.friction * shares[:, None] * pressure
@@ -428,7 +426,7 @@ def shear_field(
         pressure=pressure * solved[0].pressure,
         bound=bound * solved[0].pressure,
         shear=bound * np.array([s.shear for s in solved]),
-        shear_without_slip=bound * np.array(stuck),
+        shear_without_slip=bound * np.array([s.stuck for s in solved]),
         slip=np.array([s.slip for s in solved]),
         sweeps=np.array([s.sweeps for s in solved]),
     )

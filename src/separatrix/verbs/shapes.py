@@ -103,7 +103,9 @@ def _(found: TractionAnswer) -> Node:
 def _chain(found: Solution) -> Node:
     """Restitution and the contacts, which have the slopes of their traction curves."""
     clearances = Leaf(None) if found.clearances is None else Group(shape(found.clearances))
+    hertz = Leaf(found.restitution.restitution_factor_hertz, "-")
     more: Node = {"stiffness_source": Leaf(found.stiffness_source), "clearances": clearances}
+    more["restitution_factor_hertz"] = hertz
     for race in ("inner", "outer"):
         at, curve = (getattr(part, race) for part in (found.bearing, found.slopes))
         more[race] = Group(shape(at) | fields_of(curve, "slope", "slope_error", "free_rolling_offset"))
@@ -157,7 +159,7 @@ def _of_cage(found: OfCage) -> Node:
     orbits: Node = {
         "half_play": Leaf(found.cage.half_play, "m"),
         "lead_amplitude": Leaf(found.cage.lead_amplitude, "m"),
-        "orbital_share": Leaf(found.solution.orbital_share, "-"),
+        "orbital_share": Leaf(found.solution.orbital_waves.share, "-"),
     }
     return node | {"chain": Group(_chain(found.solution) | orbits), "cage": Group(shape(found.cage))}
 
