@@ -81,7 +81,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     share = 1.0 - np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2
-    assert state.orbital_waves.share == pytest.approx(share, abs=1e-9)  # two sums of the same numbers: rounding
+    assert state.orbital_waves.share == pytest.approx(share, abs=1e-9)  # rounding
 
 
 def test_free_balls_lead_by_the_integral_of_their_speed():

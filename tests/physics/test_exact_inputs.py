@@ -7,23 +7,19 @@ import numpy as np
 import pytest
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.exact import (
-    Body,
+from separatrix.chain.exact.grid import cell_counts
+from separatrix.chain.exact.influence import Body, Layer, Solid, solid
+from separatrix.chain.exact.rolling import (
     ContactProblem,
-    FrictionLaw,
-    Layer,
-    Profile,
-    Solid,
     creep_of_force,
     rigid_slip,
     rolling_contact,
-    solid,
     solve,
     solve_each,
-    traction_slope,
-    worn_band,
 )
-from separatrix.chain.exact.grid import cell_counts
+from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.slope import traction_slope
+from separatrix.chain.film_compliance import Profile, worn_band
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.ground.errors import InputError
 
@@ -152,6 +148,7 @@ REFUSED = [
     (lambda: field(start=SPOILT), "solve: start must be finite [Pa]; got nan."),
     (lambda: solve_each(made(), [SPOILT]), f"{SLIP} nan."),
     (lambda: creep_of_force(made(), 1.0), "creep_of_force: force must be below that of sliding, 1 [-]; got"),
+    (lambda: creep_of_force(made(friction=law(coefficient=0.0)), 0.5), "creep_of_force: contact must have"),
     (lambda: made(ellipse=ellipse_of_axes(300.0, 0.15e-6, 0.45e-3, 110e9)),
      "ContactProblem.ellipse.max_pressure must be below the modulus of the pair, 1.1e+11 Pa; got"),
 ]  # fmt: skip

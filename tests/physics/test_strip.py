@@ -114,14 +114,6 @@ def test_any_creep_settles_in_a_few_sweeps(creep, lam):
     assert solve_strip(-creep, lam, nodes=100).shear == pytest.approx(-strip.shear, abs=1e-14)
 
 
-def test_the_tangent_is_the_difference_quotient():
-    """With the stick zone held, traction is linear in creep: both agree to rounding over a step inside it."""
-    low, high = (solve_strip(0.4 + d, 0.5, nodes=100) for d in (-1e-6, 1e-6))
-    assert np.array_equal(low.slip, high.slip)
-    quotient = (high.traction_ratio - low.traction_ratio) / 2e-6
-    assert low.slope == pytest.approx(quotient, rel=1e-8)  # rounding over the step
-
-
 def test_clipping_the_stuck_traction_is_not_carter():
     """The paper's iteration read as one cut at the bound misses Carter by more than the mesh does."""
     nodes = 200

@@ -46,7 +46,6 @@ from separatrix.ground.units import (
     RadianPerSecond,
     Ratio,
 )
-from separatrix.study.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
 
 
 class SlipLaw(Spelled):
@@ -529,7 +528,7 @@ def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
     law = fitted_law(speed, mean, slope=found.held, mass=found.mass)
     return Mobility(
         ball=asked.state.inner.ball,
-        linear=_linear(ball, found, slip_law),
+        linear=linear_mobility(asked, slip_law),
         capacity=ball.capacity,
         traction=law,
         law_error=float(np.abs(law.force(speed) - mean).max()) / ball.capacity,
@@ -542,20 +541,11 @@ def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
     )
 
 
-def linear_mobility(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-    slip_law: SlipLaw,
-) -> LinearMobility:
-    """Small motion of the most loaded ball alone."""
-    ball = held_ball(Rolling(bearing, operation, kinematics, film, settings), slip_law)
-    return _linear(ball, modes(friction_slopes(ball), ball.masses), slip_law)
-
-
-def _linear(ball: HeldBall, found: Modes, slip_law: SlipLaw) -> LinearMobility:
+@lru_cache(maxsize=REMEMBERED)
+def linear_mobility(asked: Rolling, slip_law: SlipLaw) -> LinearMobility:
+    """Small motion of the most loaded ball alone; refused as `held_ball` is."""
+    ball = held_ball(asked, slip_law)
+    found = modes(friction_slopes(ball), ball.masses)
     damping, stiffness = groove(ball)
     speed = abs(ball.problem.speed)
     return LinearMobility(

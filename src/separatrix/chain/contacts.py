@@ -204,17 +204,8 @@ class OrbitalWaves:
 def orbital_waves(orbital_speed: Array, azimuth: Array, pitch_radius: Metre) -> OrbitalWaves:
     """Discrete Fourier transform of the balls' speeds about their mean.
 
-    Parameters
-    ----------
-    orbital_speed, azimuth : ndarray
-        Of each ball, at even azimuths, shape (ball,) [rad/s] and [rad].
-    pitch_radius : float
-        R, which makes speeds along the circumference of them [m].
-
-    Notes
-    -----
-    Harmonics up to 4, and below half the balls: what Z balls tell; of these the first ones that hold
-    `ENOUGH` of their variance. `share` says how much of the whole is kept.
+    Of balls at even azimuths, shape (ball,) [rad/s] and [rad]. Harmonics up to 4, and below half the balls:
+    what Z balls tell; of these the first ones that hold `ENOUGH` of their variance.
     """
     mean = float(np.mean(orbital_speed))
     beyond = pitch_radius * (orbital_speed - mean)

@@ -142,16 +142,7 @@ def ball_pocket_stiffness(
     :math:`\frac12 M_C v^2 = \frac25 K \delta_m^{5/2}` sets the depth :math:`\delta_m`, and
     :math:`k = \frac45 K \delta_m^{1/2}` stores it there too.
 
-    Parameters
-    ----------
-    ball_diameter : float
-        D [m].
-    ball_material, cage_material : Material
-        Ball, and pocket wall.
-    cage_mass : float
-        The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
-    impact_speed : float
-        [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
+    It goes as the fifth root of the mass, the whole one as in Eq. 17, and as the speed to the power 2/5.
 
     Notes
     -----
@@ -191,11 +182,8 @@ def hertz_coefficient_for(
 def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
     r"""Restitution factor of a Hertzian contact in series with the races' damper; it is never quite 0.
 
-    Parameters
-    ----------
-    damping_ratio : float
-        :math:`\zeta` of the linear spring of equal energy and depth at the speed of the impact
-        (`equal_energy_stiffness`). With Hertz it goes as the speed to the power 1/5 [-].
+    The damping ratio is that of the linear spring of equal energy and depth at the speed of the impact
+    (`equal_energy_stiffness`); with Hertz it goes as the speed to the power 1/5.
 
     Notes
     -----
@@ -280,16 +268,7 @@ def lubrication_curve(
 ) -> LubricationCurve:
     """Restitution factor for each race friction and film thickness, the kinematics held.
 
-    Parameters
-    ----------
-    inner, outer : RaceContact
-        Contacts of the ball.
-    film_material : Material
-        Gives the film its shear modulus.
-    ball_cage_stiffness, cage_mass : float
-        k_BC [N/m] and M_C [kg].
-    film_thicknesses, race_frictions : sequence of float
-        Total thickness over ball and race, 0 for bare [m]; f_BT, > 0 [-].
+    A thickness is the total over ball and race, 0 for bare [m].
 
     Notes
     -----

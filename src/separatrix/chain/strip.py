@@ -51,15 +51,14 @@ LEAST_INDEX_SWEEPS = 20
 class StripSolution:
     """Traction of one strip in units of mu p0, from the leading edge on; shape (node,) each [-].
 
-    `stuck` is that without slip; `slip` is 0 in stick, else the sign of the slip; `tangent` is
-    d(traction)/dc with the stick zone held; `sweeps` counts the solutions of the stick zone.
+    `stuck` is that without slip; `slip` is 0 in stick, else the sign of the slip; `sweeps` counts the
+    solutions of the stick zone.
     """
 
     along: Array
     pressure: Array
     shear: Array
     stuck: Array
-    tangent: Array
     slip: Array
     sweeps: int
 
@@ -67,11 +66,6 @@ class StripSolution:
     def traction_ratio(self) -> Ratio:
         """Traction over its bound mu P of the strip [-]."""
         return float(self.shear.sum() / self.pressure.sum())
-
-    @property
-    def slope(self) -> Ratio:
-        """Tangent of `traction_ratio` to the creep c [-]."""
-        return float(self.tangent.sum() / self.pressure.sum())
 
 
 def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> StripSolution:
@@ -98,20 +92,13 @@ def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> 
     """
     t, bound = strip_influence(nodes, lam), node_pressure(nodes)
     matrix = toeplitz(t[nodes - 1 :], t[nodes - 1 :: -1])
-    strain, unit = np.broadcast_to(4.0 * np.asarray(creep) / nodes, (nodes,)), np.full(nodes, 4.0 / nodes)
-
-    def held(q: Array, strain: Array, sticks: Array) -> Array:
-        """Tractions with slipping elements at q and sticking ones strained as given."""
-        q = np.where(sticks, 0.0, q)
-        q[sticks] = np.linalg.solve(matrix[np.ix_(sticks, sticks)], (strain - matrix @ q)[sticks])
-        return q
-
-    slip = np.zeros(nodes)
+    strain, slip = np.broadcast_to(4.0 * np.asarray(creep) / nodes, (nodes,)), np.zeros(nodes)
     limit = BLOCK_SWEEPS + LEAST_INDEX_SWEEPS * nodes
     for sweep in range(1, limit + 1):
-        q = held(slip * bound, strain, slip == 0.0)
+        q, sticks = slip * bound, slip == 0.0
+        q[sticks] = np.linalg.solve(matrix[np.ix_(sticks, sticks)], (strain - matrix @ q)[sticks])
         wanted = np.where(slip * (strain - matrix @ q) < -1e-12, 0.0, slip)
-        beyond = (slip == 0.0) & (np.abs(q) > bound * (1.0 + 1e-12))
+        beyond = sticks & (np.abs(q) > bound * (1.0 + 1e-12))
         wanted[beyond] = np.sign(q[beyond])
         wrong = np.flatnonzero(wanted != slip)
         if wrong.size == 0:
@@ -120,7 +107,6 @@ def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> 
                 pressure=bound,
                 shear=q,
                 stuck=np.linalg.solve(matrix, strain),
-                tangent=held(np.zeros(nodes), unit, slip == 0.0),
                 slip=slip,
                 sweeps=sweep,
             )

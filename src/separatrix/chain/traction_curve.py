@@ -278,10 +278,8 @@ def traction_curve(
 
     Parameters
     ----------
-    ellipse : ContactEllipse
-        The Hertz contact.
-    creep : Creep
-        Spin and Heathcote creep of the contact.
+    ellipse, creep
+        Hertz contact, its spin and Heathcote creep.
     race_friction : float or Profile
         Friction f_BT of ball on track, >= 0; a profile across the groove of a worn track is > 0 [-].
     film_compliance : float or Profile
@@ -292,11 +290,6 @@ def traction_curve(
         Total thickness of the film [m]; only to note where the film in series is out of its range.
     tolerance : float
         Relative error of the slope above which strips are refined, from 400 to at most 1600 elements [-].
-
-    Returns
-    -------
-    TractionCurve
-        The curve and its slope at the origin.
 
     Raises
     ------
@@ -317,7 +310,7 @@ def traction_curve(
         _, _, pieces = case.strips
         span = 2.5 * reach(float(pieces[:, [LAM_LOW, LAM_HIGH]].max()), table)
         span += 1.5 * (abs(case.strips.sigma) + abs(case.strips.eta))
-        creep_increments = np.linspace(-span * case.saturation, span * case.saturation, 41)
+        creep_increments = span * case.saturation * np.linspace(-1.0, 1.0, 41)
     increments = np.asarray(creep_increments, dtype=np.float64)
     forces = resultants(offset + increments / case.saturation, case.strips, 1, table)[:, 0]
     return TractionCurve(
@@ -393,19 +386,8 @@ def shear_field(
 ) -> ShearField:
     """Shear over the ellipse at one creep increment (paper, Figs 5 and 6); ``strips=1`` the middle strip.
 
-    Parameters
-    ----------
-    ellipse, creep, race_friction, film_compliance
-        As for `traction_curve`; race_friction must exceed 0.
-    creep_increment : float
-        Increment from free rolling, positive where the ball is faster [-].
-    strips, nodes : int
-        Strips of equal width across the ellipse, and elements along each.
-
-    Returns
-    -------
-    ShearField
-        Traction with slip and without, pressure, stick and slip.
+    Strips are of equal width across the ellipse, with `nodes` elements along each. The increment counts from
+    free rolling and is positive where the ball is faster.
     """
     case = scaled_contact(ellipse, creep, race_friction, film_compliance)
     y = 2.0 * (np.arange(strips) + 0.5) / strips - 1.0

@@ -265,24 +265,11 @@ def influence(
     images: Images,
     stencil: tuple[tuple[int, float], ...],
 ) -> Array:
-    """Displacement at cell i, j of a uniform unit traction on cell 0, 0.
+    """Displacement at cell i, j of a uniform unit traction on cell 0, 0: xx, yy, xy and zz [m/Pa].
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Rows and columns of the grid.
-    spacing : tuple of float
-        Width of a row and of a column [m].
-    images : Images
-        Of the pair of bodies.
-    stencil : tuple
-        Pairs (shift, factor): the sum of factor times displacement at x + shift dx/2.
-
-    Returns
-    -------
-    array
-        xx, yy, xy and zz for offsets of j = 0 ... rows - 1 and i = 1 - columns ... columns - 1, shape
-        (4, rows, 2 columns - 1) [m/Pa]. xx, yy and zz are even in j, xy odd.
+    For offsets j = 0 ... rows - 1 and i = 1 - columns ... columns - 1, shape (4, rows, 2 columns - 1). xx, yy
+    and zz are even in j, xy odd. `spacing` is the width of a row and of a column, `stencil` has pairs (shift,
+    factor): the sum of factor times displacement at x + shift dx/2.
     """
     rows, columns = shape
     dy, dx = spacing

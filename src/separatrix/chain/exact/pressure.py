@@ -42,7 +42,6 @@ class Pressing:
 
     pressure: Array
     approach: Metre
-    iterations: int
 
 
 def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton) -> Pressing:
@@ -70,14 +69,14 @@ def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton
     total = load / (spacing[0] * spacing[1])
     p = np.full(gap.shape, total / gap.size)
     direction, G_old, conjugate, change = np.zeros_like(gap), 1.0, 0.0, np.inf
-    for iteration in range(1, LARGEST_ITERATIONS + 1):
+    for _ in range(LARGEST_ITERATIONS):
         touching = p > 0.0
         g = displacement(p) + gap
         approach = float(g[touching].mean())
         g -= approach
         G = float((g[touching] ** 2).sum())
         if change <= TOLERANCE or G == 0.0:
-            return Pressing(pressure=p, approach=approach, iterations=iteration)
+            return Pressing(pressure=p, approach=approach)
         direction = np.where(touching, g + conjugate * (G / G_old) * direction, 0.0)
         r = displacement(direction)
         r -= r[touching].mean()

@@ -47,7 +47,6 @@ THICKEST = 100.0  # layers over the semi-major axis; the sum of the images loses
 DOUBTFUL_STRAIN = 0.1
 SMALLEST_SIDE, LARGEST_SIDE = 4, 256  # cells along one side of a grid; the memory goes with the cube
 BALANCED = 1e-6  # of a stated force, over the force of sliding
-DOUBLINGS = 60
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +89,7 @@ class RollingContact:
     pressure: Array
     bound: Array
     coupling: Array  # slip that the pressure causes, shape (2, row, column) [-]
+    max_pressure: Pascal
     film_strain: Ratio
     operator: Operator = field(repr=False)
 
@@ -206,7 +206,8 @@ def gap_contact(
 def _contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
     """A problem on a known grid under a known pressure, shape (row, column) [Pa]."""
     bodies, film, rough = problem.bodies, problem.film_compliance, problem.roughness
-    strain = film_strain(bodies, _largest_pressure(problem, pressure))
+    largest = float(pressure.max()) if problem.own_pressure else problem.ellipse.max_pressure
+    strain = film_strain(bodies, largest)
     if strain > LARGEST_STRAIN:
         cure = "A linear elastic film cannot carry this pressure."
         raise InputError(
@@ -219,6 +220,7 @@ def _contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> Rolling
         pressure=pressure,
         bound=problem.friction.bound(grid, pressure),
         coupling=pressure_slip(grid, pressure, bodies) if problem.coupled else np.zeros((2, *grid.shape)),
+        max_pressure=largest,
         film_strain=strain,
         operator=rolling_operator(grid, bodies, compliance),
     )
@@ -230,10 +232,6 @@ def _check_layers(problem: ContactProblem) -> None:
     if thickest > largest:
         rule = f"must be at most {largest:g} m thick together, {THICKEST:g} semi-major axes of the contact"
         raise InputError("Body.layers", rule, f"{thickest:g} m", "Take the outermost one as the base.")
-
-
-def _largest_pressure(problem: ContactProblem, pressure: Array) -> Pascal:
-    return float(pressure.max()) if problem.own_pressure else problem.ellipse.max_pressure
 
 
 def rigid_slip(
@@ -299,13 +297,13 @@ def solve_each(
     known: list[tuple[Array, Array]] = []
     for slip in slips:
         try:
-            found = settled(contact, slip, start=secant(known, slip), tolerance=tolerance)
+            found = solve(contact, slip, start=secant(known, slip), tolerance=tolerance)
         except ConvergenceError as error:
             solutions.append(error)
             known.clear()
             continue
         known = [*known[-1:], (slip, found.traction)]
-        solutions.append(solution_of(contact, found))
+        solutions.append(found)
     return solutions
 
 
@@ -342,9 +340,9 @@ def creep_of_force(
     if not abs(force) < 1.0:
         raise InputError("creep_of_force: force", "must be below that of sliding, 1 [-]", f"{force:g}")
     sliding = float(contact.bound.sum()) * contact.grid.cell_area
-    scale = (
-        2.0 * float(contact.bound.max()) / contact.problem.ellipse.contact_modulus
-    )  # saturates a bare strip
+    if sliding == 0.0:
+        raise InputError("creep_of_force: contact", "must have friction")
+    scale = 2.0 * float(contact.bound.max()) / contact.problem.ellipse.contact_modulus  # of a bare strip
     known: list[tuple[Array, Array]] = []
 
     def at(creep: Ratio) -> ContactSolution:
@@ -361,12 +359,12 @@ def creep_of_force(
     if abs(here) <= BALANCED:
         return 0.0, at(0.0)
     inner, outer = 0.0, math.copysign(scale, here)
-    for _ in range(DOUBLINGS):
+    while abs(outer) <= LARGEST_CREEP:
         if excess(outer) * here <= 0.0:
             creep = float(brentq(excess, inner, outer, xtol=BALANCED * scale))
             return creep, at(creep)
         inner, outer = outer, 3.0 * outer
-    raise ConvergenceError("No creep gives the stated force.", DOUBLINGS, abs(excess(outer)))
+    raise ConvergenceError("No creep gives the stated force.", len(known), abs(here))
 
 
 def solution_of(contact: RollingContact, found: Settled) -> ContactSolution:
@@ -389,7 +387,7 @@ def solution_of(contact: RollingContact, found: Settled) -> ContactSolution:
         spin_moment=float((grid.x * p[1] - grid.y[:, None] * p[0]).sum() * dA),
         stick_share=float(fraction[~slips].sum() / fraction.sum()),
         dissipation=float(-(p * slip).sum() * dA) + 0.0,  # not -0
-        max_pressure=_largest_pressure(contact.problem, contact.pressure),
+        max_pressure=contact.max_pressure,
         film_strain=contact.film_strain,
         iterations=found.passes,
         residual=found.residual,

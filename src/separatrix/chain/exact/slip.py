@@ -218,6 +218,8 @@ def advance(
         image -= h * images[n]
         v -= h * directions[n]
     size = math.sqrt((image * image).sum())
+    if size == 0.0:  # no way on
+        return 0.0
     images[k], directions[k] = image / size, v / size
     share = (images[k] * rest).sum()
     total += share * directions[k]
