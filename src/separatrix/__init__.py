@@ -22,7 +22,7 @@ _PUBLIC = {
     "chain.ball_traction": "BallTraction",
     "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
     "chain.impact_restitution": "LubricationCurve Restitution ball_pocket_stiffness damping_ratio "
-    "lubrication_curve race_damping restitution_factor",
+    "lubrication_curve restitution_factor",
     "chain.solution": "Solution solve",
     "chain.exact.influence": "Body Layer Solid solid",
     "chain.exact.rolling": "ContactProblem ContactSolution RollingContact creep_of_force gap_contact "

@@ -55,7 +55,7 @@ class Restitution:
     cage_mass: Kilogram  # M_C
     inner_damping: NewtonSecondPerMetre
     outer_damping: NewtonSecondPerMetre
-    race_damping: NewtonSecondPerMetre  # C_mu, of both races together, Eq. 18
+    race_damping: NewtonSecondPerMetre  # C_mu as printed, Eq. 18: of a ball that cannot change its spin
     damping_ratio: Ratio  # sqrt(k_BC M_C) over 2 C_mu
     restitution_factor: Ratio  # eta: speed of the cage after an impact over that before, Eq. 1
     race_damping_free_spin: NewtonSecondPerMetre
@@ -79,11 +79,6 @@ class Restitution:
 def contact_damping(slope: Ratio, contact: RaceContact) -> NewtonSecondPerMetre:
     """One race's share of C_mu, alpha N / V (Eq. 18)."""
     return slope * contact.load / contact.rolling_speed
-
-
-def race_damping(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
-    """C_mu as printed (Eq. 18): the sum, for a ball whose spin cannot change in the impact."""
-    return inner + outer
 
 
 def race_damping_free_spin(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
@@ -221,7 +216,7 @@ def restitution(
     cage_mass: Kilogram,
 ) -> Restitution:
     """Restitution factors of an impact, from the damping of each race (`contact_damping`)."""
-    both, free = race_damping(inner, outer), race_damping_free_spin(inner, outer)
+    both, free = inner + outer, race_damping_free_spin(inner, outer)
     zeta = damping_ratio(ball_cage_stiffness, cage_mass, both)
     zeta_free = damping_ratio(ball_cage_stiffness, cage_mass, free)
     return Restitution(
