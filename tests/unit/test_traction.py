@@ -1,11 +1,9 @@
 """What traction refuses, warns of and returns."""
 
-import dataclasses
 import math
 import pickle
 import re
 
-import numpy as np
 import pytest
 
 from separatrix.chain import strip as strip_module
@@ -49,16 +47,6 @@ def test_a_thick_film_in_series_is_noted():
     assert re.search(r"0\.031 of the semi-minor axis.*is valid up to 0\.03 \(docs", note)
     assert thick.slope > 0.0
     assert thin.notes == ()
-
-
-def test_the_default_increments_can_be_replaced():
-    """Any increments, in any order."""
-    curve = traction_curve(ELLIPSE, CREEP, creep_increments=np.array([0.01, -0.01, 0.0]), **GOOD)
-    assert curve.creep_increment.tolist() == [0.01, -0.01, 0.0]
-    assert curve.traction_coefficient[0] > 0.0 > curve.traction_coefficient[1]
-    assert curve.spin_roll_ratio == pytest.approx(CREEP.spin / 200.0, rel=1e-15)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        curve.slope = 1.0
 
 
 def test_one_strip_can_be_drawn():

@@ -106,7 +106,7 @@ def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> 
                 along=1.0 - (2.0 * np.arange(nodes) + 1.0) / nodes,
                 pressure=bound,
                 shear=q,
-                stuck=np.linalg.solve(matrix, strain),
+                stuck=np.asarray(np.linalg.solve(matrix, strain), dtype=np.float64),
                 slip=slip,
                 sweeps=sweep,
             )
