@@ -205,7 +205,8 @@ def _speed_returned(beta: Ratio) -> Ratio:
     leaves.terminal, leaves.direction = True, -1.0  # type: ignore[attr-defined]
     span = 0.0, 1e4
     found = solve_ivp(motion, span, [0.0, 1.0], method="DOP853", events=leaves, rtol=3e-14, atol=1e-15)
-    return -float(found.y_events[0][0, 1])
+    (left,) = found.y_events or ()
+    return -float(left[0, 1])
 
 
 def restitution(
