@@ -201,4 +201,4 @@ def test_a_stiffness_by_hertz_in_a_bore_says_that_it_is_of_a_flat_wall():
     found = solve(cage(**bore | by_hertz))
     assert not found.notes  # before the stiffness is computed
     assert found.ball_cage_stiffness > 0.0
-    assert "A bore with a clearance of 0.6 mm is 2.1 times as stiff" in found.notes[-1]
+    assert "A bore with a clearance of 600 um is 2.1 times as stiff" in found.notes[-1]
