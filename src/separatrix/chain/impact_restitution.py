@@ -205,8 +205,7 @@ def _speed_returned(beta: Ratio) -> Ratio:
     leaves.terminal, leaves.direction = True, -1.0  # type: ignore[attr-defined]
     span = 0.0, 1e4
     found = solve_ivp(motion, span, [0.0, 1.0], method="DOP853", events=leaves, rtol=3e-14, atol=1e-15)
-    (left,) = found.y_events or ()
-    return -float(left[0, 1])
+    return -float(found.y[1, -1])  # an event that ends it is its last point
 
 
 def restitution(
