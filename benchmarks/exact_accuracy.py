@@ -10,7 +10,7 @@ import time
 from itertools import chain
 
 import numpy as np
-from exact_cases import MU, body, contact, kalker, loaded, saturation, strip_force
+from exact_cases import MU, body, contact, kalker, saturation, strip_force
 from test_exact_contact import GALIN, coefficients
 from test_exact_normal import COATED, spheres_on_two_grids
 from test_exact_rolling import (
@@ -22,12 +22,13 @@ from test_exact_rolling import (
     circle_area,
     creep_of_unlike_bodies,
 )
-from test_exact_slope import BARE_SLOPES, INNER, OUTER, OWN_PRESSURE, WORN, problem, sphere, worn
+from test_exact_slope import BARE_SLOPES, INNER, OUTER, OWN_PRESSURE, WORN, problem, worn
 
 from separatrix.chain.exact.influence import Layer, solid
-from separatrix.chain.exact.rolling import rigid_slip
+from separatrix.chain.exact.rolling import ContactProblem, rolling_contact
+from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import traction_slope
-from separatrix.chain.exact.transient import shift, transient
+from separatrix.chain.hertz import ellipse_of_axes
 
 
 def say(*values):
@@ -107,22 +108,12 @@ def spheres_table():
         say(ratio, h, best[:2], (d, p0), percent(best[:2], (d, p0)), found[1][2], a)
 
 
-def shifts_table():
-    """Cattaneo's shift and transient rolling."""
-    load, made = sphere()
-    low, high = 8.0e-3, 8.3e-3
-    for _ in range(30):
-        way = 0.5 * (low + high)
-        one = shift(made, rigid_slip(made.grid, longitudinal=-way))
-        low, high = (way, high) if one.force / (0.4 * load) < 0.875 else (low, way)
-    print("## Cattaneo: shift at 0.875 mu N", way, "stick", one.stick_share, flush=True)
-    courses = []
-    for n in (20, 40, 80):
-        made = contact(1.0, columns=n, rows=n, friction=1e6)
-        steps = transient(made, [rigid_slip(made.grid, longitudinal=1e-6)] * (5 * n))
-        forces = np.array([one.force for one in steps])
-        courses.append(forces[[n // 5 - 1, n // 2 - 1, n - 1, 2 * n - 1]] / forces[-1])
-    print("## transient", 2.0 * courses[1] - courses[0], 2.0 * courses[2] - courses[1], flush=True)
+def loaded(load, b, a, G, nu, mu, *, cells=40, **given):
+    """Equal bodies of shear modulus G that a load presses on an ellipse of half lengths b and a."""
+    both, law = body(nu, G=G), FrictionLaw(coefficient=mu)
+    pressed = ellipse_of_axes(load, b, a, G / (1.0 - nu))
+    problem = ContactProblem(ellipse=pressed, bodies=(both, both), friction=law, **given)
+    return rolling_contact(problem, columns=cells, rows=cells)
 
 
 def contact_examples():
@@ -171,7 +162,7 @@ def slopes_table():
 
 
 if __name__ == "__main__":
-    tables = kalker_table, partial_slip_table, strips_table, spheres_table, shifts_table
+    tables = kalker_table, partial_slip_table, strips_table, spheres_table
     chosen = sys.argv[1:]
     for table in (*tables, contact_examples, slopes_table):
         if not chosen or table.__name__ in chosen:

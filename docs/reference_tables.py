@@ -111,6 +111,7 @@ CHAIN = (
     *CONTACTS,
     *SLOPE,
     Line("stiffness_source", meaning="where the stiffness of ball and pocket comes from"),
+    Line("restitution_factor_hertz", "-", meaning="restitution factor of a Hertzian pocket, impact speed"),
 )
 OF_CAGE = (
     *CHAIN,

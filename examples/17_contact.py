@@ -20,14 +20,14 @@ figure, axes = plt.subplots(layout="constrained")
 found = {}
 for name, race in races.items():
     problem = separatrix.ContactProblem(ellipse=ellipse, bodies=(ball, race), friction=friction)
-    asked = separatrix.rolling_cases(problem, longitudinal=creeps, columns=28, rows=28)
-    found[name] = [one.solution for one in separatrix.exact_contact(asked).cases]
+    contact = separatrix.rolling_contact(problem, columns=28, rows=28)
+    slips = [separatrix.rigid_slip(contact.grid, longitudinal=creep) for creep in creeps]
+    found[name] = separatrix.solve_each(contact, slips)
     axes.plot(100 * creeps, [one.traction_coefficient for one in found[name]], "o-", label=name)
     share = found[name][4].stick_share
     print(f"{name}: {100 * share:.0f} % of the area sticks at a creep of {100 * creeps[4]:.2f} %")
-    half = separatrix.ContactCase(setup=asked.cases[0].setup, wanted=(-0.5, None))  # the force is stated
-    (one,) = separatrix.exact_contact(separatrix.ContactQuestion(cases=(half,))).cases
-    print(f"  half the force of sliding at a creep of {100 * one.case.longitudinal_creep:.3f} %")
+    half, _ = separatrix.creep_of_force(contact, -0.5)  # the force is stated
+    print(f"  half the force of sliding at a creep of {100 * half:.3f} %")
 axes.set(xlabel="creep [%]", ylabel="traction coefficient [-]")
 axes.legend()
 

@@ -22,13 +22,13 @@ _PUBLIC = {
     "chain.ball_traction": "BallTraction",
     "chain.ball_mobility": "LinearMobility Mobility SlipLaw",
     "chain.impact_restitution": "LubricationCurve Restitution ball_pocket_stiffness damping_ratio "
-    "lubrication_curve race_damping restitution_factor",
+    "lubrication_curve restitution_factor",
     "chain.solution": "Solution solve",
-    "chain.exact": "Body ContactProblem ContactSolution FrictionLaw Layer Profile RollingContact "
-    "Solid gap_contact rigid_slip rolling_contact solid solve_each worn_band",
-    "chain.exact.cases": "ContactAnswer ContactCase ContactMotion ContactQuestion ContactSetup Gap "
-    "SolvedCase exact_contact rolling_cases",
-    "chain.film_compliance": "film_compliance",
+    "chain.exact.influence": "Body Layer Solid solid",
+    "chain.exact.rolling": "ContactProblem ContactSolution RollingContact creep_of_force gap_contact "
+    "rigid_slip rolling_contact solve_each",
+    "chain.exact.slip": "FrictionLaw",
+    "chain.film_compliance": "Profile film_compliance worn_band",
     "chain.traction_curve": "ShearField TractionCurve shear_field traction_curve traction_slope",
     "ground.errors": "ConvergenceError DataError InputError SeparatrixError",
     "verdict.swept_cases": "Sweep SweptCase",

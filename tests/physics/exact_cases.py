@@ -9,7 +9,7 @@ from separatrix.chain.exact.influence import Body, Layer, Solid
 from separatrix.chain.exact.operator import rolling_operator
 from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve
 from separatrix.chain.exact.slip import FrictionLaw, settle
-from separatrix.chain.hertz import ContactEllipse, ellipse_of_axes
+from separatrix.chain.hertz import ContactEllipse
 
 MU = 0.1
 P0 = 1e-3  # over G
@@ -27,14 +27,6 @@ def ellipse(b, a=1.0, p0=P0, modulus=1.0):
         load=2.0 / 3.0 * math.pi * a * b * p0, semi_major=a, semi_minor=b, max_pressure=p0, approach=0.0,
         curvature_rolling=1.0, curvature_transverse=1.0, contact_modulus=modulus,
     )  # fmt: skip
-
-
-def loaded(load, b, a, G, nu, mu, *, cells=40, **given):
-    """Equal bodies of shear modulus G that a load presses on an ellipse of half lengths b and a."""
-    both, law = body(nu, G=G), FrictionLaw(coefficient=mu)
-    pressed = ellipse_of_axes(load, b, a, G / (1.0 - nu))
-    problem = ContactProblem(ellipse=pressed, bodies=(both, both), friction=law, **given)
-    return rolling_contact(problem, columns=cells, rows=cells)
 
 
 def contact(b, nu=0.25, *, columns=40, rows=40, friction=MU, race=None, **given):

@@ -67,7 +67,7 @@ def test_an_axial_load_runs_its_balls_alike():
         state = solve(study)
         cage = moving_cage(state, 0.0)
         assert (cage.orbital_cosines, cage.orbital_sines) == ((), ())
-        assert state.orbital_share is None
+        assert state.orbital_waves.share is None
 
 
 @pytest.mark.parametrize("study", [STUDY, SHIPPED], ids=["controlled", "free"])
@@ -82,7 +82,7 @@ def test_harmonics_reproduce_the_orbital_speeds_of_a_combined_load(study, change
     assert np.abs(beyond).max() > 0.01
     assert np.linalg.norm(left) < 1e-2 * np.linalg.norm(beyond)  # sqrt of the variance that is left
     share = 1.0 - np.linalg.norm(left) ** 2 / np.linalg.norm(beyond) ** 2
-    assert state.orbital_share == pytest.approx(share, abs=1e-9)  # two sums of the same numbers: rounding
+    assert state.orbital_waves.share == pytest.approx(share, abs=1e-9)  # rounding
 
 
 def test_free_balls_lead_by_the_integral_of_their_speed():

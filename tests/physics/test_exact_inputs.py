@@ -7,25 +7,19 @@ import numpy as np
 import pytest
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.exact import (
-    Body,
+from separatrix.chain.exact.grid import cell_counts
+from separatrix.chain.exact.influence import Body, Layer, Solid, solid
+from separatrix.chain.exact.rolling import (
     ContactProblem,
-    FrictionLaw,
-    Layer,
-    Profile,
-    Solid,
+    creep_of_force,
     rigid_slip,
     rolling_contact,
-    shift,
-    solid,
     solve,
     solve_each,
-    traction_slope,
-    transient,
-    worn_band,
 )
-from separatrix.chain.exact.cases import rolling_cases
-from separatrix.chain.exact.grid import cell_counts
+from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.slope import traction_slope
+from separatrix.chain.film_compliance import Profile, worn_band
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.ground.errors import InputError
 
@@ -153,8 +147,10 @@ REFUSED = [
     (lambda: field(start=FIELD[:1]), "solve: start must have the shape (2, 8, 8); got (1, 8, 8)."),
     (lambda: field(start=SPOILT), "solve: start must be finite [Pa]; got nan."),
     (lambda: solve_each(made(), [SPOILT]), f"{SLIP} nan."),
-    (lambda: shift(made(), SPOILT), f"{SLIP} nan."),
-    (lambda: transient(made(), [SPOILT]), f"{SLIP} nan."),
+    (lambda: creep_of_force(made(), 1.0), "creep_of_force: force must be below that of sliding, 1 [-]; got"),
+    (lambda: creep_of_force(made(friction=law(coefficient=0.0)), 0.5), "creep_of_force: contact must have"),
+    (lambda: made(ellipse=ellipse_of_axes(300.0, 0.15e-6, 0.45e-3, 110e9)),
+     "ContactProblem.ellipse.max_pressure must be below the modulus of the pair, 1.1e+11 Pa; got"),
 ]  # fmt: skip
 
 
@@ -181,7 +177,4 @@ def test_cells_that_are_left_out():
     assert counts == [(40, 40), (40, 40), (68, 24), (80, 20), (80, 20)]
     assert cell_counts(12, 16, semi_minor=5.0, semi_major=1.0) == (12, 16)
     long = problem(ellipse=ellipse_of_axes(300.0, 0.5e-3, 0.1e-3, 110e9))
-    setup = rolling_cases(long).cases[0].setup
-    assert (setup.columns, setup.rows) == (68, 24)
-    assert setup.contact().grid.shape == rolling_contact(long).grid.shape == (24, 68)
-    assert rolling_cases(long, columns=40).cases[0].setup.columns == 40
+    assert rolling_contact(long).grid.shape == (24, 68)

@@ -74,7 +74,9 @@ def test_scaling(b, nu, count, parts, length, stiffness, load):
     s, G, p0 = 10.0**length, 10.0**stiffness, P0 * 10.0 ** (stiffness + 0.2 * load)
     solid = body(nu, G=G)
     problem = ContactProblem(
-        ellipse=ellipse(b * s, a=s, p0=p0), bodies=(solid, solid), friction=FrictionLaw(coefficient=MU)
+        ellipse=ellipse(b * s, a=s, p0=p0, modulus=G),
+        bodies=(solid, solid),
+        friction=FrictionLaw(coefficient=MU),
     )
     scaled = rolling_contact(problem, columns=count, rows=count)
     xi, eta, spin, curve = (part * 2.0 * MU * p0 / G * (1.0 - nu) for part in parts)

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from cages import BEARING, STEEL
 from scipy.integrate import quad
@@ -99,18 +98,6 @@ def test_race_curvatures_use_the_operating_angle() -> None:
         assert race_curvatures(bearing, race, math.pi / 2)[0] == pytest.approx(200.0, rel=ROUNDING)
     transverse = race_curvatures(bearing, Race.OUTER, 0.3)[1]
     assert transverse == pytest.approx(1.0 / 0.005 - 1.0 / 0.0053, rel=ROUNDING)
-
-
-def test_arrays_give_what_their_numbers_give() -> None:
-    """Loads beside curvatures, broadcast: every field to the last bit; a number off its range is refused."""
-    loads, curvatures = np.array([0.0, 30.0, 900.0]), np.array([[150.0], [400.0]])
-    grid = contact_ellipse(loads, curvatures, 120.0, 110e9)
-    for i, j in np.ndindex(2, 3):
-        one = contact_ellipse(float(loads[j]), float(curvatures[i, 0]), 120.0, 110e9)
-        for name in ("load", "semi_major", "semi_minor", "max_pressure", "approach", "stiffness"):
-            assert getattr(grid, name)[i, j] == getattr(one, name), name
-    with pytest.raises(InputError, match=r"load must be finite and >= 0 \[N\]; got -1"):
-        contact_ellipse(np.array([1.0, -1.0]), 200.0, 100.0, 110e9)
 
 
 @pytest.mark.parametrize(

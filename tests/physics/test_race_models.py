@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 from cages import BEARING
 
-from separatrix.chain import exact
+from separatrix.chain import race_traction as module
 from separatrix.chain.contacts import race_tracks
+from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.race_traction import (
     beyond_strips,
     coated_ellipse,
@@ -67,7 +68,7 @@ def test_the_chain_takes_the_slopes_of_its_model():
     found, plain = solve(asked), solve(replace(asked, traction=TractionSettings()))
     for race in Race:
         own = track(race=race)
-        alone = exact.traction_slope(contact_problem(own, EXACT), own.creep)
+        alone = traction_slope(contact_problem(own, EXACT), own.creep)
         curve = getattr(found.traction, race.value)
         assert curve.slope == alone.slope
         assert curve.slope_error == alone.slope_error
@@ -154,7 +155,7 @@ def test_a_worn_film_has_the_pressure_of_hertz():
 def test_the_exact_contact_is_solved_once(monkeypatch):
     """The range of the strips takes the exact contact of the chain."""
     _ = solve(study(traction=EXACT, cage=CAGE)).traction
-    monkeypatch.setattr(exact, "traction_slope", None)  # a second solution would fail
+    monkeypatch.setattr(module, "traction_slope", None)  # a second solution would fail
     assert "across the groove" in outside(model=TractionModel.EXACT)
 
 

@@ -106,7 +106,7 @@ def test_polymer_pockets_are_of_the_stated_stiffness(elastic_modulus):
 
 @pytest.mark.parametrize("damping", [20000.0, 2000.0, 600.0, 300.0, 150.0])
 @pytest.mark.parametrize("speed", [0.1, 2.0])
-def test_the_series_of_a_hertzian_impact_equals_the_integrated_impact(damping, speed):
+def test_a_hertzian_impact_equals_the_integrated_impact_in_newtons(damping, speed):
     """In newtons and metres, by the same integrator with Hertz's contact."""
     K = hertz_coefficient(DIAMETER, STEEL, polymer(4e9))
     zeta = damping_ratio(equal_energy_stiffness(K, MASS, speed), MASS, damping)

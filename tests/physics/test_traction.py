@@ -132,9 +132,12 @@ def test_strips_solved_one_by_one_agree(friction, lam, spin, curvature, shift):
             theta = (edges[:-1, None] + half * (1.0 + GAUSS_NODES)).ravel()
             share = 0.75 * np.cos(theta) ** 3 * (half * GAUSS_WEIGHTS).ravel()
             y, half = np.sin(theta), np.cos(theta)
-            each = zip((d + (sigma + eta * y) * y) / half, lam / half, strict=True)
-            strips = [solve_strip(creep, film, nodes=nodes) for creep, film in each]
-            slope = 0.5 * E / P0 * (share / half) @ [one.slope for one in strips]
+            each = list(zip((d + (sigma + eta * y) * y) / half, lam / half, strict=True))
+            strips, further = (
+                [solve_strip(creep + step, film, nodes=nodes) for creep, film in each] for step in (0.0, 1e-7)
+            )
+            rise = [one.traction_ratio for one in further] - np.array([one.traction_ratio for one in strips])
+            slope = 0.5 * E / P0 * (share / half) @ rise / 1e-7
             sums.append((friction * share @ [one.traction_ratio for one in strips], slope))
         return np.array(sums)
 

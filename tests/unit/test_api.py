@@ -40,9 +40,9 @@ def test_an_answer_has_the_names_of_its_record(small):
 
 def test_a_figure_by_its_name(small):
     """The first one, or the one asked for; another name is refused."""
-    answer = api.bearing(small)
+    answer = api.mobility(small)
     assert answer.plot().axes
-    assert answer.plot("bearing-contacts").axes
+    assert answer.plot("mobility").axes
     with pytest.raises(InputError, match="no picture nothing"):
         answer.plot("nothing")
 

@@ -187,3 +187,18 @@ def test_balls_that_lead_and_lag_more_than_their_play_draw_a_note():
     free = moving(study(operation=replace(tilting, radial_load=100.0)))
     assert 0.0 < free.lead_amplitude < free.half_play
     assert free.notes == ()
+
+
+def test_a_stiffness_by_hertz_in_a_bore_says_that_it_is_of_a_flat_wall():
+    """0.6 mm on 11.1 mm is 2.1 times as stiff; flat walls and a stated stiffness have no note."""
+    bore = {"pocket_shape": PocketShape.CYLINDRICAL, "motion": MotionModel.SPACE}
+    by_hertz = {"ball_cage_stiffness": None, "material": POLYMER}
+    for changes, count in ((bore | by_hertz, 1), (bore, 0), (by_hertz, 0)):
+        found = solve(cage(**changes))
+        assert found.ball_cage_stiffness > 0.0
+        notes = [note for note in found.notes if "flat wall" in note]
+        assert len(notes) == count
+    found = solve(cage(**bore | by_hertz))
+    assert not found.notes  # before the stiffness is computed
+    assert found.ball_cage_stiffness > 0.0
+    assert "A bore with a clearance of 600 um is 2.1 times as stiff" in found.notes[-1]

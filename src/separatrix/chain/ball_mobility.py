@@ -47,7 +47,6 @@ from separatrix.ground.units import (
     RadianPerSecond,
     Ratio,
 )
-from separatrix.study.study import BallBearing, Film, KinematicModel, Operation, TractionSettings
 
 
 class SlipLaw(Spelled):
@@ -531,7 +530,7 @@ def mobility(asked: Rolling, slip_law: SlipLaw = SlipLaw.ELASTIC) -> Mobility:
     law = fitted_law(speed, mean, slope=found.held, mass=found.mass)
     return Mobility(
         ball=asked.state.inner.ball,
-        linear=_linear(ball, found, slip_law),
+        linear=linear_mobility(asked, slip_law),
         capacity=ball.capacity,
         traction=law,
         law_error=float(np.abs(law.force(speed) - mean).max()) / ball.capacity,
@@ -551,28 +550,17 @@ def shares_of_balls(asked: Rolling) -> tuple[Array, Array]:
     """
     found, most = asked.state.equilibrium, asked.state.inner.ball
     loads = found.load_inner + found.load_outer
-    held = found.load_inner > LEAST_SHARE * found.load_outer
     slopes = np.zeros(loads.size)
-    for ball in np.flatnonzero(held):
-        one = held_ball(asked._replace(ball=int(ball)), SlipLaw.ELASTIC)
-        slopes[ball] = modes(friction_slopes(one), one.masses).held
+    for ball in np.flatnonzero(found.load_inner > LEAST_SHARE * found.load_outer):
+        slopes[ball] = linear_mobility(asked._replace(ball=int(ball)), SlipLaw.ELASTIC).damping
     return loads / loads[most], slopes / slopes[most]
 
 
-def linear_mobility(
-    bearing: BallBearing,
-    operation: Operation,
-    kinematics: KinematicModel,
-    film: Film,
-    settings: TractionSettings,
-    slip_law: SlipLaw,
-) -> LinearMobility:
-    """Small motion of the most loaded ball alone."""
-    ball = held_ball(Rolling(bearing, operation, kinematics, film, settings), slip_law)
-    return _linear(ball, modes(friction_slopes(ball), ball.masses), slip_law)
-
-
-def _linear(ball: HeldBall, found: Modes, slip_law: SlipLaw) -> LinearMobility:
+@lru_cache(maxsize=REMEMBERED)
+def linear_mobility(asked: Rolling, slip_law: SlipLaw) -> LinearMobility:
+    """Small motion of the most loaded ball alone; refused as `held_ball` is."""
+    ball = held_ball(asked, slip_law)
+    found = modes(friction_slopes(ball), ball.masses)
     damping, stiffness = groove(ball)
     speed = abs(ball.problem.speed)
     return LinearMobility(

@@ -122,14 +122,7 @@ def running_clearances(
     cage_mass: Kilogram,
     cage_speed: RadianPerSecond,
 ) -> Clearances:
-    """Clearances of a cage as it runs, from those of `design` at 293 K at rest.
-
-    Parameters
-    ----------
-    material : Material or None
-        Of the cage.
-    cage_speed : float
-        Mean orbital speed of the balls [rad/s].
+    """Clearances of a cage of this material as it runs, from those of `design` at 293 K at rest.
 
     Raises
     ------

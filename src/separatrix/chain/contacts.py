@@ -33,15 +33,7 @@ from separatrix.ground.units import (
     Ratio,
     format_quantity,
 )
-from separatrix.study.study import (
-    BallBearing,
-    Film,
-    KinematicModel,
-    Operation,
-    Race,
-    Study,
-    TractionSettings,
-)
+from separatrix.study.study import BallBearing, Film, KinematicModel, Operation, Race, Study, TractionSettings
 
 REMEMBERED = 1024
 """Solutions of a stage that are kept, by the records it takes."""

@@ -25,21 +25,9 @@ class Creep:
 def contact_creep(bearing: BallBearing, race: Race, contact_angle: Radian, spin_roll_ratio: Ratio) -> Creep:
     """Creep that the ball's kinematics make in one contact.
 
-    Parameters
-    ----------
-    bearing : BallBearing
-        Its diameters and conformities.
-    race : Race
-        Inner or outer: the sign of the Heathcote part differs.
-    contact_angle : float
-        The angle under load at this race [rad].
-    spin_roll_ratio : float
-        Pivoting to rolling speed of ball relative to race, signed [-] (paper, Eq. 16).
-
-    Returns
-    -------
-    Creep
-        Spin s = (spin/roll ratio)/R_x and curvature q = -1/(2 R_d R_x) at the inner race, + at the outer.
+    The contact angle is that under load at this race, the ratio the pivoting to the rolling speed of ball
+    relative to race, signed (paper, Eq. 16). Spin s = (spin/roll ratio)/R_x, curvature q = -1/(2 R_d R_x) at
+    the inner race, + at the outer.
 
     Notes
     -----

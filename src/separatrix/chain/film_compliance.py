@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -60,13 +59,6 @@ def pieces_across(half_width: Metre, *quantities: float | Profile) -> tuple[Arra
     return edges, [at_ends(one) for one in quantities]
 
 
-class Track(NamedTuple):
-    """Friction f_BT [-] and film compliance L = h/G [m/Pa] of one race, each a number or a profile."""
-
-    friction: Ratio | Profile
-    compliance: float | Profile
-
-
 def film_compliance(film: Film) -> float:
     """Shear compliance L = h/G of the film, total over ball and race [m/Pa]; 0 if the races are bare."""
     if film.body is None or film.thickness is None:
@@ -74,25 +66,25 @@ def film_compliance(film: Film) -> float:
     return 2.0 * film.thickness * (1.0 + film.body.poisson_ratio) / film.body.elastic_modulus
 
 
-def track_of(film: Film, race: Race, semi_major: Metre) -> Track:
-    """Film of a race under a contact whose semi-major axis lies across the groove."""
+def track_of(film: Film, race: Race, semi_major: Metre) -> tuple[Ratio | Profile, float | Profile]:
+    """Friction f_BT [-] and compliance L = h/G [m/Pa] of a race's film under a contact of this half width."""
     whole, wear, thickness = film_compliance(film), film.wear, film.thickness
     if wear is None or thickness is None or not wear.touches(race):
-        return Track(film.race_friction, whole)
+        return (film.race_friction, whole)
     if not wear.is_band:
         y, h = wear.places
-        return Track(
+        return (
             _friction(wear, film.race_friction),
             Profile(across=y, values=tuple(whole / thickness * one for one in h)),
         )
     half = 0.5 * wear.width if wear.width is not None else (wear.share or 0.0) * semi_major
     if half == 0.0:
-        return Track(film.race_friction, whole)
+        return (film.race_friction, whole)
     bare = wear.friction if wear.thickness == 0.0 else film.race_friction
     left = whole * wear.thickness / thickness
     if half >= semi_major:
-        return Track(bare, left)
-    return Track(worn_band(half, worn=bare, film=film.race_friction), worn_band(half, worn=left, film=whole))
+        return (bare, left)
+    return (worn_band(half, worn=bare, film=film.race_friction), worn_band(half, worn=left, film=whole))
 
 
 def _friction(wear: Wear, on_film: Ratio) -> Profile:

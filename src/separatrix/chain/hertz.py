@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
-from typing import cast
-
-import numpy as np
+from dataclasses import dataclass
 
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Array, Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian
+from separatrix.ground.units import Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian
 from separatrix.study.study import BallBearing, Material, Race
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactEllipse:
-    """One Hertz contact: `semi_major` lies across the groove, `semi_minor` along rolling (paper, 4.1).
-
-    Of `contact_ellipse` on arrays every field is an array of their shape.
-    """
+    """One Hertz contact: `semi_major` lies across the groove, `semi_minor` along rolling (paper, 4.1)."""
 
     load: Newton  # normal to the contact
     semi_major: Metre
@@ -33,9 +27,6 @@ class ContactEllipse:
     @property
     def stiffness(self) -> NewtonPerMetre:
         """Slope of load against approach, 3 Q / (2 approach); 0 without load."""
-        if isinstance(self.load, np.ndarray):
-            loaded = self.load > 0.0
-            return np.where(loaded, 1.5 * self.load / np.where(loaded, self.approach, 1.0), 0.0)
         return 1.5 * self.load / self.approach if self.load > 0.0 else 0.0
 
 
@@ -47,19 +38,7 @@ def contact_modulus(first: Material, second: Material) -> Pascal:
 def race_curvatures(bearing: BallBearing, race: Race, contact_angle: Radian) -> tuple[PerMetre, PerMetre]:
     """Gap curvatures 1/R_x (along rolling) and 1/R_y (across the groove) at the operating angle.
 
-    Parameters
-    ----------
-    bearing : BallBearing
-        Its diameters and conformities.
-    race : Race
-        Which of the two contacts.
-    contact_angle : float
-        The angle under load at this race [rad]; not the free angle.
-
-    Returns
-    -------
-    tuple of float
-        Rolling and transverse curvature [1/m]; the gap is h = x^2/(2 R_x) + y^2/(2 R_y).
+    The gap is h = x^2/(2 R_x) + y^2/(2 R_y), the contact angle that under load, not the free one.
 
     Notes
     -----
@@ -72,26 +51,18 @@ def race_curvatures(bearing: BallBearing, race: Race, contact_angle: Radian) -> 
 
 
 def contact_ellipse(
-    load: Newton | Array,
-    curvature_rolling: PerMetre | Array,
-    curvature_transverse: PerMetre | Array,
-    contact_modulus: Pascal | Array,
+    load: Newton, curvature_rolling: PerMetre, curvature_transverse: PerMetre, contact_modulus: Pascal
 ) -> ContactEllipse:
     r"""Hertz contact of a load and the gap curvatures of two bodies.
 
     Parameters
     ----------
-    load : float or array
+    load : float
         Normal load, >= 0 [N]; 0 gives an ellipse of no size.
-    curvature_rolling, curvature_transverse : float or array
+    curvature_rolling, curvature_transverse : float
         Gap curvatures 1/R_x and 1/R_y, the first not below the second, both > 0 [1/m].
-    contact_modulus : float or array
-        E* of the pair [Pa]. Arrays of different shapes are broadcast.
-
-    Returns
-    -------
-    ContactEllipse
-        Semi-axes [m], largest pressure [Pa], approach of the bodies [m].
+    contact_modulus : float
+        E* of the pair [Pa].
 
     Raises
     ------
@@ -109,45 +80,22 @@ def contact_ellipse(
     >>> ellipse = contact_ellipse(100.0, 200.0, 200.0, 110e9)
     >>> ellipse.semi_major == ellipse.semi_minor
     True
-    >>> contact_ellipse(np.array([100.0, 800.0]), 400.0, 200.0, 110e9).semi_major.round(6)
-    array([0.000168, 0.000335])
     """
-    given = np.broadcast(load, curvature_rolling, curvature_transverse, contact_modulus)
-    each = [_ellipse(*map(float, numbers)) for numbers in given]
-    if given.ndim == 0:
-        return each[0]
-    names = [field.name for field in fields(ContactEllipse)]
-    columns = {name: np.reshape([getattr(ellipse, name) for ellipse in each], given.shape) for name in names}
-    return ContactEllipse(**cast("dict[str, float]", columns))
-
-
-def _ellipse(load: Newton, rolling: PerMetre, transverse: PerMetre, modulus: Pascal) -> ContactEllipse:
-    """One contact."""
+    rolling, transverse, positive = curvature_rolling, curvature_transverse, "must be finite and > 0"
     groove = "The groove radius must exceed the ball radius."
     swap = "Swap the two: the ellipse is long where the gap curves less."
+    above = f"must lie from {transverse:g} up [1/m]"
     for name, value, is_right, rule, cure in (
         ("load", load, 0.0 <= load < math.inf, "must be finite and >= 0 [N]", ""),
-        ("contact_modulus", modulus, 0.0 < modulus < math.inf, "must be finite and > 0 [Pa]", ""),
-        (
-            "curvature_transverse",
-            transverse,
-            0.0 < transverse < math.inf,
-            "must be finite and > 0 [1/m]",
-            groove,
-        ),
-        (
-            "curvature_rolling",
-            rolling,
-            transverse <= rolling < math.inf,
-            f"must lie from {transverse:g} up [1/m]",
-            swap,
-        ),
+        ("contact_modulus", contact_modulus, 0.0 < contact_modulus < math.inf, f"{positive} [Pa]", ""),
+        ("curvature_transverse", transverse, 0.0 < transverse < math.inf, f"{positive} [1/m]", groove),
+        ("curvature_rolling", rolling, transverse <= rolling < math.inf, above, swap),
     ):
         if not is_right:
             raise InputError(f"contact_ellipse: {name}", rule, f"{value:g}", cure)
     k, K, D = ellipse_shape(rolling / transverse, 0.0)
-    a = math.cbrt(3.0 * load * D / (math.pi * modulus * transverse))
-    return _made(load, (k * a, a), (rolling, transverse), modulus, K)
+    a = math.cbrt(3.0 * load * D / (math.pi * contact_modulus * transverse))
+    return _made(load, (k * a, a), (rolling, transverse), contact_modulus, K)
 
 
 def _made(

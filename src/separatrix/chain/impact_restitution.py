@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import exp, hypot, log, pi, sqrt
 from typing import Annotated
 
@@ -17,7 +18,6 @@ from separatrix.chain.contacts import RaceContact
 from separatrix.chain.film_compliance import film_compliance
 from separatrix.chain.hertz import contact_modulus
 from separatrix.chain.traction_curve import traction_slope
-from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import (
     Array,
@@ -42,31 +42,33 @@ FORGOTTEN = 6.0
 """Damping group of a Hertzian impact from which its end forgets its start: what is left of the difference is
 below 1e-38 (docs/theory/restitution.md)."""
 
-ORDER = 24
-"""Of the Taylor series of an impact; from 16 to 32 it makes no difference above 2e-14."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Restitution:
     """Restitution factor of the cage's impact on a ball, and what it is made of.
 
     The plain names follow the paper's Eq. 18 (damping of both races added); the ones ending in
-    `_free_spin` let the ball change its spin within the impact. `restitution_factor_hertz` has the pocket's
-    contact as Hertz's, of the same energy at the same depth in an impact at the speed to which
-    `ball_cage_stiffness` belongs.
+    `_free_spin` let the ball change its spin within the impact.
     """
 
     ball_cage_stiffness: NewtonPerMetre
     cage_mass: Kilogram  # M_C
     inner_damping: NewtonSecondPerMetre
     outer_damping: NewtonSecondPerMetre
-    race_damping: NewtonSecondPerMetre  # C_mu, of both races together, Eq. 18
+    race_damping: NewtonSecondPerMetre  # C_mu as printed, Eq. 18: of a ball that cannot change its spin
     damping_ratio: Ratio  # sqrt(k_BC M_C) over 2 C_mu
     restitution_factor: Ratio  # eta: speed of the cage after an impact over that before, Eq. 1
-    restitution_factor_hertz: Ratio
     race_damping_free_spin: NewtonSecondPerMetre
     damping_ratio_free_spin: Ratio
     restitution_factor_free_spin: Ratio
+
+    @property
+    def restitution_factor_hertz(self) -> Ratio:
+        """Restitution factor with a Hertzian pocket, at the speed to which `ball_cage_stiffness` belongs [-].
+
+        It has the same energy at the same depth.
+        """
+        return hertzian_restitution_factor(self.damping_ratio)
 
     @property
     def least_damping(self) -> NewtonSecondPerMetre:
@@ -77,11 +79,6 @@ class Restitution:
 def contact_damping(slope: Ratio, contact: RaceContact) -> NewtonSecondPerMetre:
     """One race's share of C_mu, alpha N / V (Eq. 18)."""
     return slope * contact.load / contact.rolling_speed
-
-
-def race_damping(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
-    """C_mu as printed (Eq. 18): the sum, for a ball whose spin cannot change in the impact."""
-    return inner + outer
 
 
 def race_damping_free_spin(inner: NewtonSecondPerMetre, outer: NewtonSecondPerMetre) -> NewtonSecondPerMetre:
@@ -140,16 +137,7 @@ def ball_pocket_stiffness(
     :math:`\frac12 M_C v^2 = \frac25 K \delta_m^{5/2}` sets the depth :math:`\delta_m`, and
     :math:`k = \frac45 K \delta_m^{1/2}` stores it there too.
 
-    Parameters
-    ----------
-    ball_diameter : float
-        D [m].
-    ball_material, cage_material : Material
-        Ball, and pocket wall.
-    cage_mass : float
-        The whole mass, as in Eq. 17 [kg]. The stiffness goes as its fifth root.
-    impact_speed : float
-        [cage] impact_speed in a study [m/s]. The stiffness goes as its power 2/5.
+    It goes as the fifth root of the mass, the whole one as in Eq. 17, and as the speed to the power 2/5.
 
     Notes
     -----
@@ -189,59 +177,35 @@ def hertz_coefficient_for(
 def hertzian_restitution_factor(damping_ratio: Ratio) -> Ratio:
     r"""Restitution factor of a Hertzian contact in series with the races' damper; it is never quite 0.
 
-    Parameters
-    ----------
-    damping_ratio : float
-        :math:`\zeta` of the linear spring of equal energy and depth at the speed of the impact
-        (`equal_energy_stiffness`). With Hertz it goes as the speed to the power 1/5 [-].
+    The damping ratio is that of the linear spring of equal energy and depth at the speed of the impact
+    (`equal_energy_stiffness`); with Hertz it goes as the speed to the power 1/5.
 
     Notes
     -----
-    The impact has one dimensionless group, and its equations become a polynomial system, which a Taylor
-    series of order `ORDER` solves to about 1e-13 (docs/theory/restitution.md).
+    The impact has one dimensionless group beta: h' = u - beta h^3, u' = -2 h^4 from h = 0, u = 1 until h, the
+    approach's root, is 0 again (docs/theory/restitution.md).
     """
     beta = 2.0 * damping_ratio / sqrt(EQUAL_ENERGY)
-    start = min(beta, FORGOTTEN)
-    return float(_speed_returned(start)) * (start / beta) ** 5 if beta > 0.0 else 1.0
+    if beta == 0.0:
+        return 1.0
+    return _speed_returned(min(beta, FORGOTTEN)) * min(FORGOTTEN / beta, 1.0) ** 5
 
 
-@kernel
+@lru_cache(maxsize=1024)
 def _speed_returned(beta: Ratio) -> Ratio:
-    """Follow h' = u - beta h^3, u' = -2 h^4 from h = 0, u = 1 until h, the approach's root, is 0 again."""
-    a, b, square = np.zeros(ORDER + 1), np.zeros(ORDER + 1), np.zeros(ORDER + 1)  # of h, u and h^2
-    b[0] = 1.0
-    while True:
-        for n in range(ORDER):
-            cube, fourth = 0.0, 0.0
-            square[n] = 0.0
-            for i in range(n + 1):
-                square[n] += a[i] * a[n - i]
-            for i in range(n + 1):
-                cube += square[i] * a[n - i]
-                fourth += square[i] * square[n - i]
-            a[n + 1] = (b[n] - beta * cube) / (n + 1)
-            b[n + 1] = -2.0 * fourth / (n + 1)
-        growth = 0.0  # one over the radius of convergence; every fifth coefficient may be all that is not 0
-        for n in range(ORDER - 5, ORDER + 1):
-            growth = max(growth, abs(a[n]) ** (1.0 / n), abs(b[n]) ** (1.0 / n))
-        step = exp(-2.0) / growth
-        h, slope = _power_series(a, step)
-        if h <= 0.0:
-            for _ in range(20):  # Newton's method from beyond the root
-                step -= h / slope
-                h, slope = _power_series(a, step)
-            return -_power_series(b, step)[0]
-        a[0], b[0] = h, _power_series(b, step)[0]
+    from scipy.integrate import solve_ivp  # dear to import
 
+    def motion(_: float, state: Array) -> list[float]:
+        h, u = state.tolist()
+        return [u - beta * h**3, -2.0 * h**4]
 
-@part
-def _power_series(coefficients: Array, at: float) -> tuple[float, float]:
-    """Value and slope of a power series, by Horner's rule."""
-    value, slope = 0.0, 0.0
-    for n in range(coefficients.size - 1, -1, -1):
-        slope = value + at * slope
-        value = coefficients[n] + at * value
-    return value, slope
+    def leaves(_: float, state: Array) -> float:
+        return float(state[0])
+
+    leaves.terminal, leaves.direction = True, -1.0  # type: ignore[attr-defined]
+    span = 0.0, 1e4
+    found = solve_ivp(motion, span, [0.0, 1.0], method="DOP853", events=leaves, rtol=3e-14, atol=1e-15)
+    return -float(found.y[1, -1])  # an event that ends it is its last point
 
 
 def restitution(
@@ -252,7 +216,7 @@ def restitution(
     cage_mass: Kilogram,
 ) -> Restitution:
     """Restitution factors of an impact, from the damping of each race (`contact_damping`)."""
-    both, free = race_damping(inner, outer), race_damping_free_spin(inner, outer)
+    both, free = inner + outer, race_damping_free_spin(inner, outer)
     zeta = damping_ratio(ball_cage_stiffness, cage_mass, both)
     zeta_free = damping_ratio(ball_cage_stiffness, cage_mass, free)
     return Restitution(
@@ -263,7 +227,6 @@ def restitution(
         race_damping=both,
         damping_ratio=zeta,
         restitution_factor=restitution_factor(zeta),
-        restitution_factor_hertz=hertzian_restitution_factor(zeta),
         race_damping_free_spin=free,
         damping_ratio_free_spin=zeta_free,
         restitution_factor_free_spin=restitution_factor(zeta_free),
@@ -300,16 +263,7 @@ def lubrication_curve(
 ) -> LubricationCurve:
     """Restitution factor for each race friction and film thickness, the kinematics held.
 
-    Parameters
-    ----------
-    inner, outer : RaceContact
-        Contacts of the ball.
-    film_material : Material
-        Gives the film its shear modulus.
-    ball_cage_stiffness, cage_mass : float
-        k_BC [N/m] and M_C [kg].
-    film_thicknesses, race_frictions : sequence of float
-        Total thickness over ball and race, 0 for bare [m]; f_BT, > 0 [-].
+    A thickness is the total over ball and race, 0 for bare [m].
 
     Notes
     -----

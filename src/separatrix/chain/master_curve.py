@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from separatrix.chain.strip import node_pressure, strip_influence, toeplitz_product
+from separatrix.chain.strip import node_pressure, strip_influence
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.units import Array
 
@@ -36,13 +36,13 @@ class MasterTable(NamedTuple):
 
 
 @kernel
-def nested_sticks(t: Array, p: Array) -> tuple[Array, Array, Array]:
+def nested_sticks(t: Array, p: Array, g: Array) -> tuple[Array, Array, Array]:
     """Creep, traction and tangent at which element m is about to slip while all before it stick.
 
     Parameters
     ----------
-    t, p : array
-        Toeplitz coefficients, shape (2 node - 1,), and element averages of pressure, shape (node,) [-].
+    t, p, g : array
+        Toeplitz coefficients, shape (2 node - 1,), element averages of pressure and T p, shape (node,) [-].
 
     Returns
     -------
@@ -56,7 +56,6 @@ def nested_sticks(t: Array, p: Array) -> tuple[Array, Array, Array]:
     """
     n = p.size
     dx = 2.0 / n
-    g = toeplitz_product(t, p)
     c, F, S = np.zeros(n), np.zeros(n), np.zeros(n)
     f, b, x, z = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     sum_x, sum_z, total = 0.0, 0.0, p.sum()
@@ -108,9 +107,12 @@ def matched_knots(coarse: Array, fine: Array) -> tuple[Knots, Knots]:
     (coarse) works up to saturation, where the curve at equal creep has a kink that moves with n. Returns the
     extrapolated knots, and the fine ones.
     """
-    n = (coarse.size + 1) // 2
-    first = nested_sticks(coarse, node_pressure(n))
-    second = [values[1::2] for values in nested_sticks(fine, node_pressure(2 * n))]
+
+    def knots(t: Array) -> Knots:
+        p = node_pressure((t.size + 1) // 2)
+        return nested_sticks(t, p, np.convolve(t, p)[p.size - 1 : 2 * p.size - 1])
+
+    first, second = knots(coarse), [values[1::2] for values in knots(fine)]
     c, F, S = (2.0 * two - one for one, two in zip(first, second, strict=True))
     return _ordered(c, F, S), _ordered(second[0], second[1], second[2])
 

@@ -66,24 +66,12 @@ def pocket_conditions(
 ) -> PocketConditions:
     """Sliding speed and pressure of ball on pocket.
 
-    Parameters
-    ----------
-    equilibrium : Equilibrium
-        For the spin of each ball.
-    ball_cage_stiffness : float
-        Linear stiffness of the pocket; Hertz's contact behind it gives the pressure [N/m].
-    cage_mass, felt_mass : float
-        Of the cage, to which stiffness and damping ratio belong, and what an impact feels of it where the
-        cage may turn [kg].
-    damping_ratio : float
-        Of the impact, from the chain: the races yield and take force from it [-].
-    impact_speed : float
-        Of the cage [m/s].
+    Hertz's contact behind the linear stiffness of the pocket gives the pressure. Stiffness and damping ratio
+    belong to the mass of the cage; `felt_mass` is what an impact feels of it where the cage may turn [kg].
 
     Notes
     -----
-    The sliding of the whirl itself is left out: it points across the ball's
-    sliding and changes it little.
+    The sliding of the whirl itself is left out: it points across the ball's sliding and changes it little.
     """
     speeds = sliding_speed(equilibrium.ball_spin, ball_diameter)
     K = hertz_coefficient_for(ball_cage_stiffness, cage_mass, impact_speed)
@@ -106,14 +94,8 @@ def sliding_speed(ball_spin: Array, ball_diameter: Metre) -> Array:
     """Speed of each ball's surface over the pocket at its front and rear pole, shape (ball,) [m/s].
 
     In the frame that turns with the orbit the cage rests. The pocket is met at D/2 along the orbit, so the
-    spin about that direction moves nothing there: v = (D/2) sqrt(Omega_x^2 + Omega_r^2).
-
-    Parameters
-    ----------
-    ball_spin : array
-        Spin in that frame: along the bearing axis, outward, along the orbit; shape (ball, 3) [rad/s].
-    ball_diameter : float
-        D [m].
+    spin about that direction moves nothing there: v = (D/2) sqrt(Omega_x^2 + Omega_r^2), of spins along the
+    bearing axis, outward and along the orbit, shape (ball, 3) [rad/s].
     """
     speed: Array = 0.5 * ball_diameter * np.hypot(ball_spin[:, 0], ball_spin[:, 1])
     return speed
@@ -170,20 +152,10 @@ def friction_in_pocket(
     scatter: Ratio,
     media: Sequence[str] = (),
 ) -> Friction:
-    """Friction at the conditions of a pocket.
+    """Friction at the conditions of a pocket, the temperature and the fluid, which may have several names.
 
-    Parameters
-    ----------
-    friction : Friction
-        With a law over the conditions, or a number.
-    pocket : PocketConditions or None
-        None is enough for a friction without a law.
-    operation : Operation
-        For temperature and fluid.
-    scatter : float
-        Standard deviation over mean of an unrepeated test [-].
-    media : sequence of str
-        Names of the fluid, if there are several.
+    A friction without a law needs no pocket. `scatter` is the standard deviation over mean of an unrepeated
+    test [-].
     """
     if friction.law is None or pocket is None:
         return with_scatter(friction, scatter)

@@ -13,10 +13,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from separatrix.chain import exact
 from separatrix.chain.creep import Creep
+from separatrix.chain.exact.influence import Body, Layer, solid
 from separatrix.chain.exact.pressure import pressed_contact
-from separatrix.chain.exact.slope import COLUMNS, ROWS
+from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
+from separatrix.chain.exact.slip import FrictionLaw
+from separatrix.chain.exact.slope import COLUMNS, ROWS, RaceSlope, traction_slope
 from separatrix.chain.film_compliance import track_of
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.traction_curve import ShearField, TractionCurve, shear_field, traction_curve
@@ -78,11 +80,8 @@ def contact_traction(
 ) -> TractionCurve:
     """Traction curve of a contact and its slope, by the model of the settings.
 
-    Parameters
-    ----------
-    increments : array or None
-        Creep increments, shape (case,) [-]; None takes those of `traction_curve`, and `SLOPE_ALONE` none:
-        each costs the exact contact a solution.
+    Without creep increments it takes those of `traction_curve`, and with `SLOPE_ALONE` none: each costs the
+    exact contact a solution.
 
     Raises
     ------
@@ -115,14 +114,14 @@ def contact_traction(
         slope_error=found.slope_error,
         free_rolling_offset=found.free_rolling_offset,
         nodes=COLUMNS[1],
-        notes=found.notes,
+        notes=found.solution.notes,
     )
 
 
 @lru_cache(maxsize=REMEMBERED)
-def exact_slope(track: RaceTrack, settings: TractionSettings) -> exact.RaceSlope:
+def exact_slope(track: RaceTrack, settings: TractionSettings) -> RaceSlope:
     """The exact contact in free rolling and the slope there; remembered by the value of the records."""
-    return exact.traction_slope(contact_problem(track, settings), track.creep)
+    return traction_slope(contact_problem(track, settings), track.creep)
 
 
 def _exact_coefficients(track: RaceTrack, settings: TractionSettings, increments: Array) -> Array:
@@ -131,9 +130,9 @@ def _exact_coefficients(track: RaceTrack, settings: TractionSettings, increments
         return increments
     found, problem, creep = exact_slope(track, settings), contact_problem(track, settings), track.creep
     rows = ROWS if problem.own_pressure else found.solution.across.size
-    made = exact.rolling_contact(problem, columns=COLUMNS[1], rows=rows)
+    made = rolling_contact(problem, columns=COLUMNS[1], rows=rows)
     slips = (
-        exact.rigid_slip(
+        rigid_slip(
             made.grid,
             longitudinal=found.free_rolling_offset + float(increment),
             spin=creep.spin,
@@ -142,27 +141,27 @@ def _exact_coefficients(track: RaceTrack, settings: TractionSettings, increments
         for increment in increments
     )
     coefficients = []
-    for solution in exact.solve_each(made, slips):
+    for solution in solve_each(made, slips):
         if isinstance(solution, ConvergenceError):
             raise solution
         coefficients.append(solution.traction_coefficient)
     return np.array(coefficients)
 
 
-def contact_problem(track: RaceTrack, settings: TractionSettings) -> exact.ContactProblem:
+def contact_problem(track: RaceTrack, settings: TractionSettings) -> ContactProblem:
     """The exact contact of a race."""
     film = track.film
-    ball, ring = (exact.solid(m.elastic_modulus, m.poisson_ratio) for m in (track.ball, track.ring))
-    layers: tuple[exact.Layer, ...] = ()
+    ball, ring = (solid(m.elastic_modulus, m.poisson_ratio) for m in (track.ball, track.ring))
+    layers: tuple[Layer, ...] = ()
     is_worn = film.wear is not None and film.wear.touches(track.race)
     if film.body is not None and film.thickness is not None and not is_worn:
-        coat = exact.solid(film.body.elastic_modulus, film.body.poisson_ratio)
-        layers = (exact.Layer(thickness=film.thickness, solid=coat),)
+        coat = solid(film.body.elastic_modulus, film.body.poisson_ratio)
+        layers = (Layer(thickness=film.thickness, solid=coat),)
     friction, compliance = track_of(film, track.race, track.ellipse.semi_major)
-    return exact.ContactProblem(
+    return ContactProblem(
         ellipse=track.ellipse,
-        bodies=(exact.Body(base=ball), exact.Body(base=ring, layers=layers)),
-        friction=exact.FrictionLaw(coefficient=friction),
+        bodies=(Body(base=ball), Body(base=ring, layers=layers)),
+        friction=FrictionLaw(coefficient=friction),
         film_compliance=compliance if is_worn else 0.0,
         own_pressure=settings.pressure is ContactPressure.COATED and bool(layers),
         coupled=settings.pressure_slip is PressureSlip.INCLUDED,
@@ -249,13 +248,13 @@ def film_strain(track: RaceTrack, pressure: Pascal) -> Ratio:
     material = track.film.body
     if material is None:
         return 0.0
-    return pressure / exact.solid(material.elastic_modulus, material.poisson_ratio).compression_modulus
+    return pressure / solid(material.elastic_modulus, material.poisson_ratio).compression_modulus
 
 
 def pressure_slip(track: RaceTrack) -> Ratio:
     """Largest slip by the pressure, between unlike or coated bodies, over the saturation creep 2 mu p0/E*."""
     settings = TractionSettings(model=TractionModel.EXACT, pressure_slip=PressureSlip.INCLUDED)
-    contact = exact.rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
+    contact = rolling_contact(contact_problem(track, settings), columns=COLUMNS[0], rows=ROWS // 2)
     saturation = 2.0 * track.film.race_friction * track.ellipse.max_pressure / track.ellipse.contact_modulus
     return float(np.abs(contact.coupling).max()) / saturation
 

@@ -6,7 +6,7 @@ unfavourable ball.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,6 +26,7 @@ from separatrix.chain.contacts import (
     waves_around,
 )
 from separatrix.chain.equilibrium import orbit_by_diameter
+from separatrix.chain.hertz import approach_coefficient
 from separatrix.chain.impact_restitution import (
     LubricationCurve,
     Restitution,
@@ -43,11 +44,20 @@ from separatrix.chain.pocket_friction import (
     pocket_speed,
 )
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, PerSecond, Ratio
+from separatrix.ground.units import Kilogram, MetrePerSecond, NewtonPerMetre, PerSecond, format_quantity
 from separatrix.study.ball_bearing import NAMELESS
 from separatrix.study.cage_body import CageInertia, cage_inertia
 from separatrix.study.candidates import cage_candidate, environment_of
-from separatrix.study.study import CageDesign, CageModel, Candidate, ClearanceState, Friction, Material, Study
+from separatrix.study.study import (
+    CageDesign,
+    CageModel,
+    Candidate,
+    ClearanceState,
+    Friction,
+    Material,
+    PocketShape,
+    Study,
+)
 
 NO_STIFFNESS = "Give [cage] ball_cage_stiffness, or a cage material (or candidate) with its elastic_modulus."
 WORN_MOBILITY = (
@@ -64,17 +74,8 @@ SHARED = ("bearing", "traction", "slopes", "clearances", "mobility", "restitutio
 def solve(study: Study, candidate: Candidate | None = None) -> Solution:
     """Chain of a study, from the bearing's equilibrium to its cage.
 
-    Parameters
-    ----------
-    study : Study
-        The bearing; [cage] is needed from the restitution factor on.
-    candidate : Candidate, optional
-        Whose material the cage has; by default the one that the study's [cage] names.
-
-    Returns
-    -------
-    Solution
-        Its links are solved as they are asked for.
+    Its links are solved as they are asked for; [cage] is needed from the restitution factor on. The cage has
+    the material of the candidate, by default the one that the study's [cage] names.
 
     Examples
     --------
@@ -106,7 +107,22 @@ class Solution:
     def notes(self) -> tuple[str, ...]:
         """Where the links that were solved leave the range of their model, a sentence each."""
         links = (vars(self).get(name) for name in ("bearing", "clearances", "traction", "slopes", "mobility"))
-        return tuple(dict.fromkeys(note for one in links if one is not None for note in one.notes))
+        notes = [note for one in links if one is not None for note in one.notes]
+        return tuple(dict.fromkeys([*notes, *self._on_a_bore()]))
+
+    def _on_a_bore(self) -> Iterator[str]:
+        """Yield what a stiffness by Hertz leaves out in a bore: the wall that curves round the ball."""
+        if "_stiffness" not in vars(self) or self.stated_design.ball_cage_stiffness is not None:
+            return
+        D, play = self.study.bearing.ball_diameter, self.design.pocket_clearance
+        if self.stated_design.pocket_shape is PocketShape.CYLINDRICAL and play > 0.0:
+            curved = 2.0 / D - 2.0 / (D + play)
+            flat, bore = (approach_coefficient(2.0 / D, one, 1.0, 0.0)[0] for one in (2.0 / D, curved))
+            yield (
+                "The stiffness of ball and pocket is that of a flat wall. A bore with a clearance of "
+                f"{format_quantity(play, 'm', 3)} is {(bore / flat) ** 0.8:.2g} times as stiff by the same "
+                "rule: its restitution factor is lower, and so is its pressure."
+            )
 
     @cached_property
     def bearing(self) -> BearingState:
@@ -313,11 +329,3 @@ class Solution:
         return orbit_by_diameter(
             asked.bearing, asked.operation, asked.kinematics.model, asked.film.race_friction
         )
-
-    @property
-    def orbital_share(self) -> Ratio | None:
-        """Share of the variance of the balls' orbital speeds that the cage's harmonics hold [-].
-
-        None where all balls run alike, as under an axial load.
-        """
-        return self.orbital_waves.share

@@ -21,7 +21,7 @@ from separatrix.chain.creep import Creep
 from separatrix.chain.film_compliance import Profile, pieces_across
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.master_curve import MasterTable, film_tables, master_traction
-from separatrix.chain.strip import solve_strip, stick_solution, strip_influence
+from separatrix.chain.strip import solve_strip
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Metre, Ratio, format_quantity
@@ -278,10 +278,8 @@ def traction_curve(
 
     Parameters
     ----------
-    ellipse : ContactEllipse
-        The Hertz contact.
-    creep : Creep
-        Spin and Heathcote creep of the contact.
+    ellipse, creep
+        Hertz contact, its spin and Heathcote creep.
     race_friction : float or Profile
         Friction f_BT of ball on track, >= 0; a profile across the groove of a worn track is > 0 [-].
     film_compliance : float or Profile
@@ -292,11 +290,6 @@ def traction_curve(
         Total thickness of the film [m]; only to note where the film in series is out of its range.
     tolerance : float
         Relative error of the slope above which strips are refined, from 400 to at most 1600 elements [-].
-
-    Returns
-    -------
-    TractionCurve
-        The curve and its slope at the origin.
 
     Raises
     ------
@@ -317,7 +310,7 @@ def traction_curve(
         _, _, pieces = case.strips
         span = 2.5 * reach(float(pieces[:, [LAM_LOW, LAM_HIGH]].max()), table)
         span += 1.5 * (abs(case.strips.sigma) + abs(case.strips.eta))
-        creep_increments = np.linspace(-span * case.saturation, span * case.saturation, 41)
+        creep_increments = span * case.saturation * np.linspace(-1.0, 1.0, 41)
     increments = np.asarray(creep_increments, dtype=np.float64)
     forces = resultants(offset + increments / case.saturation, case.strips, 1, table)[:, 0]
     return TractionCurve(
@@ -393,19 +386,8 @@ def shear_field(
 ) -> ShearField:
     """Shear over the ellipse at one creep increment (paper, Figs 5 and 6); ``strips=1`` the middle strip.
 
-    Parameters
-    ----------
-    ellipse, creep, race_friction, film_compliance
-        As for `traction_curve`; race_friction must exceed 0.
-    creep_increment : float
-        Increment from free rolling, positive where the ball is faster [-].
-    strips, nodes : int
-        Strips of equal width across the ellipse, and elements along each.
-
-    Returns
-    -------
-    ShearField
-        Traction with slip and without, pressure, stick and slip.
+    Strips are of equal width across the ellipse, with `nodes` elements along each. The increment counts from
+    free rolling and is positive where the ball is faster.
     """
     case = scaled_contact(ellipse, creep, race_friction, film_compliance)
     y = 2.0 * (np.arange(strips) + 0.5) / strips - 1.0
@@ -413,11 +395,9 @@ def shear_field(
     xi = creep.ratio(y * ellipse.semi_major, offset + creep_increment)
     half = np.sqrt(1.0 - y * y)  # b(y)/b, and p0(y)/p0
     films, shares = case.local(y)
-    each = list(zip(xi / (case.saturation * shares * half), films / half, strict=True))
-    solved = [solve_strip(c, lam, nodes=nodes) for c, lam in each]
-    none, step = np.zeros(nodes), 4.0 / nodes
-    stuck = [
-        stick_solution(strip_influence(nodes, lam), none, np.full(nodes, step * c), none) for c, lam in each
+    solved = [
+        solve_strip(c, lam, nodes=nodes)
+        for c, lam in zip(xi / (case.saturation * shares * half), films / half, strict=True)
     ]
     pressure = ellipse.max_pressure * half[:, None]
     bound = case.friction * shares[:, None] * pressure
@@ -428,7 +408,7 @@ def shear_field(
         pressure=pressure * solved[0].pressure,
         bound=bound * solved[0].pressure,
         shear=bound * np.array([s.shear for s in solved]),
-        shear_without_slip=bound * np.array(stuck),
+        shear_without_slip=bound * np.array([s.stuck for s in solved]),
         slip=np.array([s.slip for s in solved]),
         sweeps=np.array([s.sweeps for s in solved]),
     )

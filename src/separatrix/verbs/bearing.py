@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, facts, text_column
-from separatrix.present.figure import Figure, Label, Panel, Trace
+from separatrix.present.blocks import Equation, Heading, Level, Page, Picture, Table, facts, text_column
+from separatrix.present.figure import BLUE, VERMILION, Figure, Label, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.chain_blocks import RACES, clearance_blocks, contact_blocks
-from separatrix.verbs.parts.quantity_text import axis, cell, column, fact, show
+from separatrix.verbs.parts.chain_blocks import clearance_blocks
+from separatrix.verbs.parts.quantity_text import axis, by_race, cell, column, fact, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState
     from separatrix.study.study import Study
+
+ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
+CREEP = ("spin_roll_ratio", "creep_spin", "creep_curvature")
 
 
 def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
@@ -30,6 +33,7 @@ def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
 
 def page(answer: Part) -> Page:
     """Return the page of `bearing`."""
+    contacts = answer.contacts.inner, answer.contacts.outer
     held = "the rings are held parallel" if answer.tilt == 0.0 else "the rings are held at this angle"
     tilt = held if answer.is_tilt_held else "free: the inner ring tilts until the balls balance the moment"
     return page_of(
@@ -54,7 +58,18 @@ def page(answer: Part) -> Page:
         Heading("Balls"),
         balls(answer),
         *([] if are_alike(answer) else [Picture("bearing-balls", lambda: balls_figure(answer), AROUND)]),
-        *contact_blocks(answer, answer.contacts),
+        Heading("Contacts of the most loaded ball"),
+        Equation(
+            r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
+            "Hertz: maximum pressure $p_0$ of the ellipse with semi-axes $a$ and $b$.",
+        ),
+        by_race("contacts", *contacts, *ELLIPSE),
+        Equation(
+            r"\xi(y) = \delta + s\,y + q\,y^2 + \delta\xi",
+            "Creep across the groove [14, 16]: free-rolling offset, spin $s$, curvature $q$ (Heathcote), and "
+            "the increment $dxi$ that an impact of the cage adds.",
+        ),
+        by_race("creep", *contacts, *CREEP, level=Level.LONG, caption="Creep in these contacts."),
         *clearance_blocks(answer.clearances),
     )
 
@@ -88,35 +103,28 @@ AROUND = "Ball loads and contact angles around the bearing."
 
 
 def balls_figure(answer: Part) -> Figure:
-    """Return load and contact angle around the bearing."""
-    panels = _around(answer, "load", "a  Ball load"), _around(answer, "contact_angle", "b  Contact angle")
+    """Return load and contact angle around the bearing; a contact without a load has no angle."""
+    balls, azimuth = answer.balls, [ball.azimuth for ball in answer.balls]
+    panels = []
+    for name, title in (("load", "a  Ball load"), ("contact_angle", "b  Contact angle")):
+        marks, labels, every = [], [], [0.0]
+        for race, colour, marker in (("inner", BLUE, "o"), ("outer", VERMILION, "s")):
+            key = f"{name}_{race}"
+            known = [
+                getattr(ball, key) if name == "load" or getattr(ball, f"{race}_contact") else None
+                for ball in balls
+            ]
+            every += [one for one in known if one is not None]
+            hover = tuple(f"ball {ball.ball + 1}, {race} race: {cell(ball, key).text}" for ball in balls)
+            marks.append(Trace(x=azimuth, y=known, hover=hover, colour=colour, marker=marker, width=0.8))
+            labels += [Label(y=known[-1], text=race, colour=colour)] if known[-1] is not None else []
+        low, high = min(every), max(every)
+        top = high + 0.15 * (high - low or 1.0)
+        y = axis(name, balls[0].unit(f"{name}_inner"), every[1:], low=low, high=top)
+        x = axis("azimuth", "rad", azimuth)
+        panels.append(Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels)))
     alt = "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers."
-    return figure(answer, panels, alt=alt)
-
-
-def _around(answer: Part, name: str, title: str) -> Panel:
-    """Return a quantity of each ball against its azimuth; a contact without a load has no angle."""
-    balls = answer.balls
-    azimuth = [ball.azimuth for ball in balls]
-    marks, labels, every = [], [], []
-    for race, colour, marker, _ in RACES:
-        known = [
-            getattr(ball, f"{name}_{race}") if name == "load" or getattr(ball, f"{race}_contact") else None
-            for ball in balls
-        ]
-        every += [one for one in known if one is not None]
-        hover = tuple(
-            f"ball {ball.ball + 1}, {race} race: {cell(ball, f'{name}_{race}').text}" for ball in balls
-        )
-        look: dict[str, Any] = {"colour": colour, "marker": marker, "width": 0.8}
-        marks.append(Trace(x=azimuth, y=known, hover=hover, **look))
-        if known[-1] is not None:
-            labels.append(Label(y=known[-1], text=race, colour=colour))
-    low, high = min([*every, 0.0]), max([*every, 0.0])
-    room = 0.15 * (high - low or 1.0)
-    y = axis(name, balls[0].unit(f"{name}_inner"), every, low=low, high=high + room)
-    x = axis("azimuth", "rad", azimuth)
-    return Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels))
+    return figure(answer, tuple(panels), alt=alt)
 
 
 VERB = Verb(name="bearing", compute=compute, page=page)

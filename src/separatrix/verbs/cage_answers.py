@@ -108,7 +108,7 @@ def _of_cage(found: OfCage) -> Node:
     orbits: Node = {
         "half_play": Leaf(found.cage.half_play, "m"),
         "lead_amplitude": Leaf(found.cage.lead_amplitude, "m"),
-        "orbital_share": Leaf(found.solution.orbital_share, "-"),
+        "orbital_share": Leaf(found.solution.orbital_waves.share, "-"),
     }
     return node | {"chain": Group(chain_node(found.solution) | orbits), "cage": Group(shape(found.cage))}
 

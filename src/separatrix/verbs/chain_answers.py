@@ -169,6 +169,7 @@ def chain_node(found: Solution) -> Node:
     """Restitution and the contacts, which have the slopes of their traction curves."""
     clearances = Leaf(None) if found.clearances is None else Group(shape(found.clearances))
     more: Node = {"stiffness_source": Leaf(found.stiffness_source), "clearances": clearances}
+    more["restitution_factor_hertz"] = Leaf(found.restitution.restitution_factor_hertz, "-")
     for race in ("inner", "outer"):
         at, curve = (getattr(part, race) for part in (found.bearing, found.slopes))
         more[race] = Group(shape(at) | fields_of(curve, "slope", "slope_error", "free_rolling_offset"))

@@ -50,9 +50,8 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
     from separatrix.chain.solution import solve
     from separatrix.verbs.chain_answers import MobilityAnswer
 
-    records = (study.bearing, study.operation, study.kinematics.model, study.film, study.traction)
     solution = solve(study)
-    found, rigid = solution.mobility, linear_mobility(*records, SlipLaw.RIGID)
+    found, rigid = solution.mobility, linear_mobility(solution.rolling, SlipLaw.RIGID)
     return MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)
 
 

@@ -93,17 +93,15 @@ SHEAR = (
 
 def by_ratio(answer: Part) -> Table:
     """Return the slopes at other ratios, whose signs are those of this bearing."""
-    inner, outer = answer.inner.by_spin_roll_ratio, answer.outer.by_spin_roll_ratio
-
-    def size(pair: tuple[Part, Part]) -> Cell:
-        return Cell(abs(pair[0].spin_roll_ratio), RATIO, pair[0].unit("spin_roll_ratio"))
-
     columns = (
-        Column("ratio", size),
+        Column(
+            "ratio", lambda pair: Cell(abs(pair[0].spin_roll_ratio), RATIO, pair[0].unit("spin_roll_ratio"))
+        ),
         column("slope", of=itemgetter(0), head="slope, inner race"),
         column("slope", of=itemgetter(1), head="slope, outer race"),
     )
-    return Table("other ratios", columns, tuple(zip(inner, outer, strict=True)))
+    rows = zip(answer.inner.by_spin_roll_ratio, answer.outer.by_spin_roll_ratio, strict=True)
+    return Table("other ratios", columns, tuple(rows))
 
 
 def curve_table(part: Part, race: str) -> Table:

@@ -129,7 +129,7 @@ def pressed_grid(
     length that their mean pressure gives.
     """
     n, fine = refined, float(x[1] - x[0])
-    ends = row_ends(np.ascontiguousarray(x), np.ascontiguousarray(pressure))
+    ends = row_ends(x, pressure)
     blocks = pressure.reshape(y.size // n, n, x.size // n, n)
     x, y, p = x.reshape(-1, n).mean(axis=1), y.reshape(-1, n).mean(axis=1), blocks.mean(axis=(1, 3))
     shares = _inside(x, n * fine, ends[:, 0], ends[:, 1]).reshape(y.size, n, x.size).mean(axis=1)
@@ -142,64 +142,47 @@ def pressed_grid(
     return grid, kept * (p.sum() / kept.sum())
 
 
-@kernel
 def row_ends(x: Array, pressure: Array) -> Array:
     """First and last end of the contact in each row of cells at x, shape (row, 2) [m]."""
-    rows, columns = pressure.shape
-    ends, dx = np.zeros((rows, 2)), x[1] - x[0]
-    for j in range(rows):
-        p = pressure[j]
-        first, last = 0, columns - 1
-        while first < columns and p[first] == 0.0:
-            first += 1
-        if first == columns:
+    (rows, columns), dx, touched = pressure.shape, x[1] - x[0], pressure > 0.0
+    first, last = touched.argmax(axis=1), columns - 1 - touched[:, ::-1].argmax(axis=1)
+    ends = np.zeros((rows, 2))
+    for j in np.flatnonzero(touched.any(axis=1)):
+        p, i, k = pressure[j], first[j], last[j]
+        if k - i >= SHORTEST_ROW - 1:
+            ends[j, 0] = x[i] + dx * (1.5 - _reach(p[i] + p[i + 1], p[i + 2], p[i + 3]))
+            ends[j, 1] = x[k] - dx * (1.5 - _reach(p[k] + p[k - 1], p[k - 2], p[k - 3]))
             continue
-        while p[last] == 0.0:
-            last -= 1
-        if last - first < SHORTEST_ROW - 1:
-            half, middle = 0.5 * dx * p.sum() / (MEAN_SHAPE * p.max()), (x * p).sum() / p.sum()
-            ends[j, 0] = max(middle - half, x[first] - 0.5 * dx)
-            ends[j, 1] = min(middle + half, x[last] + 0.5 * dx)
-            continue
-        reach = _reach(p[first] + p[first + 1], p[first + 2], p[first + 3])
-        ends[j, 0] = x[first] + dx * (1.5 - reach)
-        reach = _reach(p[last] + p[last - 1], p[last - 2], p[last - 3])
-        ends[j, 1] = x[last] - dx * (1.5 - reach)
+        half, middle = 0.5 * dx * p.sum() / (MEAN_SHAPE * p.max()), (x * p).sum() / p.sum()
+        ends[j] = max(middle - half, x[i] - 0.5 * dx), min(middle + half, x[k] + 0.5 * dx)
     return ends
 
 
-@part
+@kernel
 def _reach(outer: float, middle: float, inner: float) -> float:
     """Cells from the inner edge of the two outer cells to the end, by d/sqrt(d + l).
 
     The forces on the two outer cells, the next one and the one after decide end and l. The end is inside the
     outermost cell or beyond it, but not beyond the middle of the next, which does not touch.
     """
-    low, high = -4.0, 4.0  # logarithm of l, in cells
-    for _ in range(LENGTH_HALVINGS):
-        way = 0.5 * (low + high)
-        length = 10.0**way
-        end = _end(middle / outer, length)
+    low, high, end = -4.0, 4.0, 0.0  # logarithm of l, in cells
+    for _ in range(LENGTH_HALVINGS + 1):
+        length = 10.0 ** (0.5 * (low + high))
+        below, above = 1.0, 2.5  # the end at which the cell beyond it takes the ratio of forces
+        for _ in range(END_HALVINGS):
+            end = 0.5 * (below + above)
+            force = _edge_force(end, length)
+            if _edge_force(end + 1.0, length) - force > middle / outer * force:
+                below = end
+            else:
+                above = end
+        end = 0.5 * (below + above)
         met = _edge_force(end + 2.0, length) - _edge_force(end + 1.0, length)
         if met * outer < inner * _edge_force(end, length):
-            low = way
+            low = 0.5 * (low + high)
         else:
-            high = way
-    return _end(middle / outer, 10.0 ** (0.5 * (low + high)))
-
-
-@part
-def _end(ratio: float, length: float) -> float:
-    """Place of the end at which a cell beyond it takes this ratio of the force up to it; within bounds."""
-    low, high = 1.0, 2.5
-    for _ in range(END_HALVINGS):
-        way = 0.5 * (low + high)
-        force = _edge_force(way, length)
-        if _edge_force(way + 1.0, length) - force > ratio * force:
-            low = way
-        else:
-            high = way
-    return 0.5 * (low + high)
+            high = 0.5 * (low + high)
+    return end
 
 
 @part

@@ -15,10 +15,8 @@ Each flexibility c(k) is fitted by sum_j w_j exp(-k d_j). With exp(-k d) the inv
 elementary, and so are their integrals over a rectangle: signed sums over its corners, times 1/(2 pi), of
 
     A = x ln(y + R) + d [atan(d y/(x R)) - atan(y/x)],  B = A with x and y exchanged,  C = R - d ln(R + d),
-    D = y ln(R + d) + d ln(y + R) + x [atan(y/x) - atan(d y/(x R))],  R^2 = x^2 + y^2 + d^2,
-
     K_xx = sum w_rr A + w_tt B,  K_yy = sum w_rr B + w_tt A,  K_xy = sum (w_rr - w_tt) C,
-    K_zz = sum w_zz (A + B),     K_xz = -sum w_rz D.
+    K_zz = sum w_zz (A + B),     R^2 = x^2 + y^2 + d^2.
 
 Depth 0 is the half-space of Boussinesq and Cerruti. A film needs no transform, no padding and no wavenumber
 zero this way, however thin it is.
@@ -151,6 +149,7 @@ def _antiplane(G: Pascal, kh: Array, y: Array) -> Array:
     return np.asarray((1.0 + reflected) / (1.0 - reflected) / G)
 
 
+UNCOUPLED = [0, 1, 3]  # c_rr, c_zz and c_tt; pressure and tractions act on each other by c_rz alone
 IMAGES = 24  # exponentials beside the constant
 STEPS = (1.0, 1.4, 2.0)  # of the depths, in half thicknesses; stiff films respond to longer waves
 NODES = 240  # wavenumbers of the fit
@@ -161,7 +160,7 @@ LARGEST_ERROR = 1e-3  # of the span of a flexibility, above which a body is refu
 
 @dataclass(frozen=True, slots=True)
 class Images:
-    """Depths, shape (image,) [m], and weights of c_rr, c_zz, c_rz, c_tt, shape (4, image) [1/Pa].
+    """Depths, shape (image,) [m], and weights of c_rr, c_zz, c_tt, shape (3, image) [1/Pa].
 
     `error` is the largest error of the fit over the span of its flexibility [-].
     """
@@ -181,7 +180,7 @@ def body_images(body: Body) -> Images:
         The layers are too unlike for one series of depths: error above 1e-3.
     """
     if not body.layers:
-        return Images(np.zeros(1), half_space_flexibility(body.base)[:, None], 0.0)
+        return Images(np.zeros(1), half_space_flexibility(body.base)[UNCOUPLED, None], 0.0)
     thicknesses = {layer.thickness for layer in body.layers}
     lengths = sorted(thicknesses | {sum(layer.thickness for layer in body.layers)})
     best = min((_fit(body, step * H) for H in lengths for step in STEPS), key=lambda fit: fit.error)
@@ -194,9 +193,9 @@ def body_images(body: Body) -> Images:
 
 def _fit(body: Body, H: Metre) -> Images:
     """Weights of t^j, t = exp(-kH/2): c = c_oo + t [(c_0 - c_oo) + (1 - t) s(t)], s a polynomial."""
-    c0, c_oo = half_space_flexibility(body.base)[:, None], half_space_flexibility(body.surface)[:, None]
+    c0, c_oo = (half_space_flexibility(one)[UNCOUPLED, None] for one in (body.base, body.surface))
     t = 0.5 * (1.0 - np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES))
-    remainder = flexibility(body, -2.0 * np.log(t) / H) - c_oo - t * (c0 - c_oo)
+    remainder = flexibility(body, -2.0 * np.log(t) / H)[UNCOUPLED] - c_oo - t * (c0 - c_oo)
     powers = (t - t * t) * t ** np.arange(IMAGES - 1)[:, None]
     s = np.linalg.lstsq(powers.T, remainder.T, rcond=SMALLEST_SINGULAR)[0].T
     weights = np.concatenate([c_oo, c0 - c_oo + s[:, :1], np.diff(s), -s[:, -1:]], axis=1)
@@ -207,7 +206,7 @@ def _fit(body: Body, H: Metre) -> Images:
 def _fit_error(body: Body, depths: Array, weights: Array) -> Ratio:
     """Largest difference to the exact flexibility at other wavenumbers, over its span [-]."""
     k = np.geomspace(1e-4 / depths[-1], 50.0 / depths[1], CONTROLS)
-    c = flexibility(body, k)
+    c = flexibility(body, k)[UNCOUPLED]
     span = np.ptp(c, axis=1)
     scale = np.where(span > 1e-9 * np.abs(c).max(), span, np.abs(c).max())
     return float((np.abs(weights @ np.exp(-np.outer(depths, k)) - c).max(axis=1) / scale).max())
@@ -215,14 +214,12 @@ def _fit_error(body: Body, depths: Array, weights: Array) -> Ratio:
 
 @lru_cache(maxsize=64)
 def pair_images(first: Body, second: Body) -> Images:
-    """Images of the sum of both bodies' flexibilities; of c_rz the first less the second."""
+    """Images of the sum of both bodies' flexibilities."""
     one, two = body_images(first), body_images(second)
-    sign = np.array([1.0, 1.0, -1.0, 1.0])[:, None]
     if np.array_equal(one.depths, two.depths):  # both bare, or films of the same thickness
-        return Images(one.depths, one.weights + sign * two.weights, max(one.error, two.error))
-    weights = np.concatenate([one.weights, sign * two.weights], axis=1)
-    weights[:, 0] += weights[:, one.depths.size]  # both depths are 0
-    weights = np.delete(weights, one.depths.size, axis=1)
+        return Images(one.depths, one.weights + two.weights, max(one.error, two.error))
+    weights = np.concatenate([one.weights, two.weights[:, 1:]], axis=1)
+    weights[:, 0] += two.weights[:, 0]  # both depths are 0
     return Images(np.append(one.depths, two.depths[1:]), weights, max(one.error, two.error))
 
 
@@ -239,38 +236,27 @@ def _angle(y: float, x: float, d: float, R: float) -> float:
     return math.atan(y / x) - math.atan(d * y / (x * R)) if x != 0.0 else 0.0
 
 
-@part
-def corner_functions(x: float, y: float, d: float) -> tuple[float, float, float, float, float]:
-    """A, B, C, D, and D with x and y exchanged, at one corner [m]."""
-    R = math.sqrt(x * x + y * y + d * d)
-    log_y, log_x = _log_sum(y, x, d), _log_sum(x, y, d)
-    log_d = math.log(R + d) if R + d > 0.0 else 0.0
-    angle_y, angle_x = _angle(y, x, d, R), _angle(x, y, d, R)
-    A, B = x * log_y - d * angle_y, y * log_x - d * angle_x
-    D = y * log_d + d * log_y + x * angle_y
-    return A, B, R - d * log_d, D, x * log_d + d * log_x + y * angle_x
-
-
 @kernel
 def corner_sums(x: Array, y: Array, depths: Array, weights: Array) -> Array:
-    """Primitives of K_xx, K_yy, K_xy, K_zz, K_xz, K_yz at corners x, y >= 0; shape (6, y, x) [m/Pa]."""
-    sums = np.zeros((6, y.size, x.size))
+    """Primitives of K_xx, K_yy, K_xy and K_zz at corners x, y >= 0, shape (4, y, x) [m/Pa]."""
+    sums = np.zeros((4, y.size, x.size))
     for j in range(y.size):
         for i in range(x.size):
             for n in range(depths.size):
-                A, B, C, D, E = corner_functions(x[i], y[j], depths[n])
-                rr, zz, rz, tt = weights[0, n], weights[1, n], weights[2, n], weights[3, n]
+                d, rr, zz, tt = depths[n], weights[0, n], weights[1, n], weights[2, n]
+                R = math.sqrt(x[i] * x[i] + y[j] * y[j] + d * d)
+                A = x[i] * _log_sum(y[j], x[i], d) - d * _angle(y[j], x[i], d, R)
+                B = y[j] * _log_sum(x[i], y[j], d) - d * _angle(x[i], y[j], d, R)
+                C = R - d * math.log(R + d) if R + d > 0.0 else 0.0
                 sums[0, j, i] += rr * A + tt * B
                 sums[1, j, i] += rr * B + tt * A
                 sums[2, j, i] += (rr - tt) * C
                 sums[3, j, i] += zz * (A + B)
-                sums[4, j, i] -= rz * D
-                sums[5, j, i] -= rz * E
     return sums / (2.0 * math.pi)
 
 
-ODD_IN_X = np.array([1.0, 1.0, 0.0, 1.0, 0.0, 1.0], dtype=bool)
-ODD_IN_Y = np.array([1.0, 1.0, 0.0, 1.0, 1.0, 0.0], dtype=bool)
+ODD = np.array([True, True, False, True])[:, None, None]
+"""Whether a primitive changes sign with x, or y."""
 
 
 def influence(
@@ -279,24 +265,11 @@ def influence(
     images: Images,
     stencil: tuple[tuple[int, float], ...],
 ) -> Array:
-    """Displacement at cell i, j of a uniform unit traction on cell 0, 0.
+    """Displacement at cell i, j of a uniform unit traction on cell 0, 0: xx, yy, xy and zz [m/Pa].
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Rows and columns of the grid.
-    spacing : tuple of float
-        Width of a row and of a column [m].
-    images : Images
-        Of the pair of bodies.
-    stencil : tuple
-        Pairs (shift, factor): the sum of factor times displacement at x + shift dx/2.
-
-    Returns
-    -------
-    array
-        xx, yy, xy, zz, xz, yz for offsets of j = 0 ... rows - 1 and i = 1 - columns ... columns - 1, shape
-        (6, rows, 2 columns - 1) [m/Pa]. xx, yy, zz and xz are even in j, xy and yz odd.
+    For offsets j = 0 ... rows - 1 and i = 1 - columns ... columns - 1, shape (4, rows, 2 columns - 1). xx, yy
+    and zz are even in j, xy odd. `spacing` is the width of a row and of a column, `stencil` has pairs (shift,
+    factor): the sum of factor times displacement at x + shift dx/2.
     """
     rows, columns = shape
     dy, dx = spacing
@@ -304,14 +277,12 @@ def influence(
     corners = corner_sums(
         0.5 * dx * np.arange(reach + 1.0), dy * np.arange(0.5, rows), images.depths, images.weights
     )
-    below = np.concatenate(
-        [np.where(ODD_IN_Y[:, None, None], -1.0, 1.0) * corners[:, :1], corners[:, :-1]], axis=1
-    )
+    below = np.concatenate([np.where(ODD, -1.0, 1.0) * corners[:, :1], corners[:, :-1]], axis=1)
     strips = corners - below
-    mirrored = np.where(ODD_IN_X[:, None, None], -1.0, 1.0) * strips[:, :, :0:-1]
+    mirrored = np.where(ODD, -1.0, 1.0) * strips[:, :, :0:-1]
     strips = np.concatenate([mirrored, strips], axis=2)  # half steps -reach ... reach
     first = reach - 2 * (columns - 1)
-    table = np.zeros((6, rows, 2 * columns - 1))
+    table = np.zeros((4, rows, 2 * columns - 1))
     for shift, factor in stencil:
         start = first + shift
         stop = start + 4 * columns - 3

@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 
 from separatrix.chain.exact.grid import Grid, end_normals
 from separatrix.chain.exact.influence import Body, flexibility, half_space_flexibility, influence, pair_images
-from separatrix.chain.exact.precondition import leading_inverses
 from separatrix.ground.compiled import kernel
 from separatrix.ground.units import Array, Metre, Ratio
 
@@ -38,9 +37,8 @@ Indices = NDArray[np.int64]
 
 ROLLING = ((-1, 0.5), (0, 1.0), (1, -1.0), (2, -1.0), (3, 0.5))  # pairs of shift in dx/2 and factor
 THIN_ROLLING = ((1, 0.25), (0, 0.75), (-1, -1.25), (-2, 0.25))  # it on a thin film: offset in cells, factor
-SHIFT = ((0, 1.0),)
-CUT_ROLLING = 3.0  # makes the sticking slope of a plane strip independent of the cut (measured in the tests)
-CUT_SHIFT = 1.0
+DISPLACEMENT = ((0, 1.0),)
+CUT = 3.0  # makes the sticking slope of a plane strip independent of the cut (measured in the tests)
 ENDLESS = 1e5  # width of a row over a cell's sides, as of a plane strip
 THIN = 0.02  # thickness over cell width at which half of a film acts as in series
 LARGEST_KINDS = 8  # of rows, for which the preconditioner keeps inverses
@@ -73,34 +71,22 @@ class Operator:
 
 def rolling_operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None = None) -> Operator:
     """Operator of steady rolling; `compliance` is L of a film in series, shape (row, column) [m/Pa]."""
-    return _operator(grid, bodies, compliance, rolls=True)
-
-
-def shift_operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None = None) -> Operator:
-    """Operator of the displacement itself, of a shift: `local` has the film, `upstream` is 0."""
-    return _operator(grid, bodies, compliance, rolls=False)
-
-
-def _operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None, *, rolls: bool) -> Operator:
-    stencil = ROLLING if rolls else SHIFT
     rows, columns = grid.shape
     padded = scipy.fft.next_fast_len(2 * rows - 1), scipy.fft.next_fast_len(2 * columns - 1, real=True)
-    table = influence(grid.shape, (grid.dy, grid.dx), pair_images(*bodies), stencil)[:3]
+    table = influence(grid.shape, (grid.dy, grid.dx), pair_images(*bodies), ROLLING)[:3]
     f, L = grid.fraction, np.zeros(grid.shape) if compliance is None else compliance
-    if rolls:
-        thin = sum(film * share for film, share in (unresolved_film(body, grid.dx) for body in bodies))
-        _as_series(table, thin)
-        film, upstream = rolling_film(f, L, thin)
-        cut, cross = _rolling_cut(grid, bodies, thin)
-    else:
-        film, upstream = _inverse(f) * L, np.zeros(grid.shape)
-        cut, cross = CUT_SHIFT * table[:2, 0, columns - 1, None, None] * _missing(f), np.zeros(grid.shape)
+    thin = sum(film * share for film, share in (unresolved_film(body, grid.dx) for body in bodies))
+    # the share `thin` of films responds as in series, L and -L upstream, with the rules of their row ends
+    for offset, factor in (*THIN_ROLLING, (0, -1.0), (-1, 1.0)):
+        table[:2, 0, columns - 1 + offset] -= factor * thin
+    film, upstream = series_film(f, L, thin)
+    cut, cross = _cut_cells(grid, bodies, thin)
     kinds, kind = np.unique(_row_compliance(L, f), return_inverse=True)
     near = NEIGHBOUR ** np.arange(1, rows)
     row = table[:2, 0] + 2.0 * np.einsum("j,cji->ci", near, table[:2, 1:])
-    toeplitz = np.repeat(row[None], kinds.size, axis=0)
-    toeplitz[:, :, columns - 1] += kinds[:, None]
-    toeplitz[:, :, columns - 2] -= kinds[:, None] * rolls
+    lines = np.repeat(row[None], kinds.size, axis=0)
+    lines[:, :, columns - 1] += kinds[:, None]
+    lines[:, :, columns - 2] -= kinds[:, None]
     return Operator(
         spectra=spectrum(table, padded),
         padded=padded,
@@ -110,53 +96,58 @@ def _operator(grid: Grid, bodies: tuple[Body, Body], compliance: Array | None, *
         diagonal=table[:2, 0, columns - 1, None, None] + cut + film,
         active=f > 0.0,
         whole=f >= WHOLE,
-        rows=toeplitz,
-        inverses=np.array([[leading_inverses(t) for t in pair] for pair in toeplitz]),
+        rows=lines,
+        inverses=np.array([[leading_inverses(t) for t in pair] for pair in lines]),
         kind=kind.astype(np.int64),
     )
 
 
-def _rolling_cut(grid: Grid, bodies: tuple[Body, Body], thin: float) -> tuple[Array, Array]:
+@kernel
+def leading_inverses(t: Array) -> Array:
+    """Transposed inverses of the leading blocks of T_ij = t[i - j + n - 1], sizes 1 to n in turn.
+
+    Levinson's recursion for the first column f and the last column b of each inverse; then, after Gohberg and
+    Semencul, B_ij = B_(i-1)(j-1) + (f_i b_(m-1-j) - b_(i-1) f_(m-j))/f_0.
+    """
+    n = (t.size + 1) // 2
+    total = 0
+    for m in range(1, n + 1):
+        total += m * m
+    blocks = np.empty(total)
+    f, b = np.zeros(n), np.zeros(n)
+    f[0] = b[0] = blocks[0] = 1.0 / t[n - 1]
+    start = 1
+    for m in range(2, n + 1):
+        eps_f, eps_b = 0.0, 0.0
+        for i in range(m - 1):
+            eps_f += t[m - 1 - i + n - 1] * f[i]
+            eps_b += t[n - 2 - i] * b[i]
+        scale = 1.0 / (1.0 - eps_f * eps_b)
+        for i in range(m - 1, -1, -1):
+            lower, upper = f[i], (b[i - 1] if i > 0 else 0.0)
+            f[i] = scale * (lower - eps_f * upper)
+            b[i] = scale * (upper - eps_b * lower)
+        for i in range(m):
+            for j in range(m):
+                B = b[m - 1 - j]
+                if i > 0:
+                    turn = b[i - 1] * f[m - j] if j > 0 else 0.0
+                    before = blocks[start + (j - 1) * m + i - 1] if j > 0 else 0.0
+                    B = before + (f[i] * b[m - 1 - j] - turn) / f[0]
+                blocks[start + j * m + i] = B
+        start += m * m
+    return blocks
+
+
+def _cut_cells(grid: Grid, bodies: tuple[Body, Body], thin: float) -> tuple[Array, Array]:
     """Extra diagonal, shape (2, row, column), and extra xy of cut cells [m/Pa]; films have their own."""
     endless = ENDLESS * max(grid.dx, grid.dy)
     normal, tangent = influence((1, 1), (endless, grid.dx), pair_images(*bodies), ROLLING)[:2, 0, 0]
     normal, tangent = (D - dict(THIN_ROLLING)[0] * thin for D in (normal, tangent))
     cos, sin = end_normals(grid)
-    size = CUT_ROLLING * cos * _missing(grid.fraction)
+    size = CUT * cos * np.where(grid.fraction > 0.0, 1.0 / np.maximum(grid.fraction, 1e-300) - 1.0, 0.0)
     xx, yy = normal * cos**2 + tangent * sin**2, normal * sin**2 + tangent * cos**2
     return np.stack([size * xx, size * yy]), size * (normal - tangent) * cos * sin
-
-
-def _as_series(table: Array, thin: float) -> None:
-    """Let the share `thin` of films in an influence table respond as in series, L and -L upstream, in place.
-
-    The rules of row ends are those of such a film.
-    """
-    origin = table.shape[2] // 2
-    for offset, factor in (*THIN_ROLLING, (0, -1.0), (-1, 1.0)):
-        table[:2, 0, origin + offset] -= factor * thin
-
-
-def _missing(fraction: Array) -> Array:
-    """1/f - 1 inside, 0 outside."""
-    return np.where(fraction > 0.0, _inverse(fraction) - 1.0, 0.0)
-
-
-def _inverse(fraction: Array) -> Array:
-    """1/f inside, 0 outside."""
-    return np.where(fraction > 0.0, 1.0 / np.where(fraction > 0.0, fraction, 1.0), 0.0)
-
-
-def rolling_film(fraction: Array, compliance: Array, thin: float) -> tuple[Array, Array]:
-    """Diagonal and upstream factor of films: in series, and for row ends of layers thinner than a cell.
-
-    The influence of the layers has the whole cells' share of `thin`: it is taken off.
-    """
-    diagonal, upstream = series_film(fraction, compliance + thin)
-    active = fraction > 0.0
-    diagonal -= thin * active
-    upstream[:, :-1] += thin * (active[:, 1:] & active[:, :-1])
-    return diagonal, upstream
 
 
 def unresolved_film(body: Body, dx: Metre) -> tuple[float, Ratio]:
@@ -186,15 +177,16 @@ def spectrum(table: Array, padded: tuple[int, int]) -> Complex:
     return np.asarray(scipy.fft.rfft2(circular, workers=1), dtype=np.complex128)
 
 
-def series_film(fraction: Array, compliance: Array) -> tuple[Array, Array]:
-    """Diagonal and upstream factor of a film in series, shape (row, column) each [m/Pa].
+def series_film(fraction: Array, compliance: Array, thin: float) -> tuple[Array, Array]:
+    """Diagonal and upstream factor of films in series, shape (row, column) each [m/Pa].
 
     U = L p, whole cells: L and -L. At a cut entry cell the diagonal is 2 L/f^2 and its downstream neighbour
     takes -L (2 f - 1)/f^2; a cut exit cell has 2 L/(f (1 + f)) and -2 L/(1 + f): so the ramp of tractions of
-    a film alone is exact.
+    a film alone is exact. `thin` is the compliance of true layers that take these rules too: the influence
+    has the whole cells' share of it, which is taken off.
     """
     active = fraction > 0.0
-    L, f = np.where(active, compliance, 0.0), np.where(active, fraction, 1.0)
+    L, f = np.where(active, compliance + thin, 0.0), np.where(active, fraction, 1.0)
     after, before = np.zeros_like(active), np.zeros_like(active)  # active neighbours upstream and downstream
     after[:, :-1], before[:, 1:] = active[:, 1:], active[:, :-1]
     entry, exit_ = active & ~after, active & ~before & after
@@ -203,7 +195,7 @@ def series_film(fraction: Array, compliance: Array) -> tuple[Array, Array]:
     upstream = np.zeros_like(L)
     upstream[:, :-1] = -feeds[:, 1:] * active[:, :-1]
     upstream[exit_] *= (2.0 / (1.0 + f))[exit_]
-    return diagonal, upstream
+    return diagonal - thin * active, upstream + thin * (after & active)
 
 
 def _row_compliance(compliance: Array, fraction: Array) -> Array:
@@ -218,20 +210,10 @@ def _row_compliance(compliance: Array, fraction: Array) -> Array:
 
 def product(op: Operator, traction: Array) -> Array:
     """Slip times dx that tractions cause, shape (2, row, column) [m]."""
-    displaced = _padded_product(op.spectra, op.padded, traction)
+    waves = scipy.fft.rfft2(traction, s=op.padded, workers=1)
+    multiply(waves, op.spectra)
+    displaced = scipy.fft.irfft2(waves, s=op.padded, overwrite_x=True, workers=1)
     return with_local(displaced, traction, op.local, op.cross, op.upstream)
-
-
-def displacement(spectra: Complex, padded: tuple[int, int], traction: Array) -> Array:
-    """Convolution of tractions with influence tables of these spectra, shape (2, row, column)."""
-    _, rows, columns = traction.shape
-    return _padded_product(spectra, padded, traction)[:, :rows, :columns]
-
-
-def _padded_product(spectra: Complex, padded: tuple[int, int], traction: Array) -> Array:
-    waves = scipy.fft.rfft2(traction, s=padded, workers=1)
-    multiply(waves, spectra)
-    return np.asarray(scipy.fft.irfft2(waves, s=padded, overwrite_x=True, workers=1))
 
 
 @kernel

@@ -24,7 +24,7 @@ import scipy
 
 from separatrix.chain.exact.grid import Grid, pressed_grid
 from separatrix.chain.exact.influence import Body, Images, flexibility, influence, pair_images
-from separatrix.chain.exact.operator import SHIFT, spectrum
+from separatrix.chain.exact.operator import DISPLACEMENT, spectrum
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, Newton, Ratio
@@ -42,7 +42,6 @@ class Pressing:
 
     pressure: Array
     approach: Metre
-    iterations: int
 
 
 def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton) -> Pressing:
@@ -61,7 +60,7 @@ def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton
         raise InputError("press: gap", "must be finite [m]", "nan or inf")
     rows, columns = gap.shape
     padded = scipy.fft.next_fast_len(2 * rows - 1), scipy.fft.next_fast_len(2 * columns - 1, real=True)
-    waves = spectrum(influence(gap.shape, spacing, images, SHIFT)[3:4], padded)[0]
+    waves = spectrum(influence(gap.shape, spacing, images, DISPLACEMENT)[3:4], padded)[0]
 
     def displacement(p: Array) -> Array:
         product = scipy.fft.irfft2(scipy.fft.rfft2(p, s=padded, workers=1) * waves, s=padded, workers=1)
@@ -70,14 +69,14 @@ def press(gap: Array, spacing: tuple[Metre, Metre], images: Images, load: Newton
     total = load / (spacing[0] * spacing[1])
     p = np.full(gap.shape, total / gap.size)
     direction, G_old, conjugate, change = np.zeros_like(gap), 1.0, 0.0, np.inf
-    for iteration in range(1, LARGEST_ITERATIONS + 1):
+    for _ in range(LARGEST_ITERATIONS):
         touching = p > 0.0
         g = displacement(p) + gap
         approach = float(g[touching].mean())
         g -= approach
         G = float((g[touching] ** 2).sum())
         if change <= TOLERANCE or G == 0.0:
-            return Pressing(pressure=p, approach=approach, iterations=iteration)
+            return Pressing(pressure=p, approach=approach)
         direction = np.where(touching, g + conjugate * (G / G_old) * direction, 0.0)
         r = displacement(direction)
         r -= r[touching].mean()
@@ -112,52 +111,35 @@ def pressed_contact(
 
 
 def pressed_box(
-    ellipse: ContactEllipse, images: Images, *, columns: int, rows: int, room: Ratio = 1.0
+    ellipse: ContactEllipse, images: Images, *, columns: int, rows: int
 ) -> tuple[Array, Array, Pressing]:
-    """Centres of the fine cells along x and y, and the pressure on them; `room` widens the box."""
+    """Centres of the fine cells along x and y, and the pressure on them."""
     half = 1.5 * np.array([ellipse.semi_minor, ellipse.semi_major])
-    largest = LARGEST_BOX * ellipse.semi_major
-    search = SEARCH_CELLS, SEARCH_CELLS
-    found = press_in_box(ellipse, images, *_cells_of(half, search))
-    while touches_edge(found.pressure):
-        if half[1] > largest:
-            rule = f"must not reach beyond {LARGEST_BOX:g} half lengths of its ellipse"
-            cure = "Check the curvatures of the ellipse and the thickness of the films."
-            raise InputError("ContactProblem: contact under its own pressure", rule, "a wider one", cure)
-        half *= 1.5
-        found = press_in_box(ellipse, images, *_cells_of(half, search))
-    pressed = found.pressure > 0.0
-    cells = np.array([pressed.any(axis=0).sum(), pressed.any(axis=1).sum()])
-    half *= room * (cells + 1.0) / SEARCH_CELLS
-    count = REFINED * columns, REFINED * rows
-    found = press_in_box(ellipse, images, *_cells_of(half, count))
-    while touches_edge(found.pressure):
-        half *= 1.1
-        found = press_in_box(ellipse, images, *_cells_of(half, count))
-    return *_cells_of(half, count), found
+    fine = REFINED * columns, REFINED * rows
+    for count, wider in (((SEARCH_CELLS, SEARCH_CELLS), 1.5), (fine, 1.1)):
+        x, y, found = _press_in_box(ellipse, images, half, count)
+        while found.pressure[[0, -1]].any() or found.pressure[:, [0, -1]].any():  # touches the edge
+            if half[1] > LARGEST_BOX * ellipse.semi_major:
+                rule = f"must not reach beyond {LARGEST_BOX:g} half lengths of its ellipse"
+                cure = "Check the curvatures of the ellipse and the thickness of the films."
+                raise InputError("ContactProblem: contact under its own pressure", rule, "a wider one", cure)
+            half *= wider
+            x, y, found = _press_in_box(ellipse, images, half, count)
+        pressed = found.pressure > 0.0
+        cells = np.array([pressed.any(axis=0).sum(), pressed.any(axis=1).sum()])
+        half *= (cells + 1.0) / SEARCH_CELLS  # of the finer box
+    return x, y, found
 
 
-def _cells_of(half: Array, count: tuple[int, int]) -> tuple[Array, Array]:
-    """Centres of the cells along x and y in a box of these half lengths."""
-    widths = (float(2.0 * h / n) for h, n in zip(half, count, strict=True))
-    x, y = (width * np.arange(0.5 - 0.5 * n, 0.5 * n) for width, n in zip(widths, count, strict=True))
-    return x, y
-
-
-def press_in_box(
-    ellipse: ContactEllipse, images: Images, x: Array, y: Array, raised: Array | float = 0.0
-) -> Pressing:
-    """Pressure on cells at these places; `raised` is what widens the gap, shape (row, column) [m]."""
-    dx, dy = float(x[1] - x[0]), float(y[1] - y[0])
+def _press_in_box(
+    ellipse: ContactEllipse, images: Images, half: Array, count: tuple[int, int]
+) -> tuple[Array, Array, Pressing]:
+    """Centres of the cells in a box of these half lengths, and the pressure on them."""
+    dx, dy = (float(2.0 * h / n) for h, n in zip(half, count, strict=True))
+    x, y = (d * np.arange(0.5 - 0.5 * n, 0.5 * n) for d, n in zip((dx, dy), count, strict=True))
     along = 0.5 * ellipse.curvature_rolling * (x * x + dx * dx / 12.0)  # cell means
     across = 0.5 * ellipse.curvature_transverse * (y * y + dy * dy / 12.0)
-    return press(along + across[:, None] + raised, (dy, dx), images, ellipse.load)
-
-
-def touches_edge(pressure: Array) -> bool:
-    """Whether the pressure reaches the edge of its box."""
-    edges = pressure[[0, -1]].any() or pressure[:, [0, -1]].any()
-    return bool(edges)
+    return x, y, press(along + across[:, None], (dy, dx), images, ellipse.load)
 
 
 def film_strain(bodies: tuple[Body, Body], max_pressure: float) -> Ratio:

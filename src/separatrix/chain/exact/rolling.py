@@ -12,48 +12,52 @@ xi being the longitudinal creep ratio, eta the lateral one, s the spin and q Hea
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from separatrix.chain.exact.grid import Grid, cell_counts, elliptic_grid, elliptic_pressure, pressed_grid
 from separatrix.chain.exact.influence import Body, pair_images
 from separatrix.chain.exact.operator import Operator, rolling_operator
-from separatrix.chain.exact.precondition import SLIP
 from separatrix.chain.exact.pressure import film_strain, press, pressed_contact, pressure_slip
-from separatrix.chain.exact.slip import TOLERANCE, FrictionLaw, Settled, over_cells, rough_compliance, settle
+from separatrix.chain.exact.slip import (
+    SLIP,
+    TOLERANCE,
+    FrictionLaw,
+    Settled,
+    over_cells,
+    rough_compliance,
+    settle,
+)
 from separatrix.chain.film_compliance import Profile
-from separatrix.chain.hertz import ContactEllipse
+from separatrix.chain.hertz import ContactEllipse, ellipse_of_axes
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, Newton, NewtonMetre, Pascal, PerMetre, PerMetre2, Ratio
 
 LARGEST_TOLERANCE = 0.1
 LARGEST_CREEP = 1e3  # a creep ratio of 2 is sliding without rolling
 LARGEST_STRAIN = 1.0
+LARGEST_STEEPNESS = 0.3  # of the surfaces at the edge of the contact, for which bodies are half-spaces
 THICKEST = 100.0  # layers over the semi-major axis; the sum of the images loses digits from 1000 on
 DOUBTFUL_STRAIN = 0.1
 SMALLEST_SIDE, LARGEST_SIDE = 4, 256  # cells along one side of a grid; the memory goes with the cube
+BALANCED = 1e-6  # of a stated force, over the force of sliding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactProblem:
-    """What rolls on what.
-
-    ellipse : Hertz contact of the bodies without films; bodies : ball and race; film_compliance : L = h/G of
-    a film in series, beside the layers of the bodies [m/Pa]; roughness : length l of a rough interface in
-    series, whose tangential stiffness is p/l under the local pressure p [m]; own_pressure : solve the
-    pressure of the layered bodies instead of Hertz's; coupled : add the slip that the pressure causes between
-    unlike bodies.
-    """
+    """What rolls on what."""
 
     ellipse: ContactEllipse  # Hertz contact of the bodies without films
     bodies: tuple[Body, Body]  # ball and race
     friction: FrictionLaw  # largest traction against the pressure
     film_compliance: float | Profile = 0.0  # h/G of a film in series, beside the layers of the bodies [m/Pa]
-    roughness: Metre = 0.0  # length l of a rough interface: its tangential stiffness is p/l
+    roughness: Metre = 0.0  # length l of a rough interface: its tangential stiffness is p/l, p local pressure
     own_pressure: bool = False  # whether the pressure of the layered bodies replaces Hertz's
     coupled: bool = False  # whether pressure causes slip between unlike bodies
 
@@ -64,6 +68,11 @@ class ContactProblem:
             if np.ndim(value) > 0 or not 0.0 < value < np.inf:
                 rule = "must be one number, finite and > 0"
                 raise InputError(f"ContactProblem.ellipse.{name}", rule, f"{value}")
+        if not self.ellipse.max_pressure < self.ellipse.contact_modulus:
+            rule = f"must be below the modulus of the pair, {self.ellipse.contact_modulus:.3g} Pa"
+            raise InputError(
+                "ContactProblem.ellipse.max_pressure", rule, f"{self.ellipse.max_pressure:.3g} Pa"
+            )
         if not 0.0 <= self.roughness < np.inf:
             raise InputError("ContactProblem.roughness", "must be finite and >= 0 [m]", f"{self.roughness:g}")
         L = self.film_compliance
@@ -73,25 +82,31 @@ class ContactProblem:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollingContact:
-    """A problem on its grid: pressure and bound, shape (row, column) [Pa]; what `solve` takes.
-
-    compliance : L of a film in series, shape (row, column) [m/Pa]; coupling : slip that the pressure causes,
-    shape (2, row, column) [-].
-    """
+    """A problem on its grid: pressure and bound, shape (row, column) [Pa]; what `solve` takes."""
 
     problem: ContactProblem
     grid: Grid
     pressure: Array
     bound: Array
-    compliance: Array | None
-    coupling: Array
+    coupling: Array  # slip that the pressure causes, shape (2, row, column) [-]
+    max_pressure: Pascal
     film_strain: Ratio
     operator: Operator = field(repr=False)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Where the contact leaves the range of its model, a sentence each."""
-        return _compressed(self.film_strain)
+        one, notes = self.problem.ellipse, []
+        if self.film_strain > DOUBTFUL_STRAIN:
+            holds = f"linear elasticity holds to about {DOUBTFUL_STRAIN:g}."
+            notes.append(f"the film is compressed by {self.film_strain:.2g} of its thickness; {holds}")
+        steepest = max(one.semi_minor * one.curvature_rolling, one.semi_major * one.curvature_transverse)
+        if steepest > LARGEST_STEEPNESS:
+            notes.append(
+                f"a half axis of the contact is {steepest:.2g} of the radius of the gap there; half-spaces "
+                f"describe the bodies to about {LARGEST_STEEPNESS:g}."
+            )
+        return tuple(notes)
 
 
 Field = Annotated[Array, "Pa", ("row", "column")]
@@ -102,15 +117,12 @@ Vectors = Annotated[Array, "Pa", ("direction", "row", "column")]
 class ContactSolution:
     """Tractions and slip of one contact, and what they sum to; forces act on the ball.
 
-    traction, slip : along x and y; pressure and tractions of cells that the outline cuts are averaged over
-    the whole cell; fraction : share of each cell inside the contact; slip is per rolling speed; stick : cells
-    without slip; stick_share : of the contact's area; dissipation : power per rolling speed; iterations,
-    residual : of the tractions.
+    Pressure and tractions of cells that the outline cuts are averaged over the whole cell.
     """
 
     along: Annotated[Array, "m", ("column",)]  # middle of each column
     across: Annotated[Array, "m", ("row",)]  # middle of each row
-    fraction: Annotated[Array, "-", ("row", "column")]
+    fraction: Annotated[Array, "-", ("row", "column")]  # share of each cell inside the contact
     pressure: Field  # mean of a cell
     traction: Vectors  # on the ball, along and across rolling, mean of a cell
     slip: Annotated[Array, "-", ("direction", "row", "column")]
@@ -120,22 +132,18 @@ class ContactSolution:
     force: Newton
     lateral_force: Newton
     spin_moment: NewtonMetre
-    stick_share: Ratio
+    stick_share: Ratio  # of the area of the contact
     dissipation: Newton  # power over rolling speed
     max_pressure: Pascal  # largest of a cell
     film_strain: Ratio
     iterations: int  # steps of the solver for the tractions
     residual: Ratio  # error that the solver left in the tractions
+    notes: tuple[str, ...]  # where the contact leaves the range of its model, a sentence each
 
     @property
     def traction_coefficient(self) -> Ratio:
         """Force of the ball on the race along rolling over the load; positive where the ball is faster."""
         return -self.force / self.load
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Where the contact leaves the range of its model, a sentence each."""
-        return _compressed(self.film_strain)
 
 
 def rolling_contact(
@@ -164,7 +172,7 @@ def rolling_contact(
     else:
         grid = elliptic_grid(semi_minor=b, semi_major=a, columns=columns, rows=rows)
         pressure = elliptic_pressure(grid, semi_minor=b, semi_major=a, max_pressure=p0)
-    return contact_on(problem, grid, pressure)
+    return _contact_on(problem, grid, pressure)
 
 
 def gap_contact(
@@ -190,29 +198,30 @@ def gap_contact(
         raise InputError("gap_contact: gap", "must reach beyond the contact on all sides", cure=cure)
     grid, pressure = pressed_grid(along, across, p, row_width=spacing[0])
     b, a = extent(grid)
-    found = replace(
-        problem.ellipse,
-        semi_minor=b,
-        semi_major=a,
-        max_pressure=float(pressure.max()),
-        approach=pressing.approach,
-    )
-    return contact_on(replace(problem, ellipse=found, own_pressure=True), grid, pressure)
+    found = ellipse_of_axes(problem.ellipse.load, b, a, problem.ellipse.contact_modulus)
+    found = replace(found, max_pressure=float(pressure.max()), approach=pressing.approach)
+    return _contact_on(replace(problem, ellipse=found, own_pressure=True), grid, pressure)
 
 
-def contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
+def _contact_on(problem: ContactProblem, grid: Grid, pressure: Array) -> RollingContact:
     """A problem on a known grid under a known pressure, shape (row, column) [Pa]."""
-    bodies = problem.bodies
-    compliance = _compliance(problem, grid, pressure)
-    coupling = pressure_slip(grid, pressure, bodies) if problem.coupled else np.zeros((2, *grid.shape))
+    bodies, film, rough = problem.bodies, problem.film_compliance, problem.roughness
+    largest = float(pressure.max()) if problem.own_pressure else problem.ellipse.max_pressure
+    strain = film_strain(bodies, largest)
+    if strain > LARGEST_STRAIN:
+        cure = "A linear elastic film cannot carry this pressure."
+        raise InputError(
+            "rolling_contact: film strain p0/M_c", "must not exceed 1 [-]", f"{strain:.2g}", cure
+        )
+    compliance = over_cells(film, grid) + rough_compliance(grid, pressure, rough)
     return RollingContact(
         problem=problem,
         grid=grid,
         pressure=pressure,
         bound=problem.friction.bound(grid, pressure),
-        compliance=compliance,
-        coupling=coupling,
-        film_strain=_checked_strain(bodies, _largest_pressure(problem, pressure)),
+        coupling=pressure_slip(grid, pressure, bodies) if problem.coupled else np.zeros((2, *grid.shape)),
+        max_pressure=largest,
+        film_strain=strain,
         operator=rolling_operator(grid, bodies, compliance),
     )
 
@@ -223,36 +232,6 @@ def _check_layers(problem: ContactProblem) -> None:
     if thickest > largest:
         rule = f"must be at most {largest:g} m thick together, {THICKEST:g} semi-major axes of the contact"
         raise InputError("Body.layers", rule, f"{thickest:g} m", "Take the outermost one as the base.")
-
-
-def _compliance(problem: ContactProblem, grid: Grid, pressure: Array) -> Array | None:
-    """L of everything in series, shape (row, column) [m/Pa]."""
-    film, rough = problem.film_compliance, problem.roughness
-    if not isinstance(film, Profile) and film == 0.0 and rough == 0.0:
-        return None
-    return over_cells(film, grid) + rough_compliance(grid, pressure, rough)
-
-
-def _largest_pressure(problem: ContactProblem, pressure: Array) -> Pascal:
-    return float(pressure.max()) if problem.own_pressure else problem.ellipse.max_pressure
-
-
-def _checked_strain(bodies: tuple[Body, Body], max_pressure: Pascal) -> Ratio:
-    strain = film_strain(bodies, max_pressure)
-    if strain > LARGEST_STRAIN:
-        cure = "A linear elastic film cannot carry this pressure."
-        raise InputError(
-            "rolling_contact: film strain p0/M_c", "must not exceed 1 [-]", f"{strain:.2g}", cure
-        )
-    return strain
-
-
-def _compressed(strain: Ratio) -> tuple[str, ...]:
-    """A sentence where the film is compressed so much that it is not linearly elastic."""
-    if not strain > DOUBTFUL_STRAIN:
-        return ()
-    holds = f"linear elasticity holds to about {DOUBTFUL_STRAIN:g}."
-    return (f"the film is compressed by {strain:.2g} of its thickness; {holds}",)
 
 
 def rigid_slip(
@@ -288,13 +267,6 @@ def settled(
     contact: RollingContact, slip: Array, *, start: Array | None = None, tolerance: Ratio = TOLERANCE
 ) -> Settled:
     """As `solve`: only the tractions and their stick and slip cells."""
-    check_fields(contact, slip, start, tolerance)
-    driving = (slip + contact.coupling) * contact.grid.dx
-    return settle(contact.operator, contact.bound, driving, start=start, tolerance=tolerance)
-
-
-def check_fields(contact: RollingContact, slip: Array, start: Array | None, tolerance: Ratio) -> None:
-    """Refuse slips and first tractions of another shape or that are not finite, and idle tolerances."""
     for name, field_ in (("slip", slip), ("start", start)):
         if field_ is not None and field_.shape != (2, *contact.grid.shape):
             rows, columns = contact.grid.shape
@@ -310,6 +282,8 @@ def check_fields(contact: RollingContact, slip: Array, start: Array | None, tole
         raise InputError(
             "solve: tolerance", f"must be > 0 and at most {LARGEST_TOLERANCE:g} [-]", f"{tolerance:g}"
         )
+    driving = (slip + contact.coupling) * contact.grid.dx
+    return settle(contact.operator, contact.bound, driving, start=start, tolerance=tolerance)
 
 
 def solve_each(
@@ -323,13 +297,13 @@ def solve_each(
     known: list[tuple[Array, Array]] = []
     for slip in slips:
         try:
-            found = settled(contact, slip, start=secant(known, slip), tolerance=tolerance)
+            found = solve(contact, slip, start=secant(known, slip), tolerance=tolerance)
         except ConvergenceError as error:
             solutions.append(error)
             known.clear()
             continue
         known = [*known[-1:], (slip, found.traction)]
-        solutions.append(solution_of(contact, found))
+        solutions.append(found)
     return solutions
 
 
@@ -344,12 +318,61 @@ def secant(known: list[tuple[Array, Array]], slip: Array) -> Array | None:
     return np.asarray(p1 + min(max(ahead, 0.0), 3.0) * (p1 - p0))
 
 
-def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | None = None) -> ContactSolution:
-    """Forces, moment, shares and dissipation of tractions settled over a distance, dx in steady rolling."""
+def creep_of_force(
+    contact: RollingContact,
+    force: Ratio,
+    *,
+    lateral: Ratio = 0.0,
+    spin: PerMetre = 0.0,
+    curvature: PerMetre2 = 0.0,
+) -> tuple[Ratio, ContactSolution]:
+    """Longitudinal creep whose force along rolling is this share of that of sliding, and the solution there.
+
+    The force falls as the creep rises. It is met to 1e-6 of the force of sliding.
+
+    Raises
+    ------
+    InputError
+        A share that is not below 1 in size.
+    ConvergenceError
+        No creep gives this force, or the tractions did not settle.
+    """
+    if not abs(force) < 1.0:
+        raise InputError("creep_of_force: force", "must be below that of sliding, 1 [-]", f"{force:g}")
+    sliding = float(contact.bound.sum()) * contact.grid.cell_area
+    if sliding == 0.0:
+        raise InputError("creep_of_force: contact", "must have friction")
+    scale = 2.0 * float(contact.bound.max()) / contact.problem.ellipse.contact_modulus  # of a bare strip
+    known: list[tuple[Array, Array]] = []
+
+    def at(creep: Ratio) -> ContactSolution:
+        creeps = {"longitudinal": creep, "lateral": lateral, "spin": spin, "curvature": curvature}
+        slip = rigid_slip(contact.grid, **creeps)
+        found = solve(contact, slip, start=secant(known, slip))
+        known[:] = [*known[-1:], (slip, found.traction)]
+        return found
+
+    def excess(creep: Ratio) -> float:
+        return at(creep).force / sliding - force
+
+    here = excess(0.0)
+    if abs(here) <= BALANCED:
+        return 0.0, at(0.0)
+    inner, outer = 0.0, math.copysign(scale, here)
+    while abs(outer) <= LARGEST_CREEP:
+        if excess(outer) * here <= 0.0:
+            creep = float(brentq(excess, inner, outer, xtol=BALANCED * scale))
+            return creep, at(creep)
+        inner, outer = outer, 3.0 * outer
+    raise ConvergenceError("No creep gives the stated force.", len(known), abs(here))
+
+
+def solution_of(contact: RollingContact, found: Settled) -> ContactSolution:
+    """Forces, moment, shares and dissipation of settled tractions."""
     grid, p, dA = contact.grid, found.traction, contact.grid.cell_area
     fraction = grid.fraction
     slips = (found.sets.state == SLIP) | ((contact.bound == 0.0) & (fraction > 0.0))
-    slip = np.where(slips, found.slip_step / (distance or grid.dx), 0.0)
+    slip = np.where(slips, found.slip_step / grid.dx, 0.0)
     return ContactSolution(
         along=grid.x,
         across=grid.y,
@@ -364,10 +387,11 @@ def solution_of(contact: RollingContact, found: Settled, *, distance: Metre | No
         spin_moment=float((grid.x * p[1] - grid.y[:, None] * p[0]).sum() * dA),
         stick_share=float(fraction[~slips].sum() / fraction.sum()),
         dissipation=float(-(p * slip).sum() * dA) + 0.0,  # not -0
-        max_pressure=_largest_pressure(contact.problem, contact.pressure),
+        max_pressure=contact.max_pressure,
         film_strain=contact.film_strain,
         iterations=found.passes,
         residual=found.residual,
+        notes=contact.notes,
     )
 
 

@@ -4,7 +4,8 @@ With z = p - c S, c = 1/A_ii, Coulomb's law is p = Proj(z), the projection on th
 |z| <= g the cell sticks, else it slips along n = z/|z|. One pass
 
 1. puts slipping cells on the bound, p = g n;
-2. solves for both components in stick and the turn along t in slip (`krylov`);
+2. solves for both components in stick and the turn along the tangent t in slip, which is the azimuth of Zhao,
+   Vollebregt & Oosterlee (2014): stick (A v)_i = -S_i, slip t.(A v)_i + d_i t.v_i = -t.S_i;
 3. takes p + v in stick and g (n cos th + t sin th), th = t.v/g, in slip;
 4. goes the part 1, 1/2 ... 1/16 of that way that makes |p - Proj(p - c S)| fall by a tenth of the part;
 5. stops where |p - Proj(p - c S)| <= tolerance |p|.
@@ -12,7 +13,10 @@ With z = p - c S, c = 1/A_ii, Coulomb's law is p = Proj(z), the projection on th
 This is Newton's method on p - Proj(p - c S) with the slipping cells kept on their circles. |p| and not the
 bound is the measure, since tractions may be far below it.
 
-The bound is that of the cells of a contact, also of a worn track.
+The linear step is solved by generalised conjugate residuals (Eisenstat, Elman & Schultz 1983), the iterates
+of GMRES without its triangle. The preconditioner is an approximate inverse row by row: a run of m sticking
+cells takes the inverse of the leading m x m block of the row's Toeplitz matrix, a run of slipping cells the
+banded LU of its turns along the tangents; cut cells take their diagonal.
 """
 
 from __future__ import annotations
@@ -21,17 +25,24 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from separatrix.chain.exact.grid import GAUSS_NODES, GAUSS_WEIGHTS, Grid
-from separatrix.chain.exact.krylov import Sets, right_side, solve_step
-from separatrix.chain.exact.operator import Operator, product
-from separatrix.chain.exact.precondition import OUTSIDE, SLIP, STICK, States
+from separatrix.chain.exact.operator import Flags, Indices, Operator, product
 from separatrix.chain.film_compliance import Profile
 from separatrix.ground.compiled import kernel, part
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Metre, Pascal, Ratio
 
+States = NDArray[np.int8]
+OUTSIDE, STICK, SLIP = 0, 1, 2
 LIGHTEST = 1e-6  # of the largest pressure, below which asperities do not soften further
+TOLERANCE = 1e-5  # of the tractions: forces are then right to about 1e-6
+LINEAR = 0.05  # relative tolerance of a linear step
+LARGEST_PASSES = 100
+SHORTEST = 1.0 / 16.0  # part of a step
+LARGEST_SPACE = 80  # vectors of the Krylov space; 3 to 12 are usual
+BAND = 4  # half width of the banded matrices of slipping runs
 
 
 def over_cells(quantity: float | Profile, grid: Grid) -> Array:
@@ -83,10 +94,13 @@ def rough_compliance(grid: Grid, pressure: Array, roughness: Metre) -> Array:
     return np.where(f > 0.0, roughness / np.maximum(local, LIGHTEST * local.max()), 0.0)
 
 
-TOLERANCE = 1e-5  # of the tractions: forces are then right to about 1e-6
-LINEAR = 0.05  # relative tolerance of a linear step
-LARGEST_PASSES = 100
-SHORTEST = 1.0 / 16.0
+@dataclass(frozen=True, slots=True)
+class Sets:
+    """Stick and slip: state and turn d, shape (row, column), and normal n = z/|z|, shape (2, row, column)."""
+
+    state: States
+    normal: Array
+    turn: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +112,6 @@ class Settled:
     sets: Sets
     residual: Ratio
     passes: int
-    products: int
 
 
 def settle(
@@ -108,7 +121,6 @@ def settle(
     *,
     start: Array | None = None,
     tolerance: Ratio = TOLERANCE,
-    linear: Ratio = LINEAR,
 ) -> Settled:
     """Tractions under the bound g, shape (row, column) [Pa], and the rigid slip times dx [m].
 
@@ -119,27 +131,32 @@ def settle(
     """
     c = np.where(op.active, 2.0 / (op.diagonal[0] + op.diagonal[1]), 0.0)
     g = np.where(op.active, bound, 0.0)
-    p = np.zeros_like(driving) if start is None else clipped(start, g)
+    p = np.zeros_like(driving) if start is None else _projected(start, g)
     S = driving + product(op, p)
-    products = 1
     for passes in range(LARGEST_PASSES + 1):
-        state, normal, turn, jump, residual, size, moved = classify(p, S, c, g)
+        z = p - c * S
+        residual, size = _norm(p - _projected(z, g)), _norm(p)
+        sets = _classified(z, c, g)
         if residual <= tolerance * size:
-            sets = Sets(state, normal, turn)
             ratio = residual / size if size > 0.0 else 0.0
-            return Settled(
-                traction=p, slip_step=S, sets=sets, residual=ratio, passes=passes, products=products
-            )
-        onto_bound = S
-        if moved > 0.0:
-            onto_bound = S + product(op, jump)
-        sets = Sets(state, normal, turn)
-        accuracy = max(linear, 0.3 * tolerance * size / residual)
-        v, taken = solve_step(op, sets, right_side(onto_bound, state, normal), accuracy)
-        step = turned(p, v, state, normal, g)
+            return Settled(traction=p, slip_step=S, sets=sets, residual=ratio, passes=passes)
+        slips = sets.state == SLIP
+        jump = np.where(slips, g * sets.normal - p, 0.0)
+        onto_bound = S + product(op, jump) if jump.any() else S
+        right = -equations(onto_bound, np.zeros_like(p), sets.state, sets.normal, sets.turn)
+        v = solve_step(op, sets, right, max(LINEAR, 0.3 * tolerance * size / residual))
+        n, (x, y) = sets.normal, sets.normal
+        angle = np.clip((x * v[1] - y * v[0]) / np.where(slips, g, 1.0), -1.0, 1.0)
+        turned = g * (n * np.cos(angle) + np.stack([-y, x]) * np.sin(angle))
+        step = np.where(slips, turned - p, np.where(sets.state == STICK, v, 0.0))
         change = product(op, step)
-        line_search(p, S, step, change, c, g, residual)
-        products += taken + 1 + (moved > 0.0)
+        part_ = 1.0
+        while part_ > SHORTEST:
+            q = p + part_ * step
+            if _norm(q - _projected(q - c * (S + part_ * change), g)) <= (1.0 - 0.1 * part_) * residual:
+                break
+            part_ *= 0.5
+        p, S = p + part_ * step, S + part_ * change
     raise ConvergenceError(
         f"Rolling contact: tractions did not settle in {LARGEST_PASSES} passes (residual "
         f"{residual / size:.2g}, limit {tolerance:g}).",
@@ -148,98 +165,198 @@ def settle(
     )
 
 
+def _projected(z: Array, g: Array) -> Array:
+    """Projection on the discs of the bound; 0 outside the contact."""
+    length = np.sqrt(z[0] * z[0] + z[1] * z[1])
+    return z * np.where(length <= g, g > 0.0, g / np.where(length > 0.0, length, 1.0))
+
+
+def _norm(p: Array) -> float:
+    return float(np.linalg.norm(p))
+
+
+def _classified(z: Array, c: Array, g: Array) -> Sets:
+    """State, normal n and turn d of each cell."""
+    length = np.sqrt(z[0] * z[0] + z[1] * z[1])
+    inside = g > 0.0
+    slips = inside & (length > g)
+    normal = np.where(slips, z / np.where(slips, length, 1.0), 0.0)
+    turn = np.where(slips, (length - g) / np.where(slips, c * g, 1.0), 0.0)
+    return Sets(np.where(slips, SLIP, np.where(inside, STICK, OUTSIDE)).astype(np.int8), normal, turn)
+
+
+def solve_step(op: Operator, sets: Sets, right: Array, tolerance: float) -> Array:
+    """Tractions v of one linear step, shape (2, row, column); `tolerance` is relative.
+
+    They are two numbers a cell; the second row of a slipping cell is 0 = 0.
+    """
+    length = _norm(right)
+    if length == 0.0:
+        return np.zeros_like(right)
+    state, normal, turn = sets.state, sets.normal, sets.turn
+    band = slip_factors(state, op.whole, normal, turn, op.rows, op.kind, op.local)
+    images, directions = np.empty((2, LARGEST_SPACE, *right.shape))
+    total, rest = np.zeros_like(right), right.copy()
+    for k in range(LARGEST_SPACE):
+        v = precondition(rest, state, op.whole, normal, turn, op.diagonal, band, op.inverses, op.kind)
+        image = equations(product(op, v), v, state, normal, turn)
+        if advance(k, image, v, images, directions, total, rest) <= tolerance * length:
+            break
+    return total
+
+
 @kernel
-def clipped(p: Array, g: Array) -> Array:
-    """Projection of tractions on the discs of the bound."""
-    result = np.empty_like(p)
-    for j in range(g.shape[0]):
-        for i in range(g.shape[1]):
-            result[0, j, i], result[1, j, i] = _projected(p[0, j, i], p[1, j, i], g[j, i])
+def advance(
+    k: int, image: Array, v: Array, images: Array, directions: Array, total: Array, rest: Array
+) -> float:
+    """Take the part of a direction v that lowers the rest most; the length of the new rest.
+
+    Its image is made orthogonal to those before by Gram and Schmidt, in place.
+    """
+    for n in range(k):
+        h = (images[n] * image).sum()
+        image -= h * images[n]
+        v -= h * directions[n]
+    size = math.sqrt((image * image).sum())
+    if size == 0.0:  # no way on
+        return 0.0
+    images[k], directions[k] = image / size, v / size
+    share = (images[k] * rest).sum()
+    total += share * directions[k]
+    rest -= share * images[k]
+    return math.sqrt((rest * rest).sum())
+
+
+@kernel
+def equations(slip: Array, v: Array, state: States, normal: Array, turn: Array) -> Array:
+    """Left side of the rows from the slip A v: itself in stick, t.(A v) + d t.v in slip; shape of v."""
+    _, ny, nx = slip.shape
+    result = np.zeros_like(slip)
+    for j in range(ny):
+        for i in range(nx):
+            if state[j, i] == STICK:
+                result[0, j, i], result[1, j, i] = slip[0, j, i], slip[1, j, i]
+            elif state[j, i] == SLIP:
+                tx, ty, d = -normal[1, j, i], normal[0, j, i], turn[j, i]
+                x, y = slip[0, j, i] + d * v[0, j, i], slip[1, j, i] + d * v[1, j, i]
+                result[0, j, i] = tx * x + ty * y
     return result
 
 
-@part
-def _projected(x: float, y: float, g: float) -> tuple[float, float]:
-    length = math.sqrt(x * x + y * y)
-    if length <= g:
-        return x, y
-    return g * x / length, g * y / length
-
-
 @kernel
-def classify(
-    p: Array, S: Array, c: Array, g: Array
-) -> tuple[States, Array, Array, Array, float, float, float]:
-    """State, normal n and turn d of each cell, jump onto the bound; |p - Proj(z)|, |p| and |jump|."""
-    _, ny, nx = p.shape
-    state = np.full((ny, nx), OUTSIDE, dtype=np.int8)
-    normal, jump, turn = np.zeros_like(p), np.zeros_like(p), np.zeros((ny, nx))
-    residual, size, moved = 0.0, 0.0, 0.0
+def slip_factors(
+    state: States, whole: Flags, normal: Array, turn: Array, rows: Array, kind: Indices, local: Array
+) -> Array:
+    """Banded LU of each run of whole slipping cells, shape (row, column, 2 BAND + 1).
+
+    The matrix is D_xx t_x t_x' + D_yy t_y t_y' + d: the slip along t that turns of the tractions cause.
+    """
+    ny, nx = state.shape
+    band = np.zeros((ny, nx, 2 * BAND + 1))
     for j in range(ny):
-        for i in range(nx):
-            if g[j, i] <= 0.0:
+        xx, yy = rows[kind[j], 0], rows[kind[j], 1]
+        first = 0
+        while first < nx:
+            if state[j, first] != SLIP or not whole[j, first]:
+                first += 1
                 continue
-            x, y = p[0, j, i], p[1, j, i]
-            zx, zy = x - c[j, i] * S[0, j, i], y - c[j, i] * S[1, j, i]
-            length = math.sqrt(zx * zx + zy * zy)
-            size += x * x + y * y
-            if length <= g[j, i]:
-                state[j, i] = STICK
-                residual += (x - zx) ** 2 + (y - zy) ** 2
-                continue
-            state[j, i] = SLIP
-            normal[0, j, i], normal[1, j, i] = zx / length, zy / length
-            turn[j, i] = (length - g[j, i]) / (c[j, i] * g[j, i])
-            jump[0, j, i], jump[1, j, i] = g[j, i] * zx / length - x, g[j, i] * zy / length - y
-            off = jump[0, j, i] ** 2 + jump[1, j, i] ** 2
-            residual, moved = residual + off, moved + off
-    return state, normal, turn, jump, math.sqrt(residual), math.sqrt(size), math.sqrt(moved)
-
-
-@kernel
-def turned(p: Array, v: Array, state: States, normal: Array, g: Array) -> Array:
-    """Whole step: v in stick; in slip from p to the bound, turned by th = t.v/g."""
-    step = np.zeros_like(p)
-    for j in range(g.shape[0]):
-        for i in range(g.shape[1]):
-            if state[j, i] == STICK:
-                step[0, j, i], step[1, j, i] = v[0, j, i], v[1, j, i]
-            elif state[j, i] == SLIP:
-                nx, ny = normal[0, j, i], normal[1, j, i]
-                angle = (nx * v[1, j, i] - ny * v[0, j, i]) / g[j, i]
-                angle = min(max(angle, -1.0), 1.0)
-                cosine, sine = math.cos(angle), math.sin(angle)
-                step[0, j, i] = g[j, i] * (nx * cosine - ny * sine) - p[0, j, i]
-                step[1, j, i] = g[j, i] * (ny * cosine + nx * sine) - p[1, j, i]
-    return step
-
-
-@kernel
-def line_search(p: Array, S: Array, step: Array, change: Array, c: Array, g: Array, before: float) -> float:
-    """Move p and S in place by the first part of the step that serves, else the shortest; that part."""
-    part_ = 1.0
-    while part_ > SHORTEST:
-        if _residual_at(p, S, step, change, c, g, part_) <= (1.0 - 0.1 * part_) * before:
-            break
-        part_ *= 0.5
-    for n in range(2):
-        for j in range(g.shape[0]):
-            for i in range(g.shape[1]):
-                p[n, j, i] += part_ * step[n, j, i]
-                S[n, j, i] += part_ * change[n, j, i]
-    return part_
+            last = first
+            while last + 1 < nx and state[j, last + 1] == SLIP and whole[j, last + 1]:
+                last += 1
+            for i in range(first, last + 1):
+                tx, ty = -normal[1, j, i], normal[0, j, i]
+                for k in range(max(first, i - BAND), min(last, i + BAND) + 1):
+                    coupling = (
+                        -xx[i - k + nx - 1] * tx * normal[1, j, k] + yy[i - k + nx - 1] * ty * normal[0, j, k]
+                    )
+                    band[j, i, k - i + BAND] = coupling
+                band[j, i, BAND] += local[0, j, i] * tx * tx + local[1, j, i] * ty * ty + turn[j, i]
+            _factorise(band[j], first, last)
+            first = last + 1
+    return band
 
 
 @part
-def _residual_at(p: Array, S: Array, step: Array, change: Array, c: Array, g: Array, length: float) -> float:
-    """|p - Proj(p - c S)| after a part of the step."""
-    total = 0.0
-    for j in range(g.shape[0]):
-        for i in range(g.shape[1]):
-            if g[j, i] > 0.0:
-                x, y = p[0, j, i] + length * step[0, j, i], p[1, j, i] + length * step[1, j, i]
-                zx = x - c[j, i] * (S[0, j, i] + length * change[0, j, i])
-                zy = y - c[j, i] * (S[1, j, i] + length * change[1, j, i])
-                px, py = _projected(zx, zy, g[j, i])
-                total += (x - px) ** 2 + (y - py) ** 2
-    return math.sqrt(total)
+def _factorise(band: Array, first: int, last: int) -> None:
+    """LU without pivots of the band between two cells, in place."""
+    for i in range(first, last + 1):
+        for k in range(i + 1, min(last, i + BAND) + 1):
+            factor = band[k, i - k + BAND] / band[i, BAND]
+            band[k, i - k + BAND] = factor
+            for column in range(i + 1, min(last, i + BAND) + 1):
+                band[k, column - k + BAND] -= factor * band[i, column - i + BAND]
+
+
+@kernel
+def precondition(
+    u: Array,
+    state: States,
+    whole: Flags,
+    normal: Array,
+    turn: Array,
+    diagonal: Array,
+    band: Array,
+    inverses: Array,
+    kind: Indices,
+) -> Array:
+    """Tractions, shape (2, row, column), that nearly cause the slip u; in slip u_0 is along t."""
+    _, ny, nx = u.shape
+    z = np.zeros_like(u)
+    starts = np.zeros(nx + 1, dtype=np.int64)
+    for m in range(1, nx):
+        starts[m + 1] = starts[m] + m * m
+    for j in range(ny):
+        first = 0
+        while first < nx:
+            kept = state[j, first]
+            last = first
+            if kept != OUTSIDE and whole[j, first]:
+                while last + 1 < nx and state[j, last + 1] == kept and whole[j, last + 1]:
+                    last += 1
+                if kept == STICK:
+                    m = last - first + 1
+                    for c in range(2):
+                        _apply(inverses[kind[j], c], starts[m], m, u[c, j], z[c, j], first)
+                else:
+                    _substitute(band[j], u[0, j], z[0, j], first, last)
+                    _along_tangent(z, normal, j, first, last)
+            elif kept == STICK:
+                z[0, j, first] = u[0, j, first] / diagonal[0, j, first]
+                z[1, j, first] = u[1, j, first] / diagonal[1, j, first]
+            elif kept == SLIP:
+                tx, ty = -normal[1, j, first], normal[0, j, first]
+                own = diagonal[0, j, first] * tx * tx + diagonal[1, j, first] * ty * ty + turn[j, first]
+                z[0, j, first] = u[0, j, first] / own
+                _along_tangent(z, normal, j, first, first)
+            first = last + 1
+    return z
+
+
+@part
+def _apply(blocks: Array, start: int, m: int, u: Array, z: Array, first: int) -> None:
+    """Add block times u to z, column by column."""
+    for k in range(m):
+        factor, column = u[first + k], start + k * m
+        for i in range(m):
+            z[first + i] += blocks[column + i] * factor
+
+
+@part
+def _substitute(band: Array, u: Array, z: Array, first: int, last: int) -> None:
+    """Solve the banded system of a run."""
+    for i in range(first, last + 1):
+        z[i] = u[i]
+        for k in range(max(first, i - BAND), i):
+            z[i] -= band[i, k - i + BAND] * z[k]
+    for i in range(last, first - 1, -1):
+        for k in range(i + 1, min(last, i + BAND) + 1):
+            z[i] -= band[i, k - i + BAND] * z[k]
+        z[i] /= band[i, BAND]
+
+
+@part
+def _along_tangent(z: Array, normal: Array, j: int, first: int, last: int) -> None:
+    """Turn the lengths z_0 of a run into vectors along t = (-n_y, n_x)."""
+    for i in range(first, last + 1):
+        length = z[0, j, i]
+        z[0, j, i], z[1, j, i] = -normal[1, j, i] * length, normal[0, j, i] * length

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.exact.krylov import right_side, solve_step
 from separatrix.chain.exact.operator import unresolved_film
 from separatrix.chain.exact.rolling import (
     ContactProblem,
@@ -27,7 +26,7 @@ from separatrix.chain.exact.rolling import (
     settled,
     solution_of,
 )
-from separatrix.chain.exact.slip import Settled
+from separatrix.chain.exact.slip import Settled, equations, solve_step
 from separatrix.chain.film_compliance import Profile
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.ground.units import Array, Newton, Ratio
@@ -57,11 +56,6 @@ class RaceSlope:
     slope_error: Ratio
     free_rolling_offset: Ratio
     solution: ContactSolution
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Where the contact leaves the range of its model, a sentence each."""
-        return self.solution.notes
 
 
 def traction_slope(
@@ -157,10 +151,10 @@ class Curve:
 
     def tangent(self, found: Settled) -> Ratio:
         """Derivative of C_T to the longitudinal creep, with stick and slip cells held [-]."""
-        unit = np.zeros_like(found.traction)
+        sets, unit, none = found.sets, np.zeros_like(found.traction), np.zeros_like(found.traction)
         unit[0] = self.contact.grid.dx
-        right = right_side(unit, found.sets.state, found.sets.normal)
-        v, _ = solve_step(self.contact.operator, found.sets, right, LINEAR)
+        right = -equations(unit, none, sets.state, sets.normal, sets.turn)
+        v = solve_step(self.contact.operator, sets, right, LINEAR)
         return -float(v[0].sum()) * self.contact.grid.cell_area / self.load
 
     def free_rolling(self) -> Ratio:

@@ -1,86 +1,11 @@
-"""What several verbs tell of the chain before the cage: contacts, creep, running clearances."""
+"""What several verbs report of the chain before the cage: clearances, restitution, basis of a verdict."""
 
 from __future__ import annotations
 
-from typing import Any
-
 from separatrix.ground.document import Part
-from separatrix.present.blocks import (
-    Block,
-    Cell,
-    Column,
-    Equation,
-    Heading,
-    Level,
-    Picture,
-    Table,
-    facts,
-    text_column,
-)
-from separatrix.present.figure import BLUE, VERMILION, Axis, Figure, Mark, Panel, Trace, Words
-from separatrix.verbs.parts.answer_page import bearing_facts, figure
-from separatrix.verbs.parts.quantity_text import axis, by_race, cell, fact, fill, named, show
-
-RACES = (("inner", BLUE, "o", "-"), ("outer", VERMILION, "s", "--"))
-ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
-CREEP = ("spin_roll_ratio", "creep_spin", "creep_curvature")
-
-
-def contact_blocks(answer: Part, at: Part) -> list[Block]:
-    """Return both contacts of the most loaded ball: ellipse, pressure and creep."""
-    return [
-        Heading("Contacts of the most loaded ball"),
-        Equation(
-            r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
-            "Hertz: maximum pressure $p_0$ of the ellipse with semi-axes $a$ and $b$.",
-        ),
-        by_race("contacts", at.inner, at.outer, *ELLIPSE),
-        Picture(
-            "bearing-contacts",
-            lambda: contacts_figure(answer, at),
-            "The contacts of the most loaded ball: ellipses to scale, pressure and creep across the groove.",
-        ),
-        Equation(
-            r"\xi(y) = \delta + s\,y + q\,y^2 + \delta\xi",
-            "Creep across the groove [14, 16]: free-rolling offset, spin $s$, curvature $q$ (Heathcote), and "
-            "the increment $dxi$ that an impact of the cage adds.",
-        ),
-        by_race("creep", at.inner, at.outer, *CREEP, level=Level.LONG, caption="Creep in these contacts."),
-    ]
-
-
-def contacts_figure(answer: Part, at: Part) -> Figure:
-    """Return the contacts of the most loaded ball: ellipses to scale, pressure, creep across the groove."""
-    import numpy as np
-
-    plan: list[Mark] = []
-    pressure: list[Mark] = []
-    creep: list[Mark] = []
-    wide = 1.12 * max(at.inner.semi_major, at.outer.semi_major)
-    across = axis("across", "m", [wide], low=-wide, high=wide)
-    for (race, colour, _, line), side in zip(RACES, (1, -1), strict=True):
-        found = getattr(at, race)
-        look: dict[str, Any] = {"colour": colour, "line": line}
-        a, b = found.semi_major, found.semi_minor
-        angle, y = np.linspace(0.0, 2.0 * np.pi, 181), np.linspace(-a, a, 121)
-        x = b * (np.sin(angle) + 2.2 * side)
-        plan.append(Trace(x=(a * np.cos(angle)).tolist(), y=x.tolist(), fill=0.25, width=1.0, **look))
-        plan.append(Words(x=0.0, y=2.2 * side * b, text=race, colour=colour, side="on"))
-        p = found.max_pressure * np.sqrt(np.maximum(0.0, 1.0 - (y / a) ** 2))
-        texts = (f"y {1e3 * u:.3g} mm, pressure {1e-9 * v:.3g} GPa" for u, v in zip(y, p, strict=True))
-        hover = tuple(f"{race} race: {text}" for text in texts)
-        pressure.append(Trace(x=y.tolist(), y=p.tolist(), name=f"{race} race", hover=hover, **look))
-        xi = found.creep_spin * y + found.creep_curvature * y * y
-        creep.append(Trace(x=y.tolist(), y=xi.tolist(), **look))
-    p0, xi_y = axis("pressure", "Pa", [at.inner.max_pressure], low=0.0), axis("creep_ratio", "-", [])
-    along = Axis(label="x along rolling, same scale", size=across.size, has_ticks=False)
-    panels = (
-        Panel(title="a  Ellipses, to scale", x=across, y=along, marks=tuple(plan), is_to_scale=True),
-        Panel(title="b  Pressure on the axis x = 0", x=across, y=p0, marks=tuple(pressure)),
-        Panel(title="c  Creep by spin and curvature", x=across, y=xi_y, marks=tuple(creep)),
-    )
-    alt = "Three panels: both contact ellipses to scale, pressure and creep across the groove."
-    return figure(answer, panels, alt=alt)
+from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Table, facts, text_column
+from separatrix.verbs.parts.answer_page import bearing_facts
+from separatrix.verbs.parts.quantity_text import by_race, cell, fact, fill, named, show
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:

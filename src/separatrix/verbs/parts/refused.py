@@ -35,7 +35,7 @@ def refused(study: Study, *steps: Step) -> Iterator[str]:
 def rolling(solution: Solution) -> None:
     """Refuse what no traction is computed of: a bearing that does not roll, contacts out of their range."""
     from separatrix.chain.contacts import race_tracks, require_rolling
-    from separatrix.chain.exact import rolling_contact
+    from separatrix.chain.exact.rolling import rolling_contact
     from separatrix.chain.race_traction import contact_problem
     from separatrix.study.study import TractionModel
 
