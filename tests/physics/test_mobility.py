@@ -174,7 +174,7 @@ def test_push_begins_with_the_linear_law():
 
 def moved(name, *, model=None, film=None, **operation):
     """Mobility of a bearing with another operation, kinematic model or film."""
-    bearing, usual, own_model, own_film, traction = records(name)
+    bearing, usual, own_model, own_film, traction, _ = records(name)
     asked = Rolling(bearing, replace(usual, **operation), model or own_model, film or own_film, traction)
     return mobility(asked)
 
