@@ -175,6 +175,16 @@ def test_another_version_is_named_and_computed_all_the_same(stored, put, capsys)
     assert "(then 0.0.1)" in line
 
 
+def test_an_option_that_is_gone_and_was_not_asked_for_is_left_out(stored, put, capsys):
+    """As `animate` in runs of an earlier version; one that was asked for is refused (below)."""
+
+    def older(answer):
+        answer["provenance"]["command"]["question"]["animate"] = None
+
+    asked = next(one for one in ASKED if one[0] == "simulate")
+    assert again(capsys, put(changed(stored[asked], older)))["same"] is True
+
+
 def test_a_report_has_its_answers_in_it(stored, put, capsys):
     """Each of them is computed again."""
     answers = {asked[0]: stored[asked] for asked in (("check", "ball-218"), ("bearing", "ball-218"))}

@@ -95,6 +95,8 @@ def options_from(verb: Verb, given: object) -> Any:
         raise InputError("question", "must be the options of the verb", shown(given))
     known, found = verb.shown_options(), {}
     for name, value in given.items():
+        if name not in known and value is None:  # of an earlier version, and not asked for
+            continue
         if name not in known:
             raise InputError(f"--{printable(str(name), 40)}", f"is not an option of {verb.name}")
         try:
