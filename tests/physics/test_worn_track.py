@@ -104,12 +104,10 @@ def test_the_track_of_a_film():
         return track_of(film, race, a)
 
     for form in ({"width": 4e-4}, {"share": 0.2}):
-        found = track(**form)
-        assert found.friction == worn_band(2e-4, worn=0.3, film=0.1)
-        assert found.compliance == worn_band(2e-4, worn=0.0, film=L)
-    thin = track(share=0.2, thickness=1e-6)
-    assert thin.friction == worn_band(2e-4, worn=0.1, film=0.1)
-    assert thin.compliance.values == pytest.approx((L, L / 3.0, L / 3.0, L))
+        assert track(**form) == (worn_band(2e-4, worn=0.3, film=0.1), worn_band(2e-4, worn=0.0, film=L))
+    friction, compliance = track(share=0.2, thickness=1e-6)
+    assert friction == worn_band(2e-4, worn=0.1, film=0.1)
+    assert compliance.values == pytest.approx((L, L / 3.0, L / 3.0, L))
     assert track(share=0.0) == (0.1, L)
     assert track(share=1.0) == track(width=5e-3) == (0.3, 0.0)
     assert track(Race.OUTER, share=0.2, races=Worn.INNER) == (0.1, L)

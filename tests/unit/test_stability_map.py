@@ -158,6 +158,8 @@ def test_every_parameter_reaches_the_study(name, study):
         cage |= {"motion": MotionModel.SPACE}
     if name == "cage.land_spacing":
         cage |= {"land_count": 2, "land_spacing": 0.01}
+    if name.startswith("cage.fluid_"):
+        cage |= {"added_mass": 1e-3}
     if name == "cage.land_lobes":
         cage |= {"land_out_of_round": 1e-6}
     if name == "cage.land_count":

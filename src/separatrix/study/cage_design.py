@@ -314,7 +314,6 @@ class CageDesign:
     fluid_swirl: Ratio | None = key(
         between(-10.0, 10.0), default=None, needs=("added_mass", "no fluid moves with the cage"),
         without="halfway between the cage and the ring of its land, the outer one without a land",
-        example="0.5",
     )  # fmt: skip
     """Mean speed of that fluid round the axis, over that of the cage."""
 

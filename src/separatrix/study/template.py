@@ -81,6 +81,7 @@ EXAMPLES = {
     "cage.transverse_inertia": '"13.3 kg mm2"',
     "cage.land_spacing": '"12 mm"',
     "cage.land_diameter": '"72 mm"',
+    "cage.fluid_swirl": "0.5",
     "cage.gravity": '"9.81 m/s2"',
     "stability.reference_kick": '"0.5 m/s"',
     "stability.kicks": '["0.1 m/s", "0.5 m/s", "2 m/s"]',
