@@ -200,6 +200,20 @@ def test_a_ring_that_bends_as_fast_as_it_whirls_is_noted():
     assert bending_frequency(SHIPPED.cage, None) is None
 
 
+def test_fluid_in_the_gap_of_a_land_is_noted_unless_it_is_counted():
+    """A land of 14 mm: 37 g beside a cage of 25 g, which by the closed law is sqrt(62/25) = 1.57 times."""
+
+    def notes(**keys):
+        study = replace(SHIPPED, cage=replace(SHIPPED.cage, **keys))
+        return list(beyond_motion(solve(study), [ROW]))
+
+    (note,) = notes(land_width=0.014)
+    assert "37 g beside its 25 g" in note
+    assert "by some 57 %" in note
+    assert 'added_mass = "37 g", fluid_damping = "4.1 N s/m"' in note
+    assert notes(land_width=0.014, added_mass=0.037) == notes(land_width=0.004) == []
+
+
 def test_a_pocket_that_yields_is_noted_if_its_strength_is_known():
     """From 1.6 times the strength on; the other candidate states none."""
     study, rows = made_of(soft=SOFT, firm=FIRM), [ROW._replace(name="soft"), ROW._replace(name="firm")]

@@ -15,6 +15,7 @@ from separatrix.chain.impact_restitution import (
     hertz_coefficient,
     hertz_coefficient_for,
 )
+from separatrix.chain.land_fluid import land_fluid
 from separatrix.chain.pocket_friction import contact_radius, flash_temperature, pocket_speed
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import (
@@ -49,6 +50,9 @@ BEYOND_LAND: Ratio = 1.2
 
 HOT: Newton = 30.0
 """Pocket force above which friction heats a ball by hundreds of kelvins (docs/theory/friction.md)."""
+
+MOVED: Ratio = 0.05
+"""Added mass of the fluid in a land's gap over the cage's from which a sentence says so."""
 
 STIFF: Ratio = 3.0
 """First bending frequency of a ring over that of the whirl from which it counts as rigid."""
@@ -86,6 +90,7 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     yield from _beyond_strength(solution.study, rows)
     yield from _heats(solution, rows)
     yield from _bends(solution)
+    yield from _fluid(solution)
     gap = (design.land_clearance or math.inf) / 2.0 if design.guidance is not Guidance.BALL else math.inf
     far = [row for row in rows if row.largest_offset > BEYOND_LAND * gap]
     if far:
@@ -198,6 +203,20 @@ def _bends(solution: Solution) -> Iterator[str]:
             f"The ring of the cage first bends at {format_quantity(first, 'Hz', 2)} (solid, without its "
             f"pockets), less than {STIFF:g} times the {format_quantity(whirl, 'Hz', 2)} of its whirl, and is "
             "taken as rigid: bending moved the critical friction of a turbopump's cage by -12 to +18 %."
+        )
+
+
+def _fluid(solution: Solution) -> Iterator[str]:
+    """A sentence where the gap of the land has fluid that would count, and the study states none."""
+    study, design, mass = solution.study, solution.design, solution.inertia.mass
+    found = None if design.added_mass else land_fluid(study, design, solution.bearing.cage_speed)
+    if found is not None and found.added_mass > MOVED * mass:
+        more = 100.0 * (math.sqrt(1.0 + found.added_mass / mass) - 1.0)
+        yield (
+            f"The fluid in the gap of the land is not counted. It would move with the cage as "
+            f"{format_quantity(found.added_mass, 'kg', 2)} beside its {format_quantity(mass, 'kg', 2)}, and "
+            f"raise the critical friction by some {more:.0f} % (closed law). To count it: [cage] "
+            f'added_mass = "{1e3 * found.added_mass:.2g} g", fluid_damping = "{found.damping:.2g} N s/m".'
         )
 
 
