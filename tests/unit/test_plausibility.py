@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from separatrix.chain.pocket_friction import EFFUSIVITY, flash_temperature
 from separatrix.chain.solution import solve
 from separatrix.study.cautions import beyond_bearings, plausible_cage_masses
 from separatrix.study.reading import read_study
@@ -157,29 +156,6 @@ def test_pressure_in_a_pocket_is_hertz_of_a_ball_on_a_flat():
     cubed = 6 * force / sum(each) ** 2 / (math.pi**3 * (bearing.ball_diameter / 2) ** 2)
     # the same law in another form: rounding of two roots
     assert pocket_pressure(bearing, SOFT, force) == pytest.approx(cubed ** (1 / 3), rel=1e-12)
-
-
-def test_heat_of_a_strong_impact_is_noted():
-    """Above 30 N, for the row that gets hottest."""
-    cold, warm = ROW._replace(largest_contact_force=29.0, friction=0.2), ROW._replace(friction=0.09)
-    assert list(beyond_motion(STATE, [cold])) == []
-    (note,) = beyond_motion(STATE, [cold, warm, warm._replace(name="B", friction=0.12)])
-    assert re.search(r"50 N, friction on B heats the ball's surface by up to [4-9]\d\d K", note)
-    assert flash_temperature(0.1, 0.0, 2e-4, 25.0) == flash_temperature(0.1, 50.0, 2e-4, 0.0) == 0.0
-
-
-def test_a_surface_heats_as_a_half_space_under_constant_heat():
-    """One dimension in finite differences: 2 q sqrt(t/pi)/e."""
-    steps, cells, e = 8000, 400, EFFUSIVITY
-    t, rise = 2.0 * 2e-4 / 25.0, np.zeros(cells)
-    h = 8.0 / cells * math.sqrt(t)  # conductivity and heat capacity of e each: diffusivity 1
-    heat = 0.1 * 25.0 * 50.0 / (math.pi * 2e-4**2)
-    for _ in range(steps):
-        flux = np.concatenate([[heat], e * (rise[:-1] - rise[1:]) / h, [0.0]])
-        rise += t / steps * (flux[:-1] - flux[1:]) / (e * h)
-    surface = rise[0] + 0.5 * h * heat / e
-    # second order in cells: 1e-4 of the rise
-    assert flash_temperature(0.1, 50.0, 2e-4, 25.0) == pytest.approx(surface, rel=1e-3)
 
 
 def test_a_ring_that_bends_as_fast_as_it_whirls_is_noted():

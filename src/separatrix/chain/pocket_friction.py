@@ -13,7 +13,6 @@ from separatrix.chain.impact_restitution import hertz_coefficient_for
 from separatrix.friction.prediction import Friction
 from separatrix.ground.units import (
     Array,
-    Kelvin,
     Kilogram,
     Metre,
     MetrePerSecond,
@@ -31,9 +30,6 @@ REFERENCE: Ratio = 2.5
 
 LEAST_POCKET_SPEED: MetrePerSecond = 0.02
 """Pocket speed of a ball set at rest or a pocket without clearance: the reference is then 0.05 m/s."""
-
-EFFUSIVITY = 4065.0
-"""Root of conductivity, density and heat capacity of a steel ball near 77 K, assumed [W s^0.5/(m2 K)]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,17 +121,6 @@ def contact_radius(force: Newton, hertz_coefficient: NewtonPerMetre1_5, ball_dia
     """
     approach: float = (force / hertz_coefficient) ** (2.0 / 3.0)
     return sqrt(0.5 * ball_diameter * approach)
-
-
-def flash_temperature(friction: Ratio, force: Newton, radius: Metre, speed: MetrePerSecond) -> Kelvin:
-    r"""Rise of the temperature of a ball's surface as it slides through its contact with a pocket.
-
-    :math:`\Delta T = 2 q \sqrt{t/\pi}/e`, with the heat :math:`q = f v F/(\pi a^2)` over the time
-    :math:`t = 2a/v`: all of it goes into the ball, for the pocket conducts badly. An upper bound, at the
-    effusivity `EFFUSIVITY` of cold steel.
-    """
-    heat = friction * speed * force / (pi * radius**2)
-    return 2.0 * heat * sqrt(2.0 * radius / (speed * pi)) / EFFUSIVITY if speed > 0.0 else 0.0
 
 
 def names_of_fluid(study: Study) -> tuple[str, ...]:

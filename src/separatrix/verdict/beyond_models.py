@@ -13,10 +13,9 @@ from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.impact_restitution import (
     SOLID_LUBRICATION_LIMIT,
     hertz_coefficient,
-    hertz_coefficient_for,
 )
 from separatrix.chain.land_fluid import land_fluid
-from separatrix.chain.pocket_friction import contact_radius, flash_temperature, pocket_speed
+from separatrix.chain.pocket_friction import contact_radius, pocket_speed
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import (
     Hertz,
@@ -48,9 +47,6 @@ BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
 
 
-HOT: Newton = 30.0
-"""Pocket force above which friction heats a ball by hundreds of kelvins (docs/theory/friction.md)."""
-
 MOVED: Ratio = 0.05
 """Added mass of the fluid in a land's gap over the cage's from which a sentence says so."""
 
@@ -69,7 +65,6 @@ class Moved(NamedTuple):
     largest_contact_force: Newton
     largest_offset: Metre
     by_kick: tuple[KickCount, ...] = ()
-    friction: Ratio | None = None
 
 
 def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
@@ -88,7 +83,6 @@ def beyond_motion(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
     if design.motion_model is MotionModel.PLANE and design.pocket_shape is not PocketShape.SQUARE:
         yield from _tilts(solution)
     yield from _beyond_strength(solution.study, rows)
-    yield from _heats(solution, rows)
     yield from _bends(solution)
     yield from _fluid(solution)
     gap = (design.land_clearance or math.inf) / 2.0 if design.guidance is not Guidance.BALL else math.inf
@@ -149,34 +143,6 @@ def _beyond_strength(study: Study, rows: Sequence[Moved]) -> Iterator[str]:
             f"compressive strength, where it begins to yield: {', '.join(weak)}. The pocket dents and wears; "
             "its elastic stiffness is outside its range."
         )
-
-
-def _heats(solution: Solution, rows: Sequence[Moved]) -> Iterator[str]:
-    """A sentence where friction in the strongest impact makes so much heat that it may change."""
-    hot = [(row.friction, row) for row in rows if row.friction and row.largest_contact_force > HOT]
-    if not hot:
-        return
-    pocket, ball = solution.pocket, solution.study.bearing.ball_diameter
-    K = hertz_coefficient_for(solution.ball_cage_stiffness, solution.inertia.mass, solution.impact_speed)
-    rises = [
-        (
-            flash_temperature(
-                f,
-                row.largest_contact_force,
-                contact_radius(row.largest_contact_force, K, ball),
-                pocket.slip_speed,
-            ),
-            row,
-        )
-        for f, row in hot
-    ]
-    rise, row = max(rises, key=lambda one: one[0])
-    yield (
-        f"In its strongest impact, {format_quantity(row.largest_contact_force, 'N', 2)}, friction on "
-        f"{row.name} heats the ball's surface by up to {format_quantity(rise, 'K', 2)} (a "
-        "steel ball, all heat into it): such a surface may rub at 0.6 to 1.2 times the friction that was "
-        "measured, which the verdicts take."
-    )
 
 
 def bending_frequency(design: CageDesign, material: Material | None) -> Hertz | None:

@@ -212,8 +212,7 @@ def _notes(
         share = f"{len(failures)} of {study.stability.runs}"
         notes.append(f"{share} draws of the uncertain inputs make no bearing: {failures[0]}")
     judged = [(row.name, row.judgement) for row in rows if not isinstance(row, NotMeasured) and row.judgement]
-    frictions = {row.name: row.friction for row in rows if not isinstance(row, NotMeasured)}
-    moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick, frictions[n]) for n, j in judged]
+    moved = [Moved(n, j.largest_contact_force, j.largest_offset, j.by_kick) for n, j in judged]
     reference = question.cages[question.reference]
     return (*filter(None, notes), *beyond_motion(reference, moved))
 
