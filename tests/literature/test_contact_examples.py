@@ -70,6 +70,7 @@ def test_carter():
     """0.64 mu N exactly at this creep; 50 columns and a length of 200 half widths: 0.5 %."""
     made = on_cells(35780.0, STEEL, 0.3, (55, 1), (-1.07, -100.0), (0.04, 200.0), 0.001)
     one = solved(made, longitudinal=-0.00024)
+    # 50 columns of a length of 200 half widths
     assert one.force / (0.3 * one.load) == pytest.approx(0.64, rel=5e-3)
     assert one.stick_share == pytest.approx(0.6, abs=1 / 50)  # to half a cell at either end
 
@@ -88,6 +89,7 @@ def test_bentall():
     assert solved(slippery, longitudinal=-0.00052).force < 0.0  # 5.2e-4 is less than free rolling
     free, _ = creep_of_force(slippery, 0.0)
     pulled, more, braked = (creep_of_force(rough, force)[0] for force in (-0.75, 0.0, 0.75))
+    # change of the creep over the cell that has the line without slip
     assert free == pytest.approx(-5.259e-4, rel=5e-3)
     assert more == pytest.approx(-4.281e-4, rel=5e-3)
     assert pulled > more > braked
@@ -102,6 +104,7 @@ def test_traction_curve():
     made, coated = (rolling_contact(one, columns=44, rows=40) for one in (bare, film))
     slips = [rigid_slip(made.grid, longitudinal=xi) for xi in (1e-5, 4e-4, 8e-4, 1.2e-3, 1.6e-3)]
     first, *curve = (one.force for one in solve_each(made, slips))
+    # 44 x 40 cells against converged values
     assert [first, solved(coated, longitudinal=1e-5).force] == pytest.approx([-243.8, -63.6], rel=5e-3)
     assert np.array(curve) / (0.33 * 106700.0) == pytest.approx([-0.255, -0.468, -0.640, -0.774], rel=5e-3)
 

@@ -134,15 +134,25 @@ def slopes_of_fields(cage):
     return gains @ forces
 
 
-def slopes_of_engine(cage):
-    """The same by the engine's equations about free rolling."""
+def test_races_hold_a_ball_of_less_load_less():
+    """In proportion to its share; what is left without any are the gyroscopic terms, which damp nothing."""
+    cage = moving_cage(solve(read_study("cryogenic-turbopump")), 0.1, BallModel.FREE)
+    none, third, whole = (slopes_of_engine(cage, share) for share in (0.0, 1.0 / 3.0, 1.0))
+    # rounding of differences of 1e-5 m/s
+    np.testing.assert_allclose(third, none + (whole - none) / 3.0, rtol=1e-9, atol=1e-7 * np.abs(whole).max())
+    assert np.trace(none) == pytest.approx(0.0, abs=1e-9 * np.abs(np.trace(whole)))
+    assert np.trace(whole) < 0.0
+
+
+def slopes_of_engine(cage, share=1.0):
+    """The same by the engine's equations about free rolling, of a ball with a share of the races' hold."""
     p = np.repeat(numbers_of(cage, 0.1, 0.3).numbers, LANES)
     R = cage.pitch_radius
     step = 1e-5 * np.array([1.0, 1.0 / R, 1.0 / R, 1.0 / R])
     s, a, places = np.zeros(rows.SPACE_STATES), np.zeros(rows.SUMS), np.zeros((1, rows.BALL_ROWS))
     s[rows.RAMP : rows.RAMP + LANES] = a[rows.PER_RAMP : rows.PER_RAMP + LANES] = 1.0
-    for row in (rows.COSINE, rows.APART, rows.CAPACITY_SHARE):
-        places[0, row : row + LANES] = 1.0
+    for row, value in ((rows.COSINE, 1.0), (rows.APART, 1.0), (rows.CAPACITY_SHARE, share)):
+        places[0, row : row + LANES] = value
 
     def rates(speeds):
         state, found = np.repeat([[0.0, *speeds]], LANES, axis=1), np.zeros((1, 5 * LANES))

@@ -70,7 +70,7 @@ def test_a_larger_ball_falls_behind_at_its_speed():
 def test_balls_start_at_the_walls_to_which_their_orbits_bring_them():
     """On request: the larger ones behind; else between the walls."""
     uneven = replace(ON_A_LAND, ball_diameter=11e-3, ball_diameter_scatter=1e-6, orbit_by_diameter=SLOWER)
-    found = random_starts(replace(uneven, is_at_walls=True), StabilitySettings(), 0, 8)
+    found = random_starts(replace(uneven, balls_at_walls=True), StabilitySettings(), 0, 8)
     assert np.abs(found.lead) == pytest.approx(uneven.half_play + found.more, rel=1e-12)
     assert (np.sign(found.lead) == np.sign(found.more)).all()
     between = random_starts(uneven, StabilitySettings(), 0, 8)

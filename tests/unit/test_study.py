@@ -161,6 +161,7 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
         "pocket_axial_clearance": 'pocket_shape = "elongated"',
         "pocket_axial_offset": 'pocket_shape = "cylindrical"',
         "land_lobes": 'land_out_of_round = "20 um"',
+        "balls_at_walls": 'ball_diameter_scatter = "0.1 um"',
         **dict.fromkeys(("fluid_swirl", "fluid_damping"), 'added_mass = "1 g"'),
         "inner_diameter": 'outer_diameter = "72 mm"\nwidth = "14 mm"',
         "outer_diameter": 'inner_diameter = "58 mm"\nwidth = "14 mm"',

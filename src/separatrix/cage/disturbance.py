@@ -85,7 +85,7 @@ def random_starts(cage: MovingCage, settings: StabilitySettings, first_run: int,
     """Starts of runs, by their numbers.
 
     A lead is random within the clearance, times `ball_scatter`, about the ball's free place among those that
-    a radial load speeds up and slows down; no ball starts beyond its clearance. With `is_at_walls` it is
+    a radial load speeds up and slows down; no ball starts beyond its clearance. With `balls_at_walls` it is
     where the orbit that its diameter makes has brought it. A pocket out of its place is a lead of its ball.
     """
     angles, half, pitch = np.array(cage.ball_angles), cage.half_play, 2.0 * math.pi / cage.ball_count
@@ -93,7 +93,7 @@ def random_starts(cage: MovingCage, settings: StabilitySettings, first_run: int,
     ways = np.array([tilt_start(settings.seed, first_run + i) for i in range(runs)])
     more = -0.5 * cage.ball_diameter_scatter * drawn[:, 2]
     lead = settings.ball_scatter * (half + more) * drawn[:, 1] + free_leads(cage, angles)
-    if cage.is_at_walls:
+    if cage.balls_at_walls:
         lead = np.copysign(half + more, -more * cage.orbit_by_diameter)
     lead = np.clip(lead - cage.pocket_position_scatter * drawn[:, 3], -half - more, half + more)
     return Starts(

@@ -115,7 +115,7 @@ class MovingCage:
     fluid_speed: RadianPerSecond = key(_TURNS, default=0.0)  # W, mean speed of that fluid round the axis
     fluid_damping: NewtonSecondPerMetre = key(_AMOUNT, default=0.0)  # its drag across the axis
     orbit_by_diameter: PerSecond = key(_TURNS, default=0.0)  # orbital speed over the diameter of a ball
-    is_at_walls: bool = False  # runs start with each ball at the wall to which its diameter makes it run
+    balls_at_walls: bool = False  # runs start with each ball at the wall to which its diameter makes it run
     pocket_shape: PocketShape = key(default=PocketShape.SQUARE)  # square, cylindrical or elongated
     pocket_axial_clearance: Metre | None = _SAME["pocket_axial_clearance"]()  # stop to stop
     pocket_axial_offset: Metre = _SAME["pocket_axial_offset"]()  # in space at the start
@@ -136,9 +136,8 @@ class MovingCage:
     capacity_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(_AMOUNTS, default=())
     """Most that the races hold of a ball at azimuth p, over that of `traction` or `free_ball`: its mean, then
     pairs of A_h, B_h. Empty: all balls alike."""
-    slope_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(
-        _AMOUNTS, default=()
-    )  # the same of the law's slope
+    slope_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(_AMOUNTS, default=())
+    """The same of the slope of `traction`."""
     ramp_time: Second = key(not_negative(1e4), default=0.0)  # in which all speeds rise; 0: none
     ramp_start: Ratio = key(between(0.0, 1.0, open_low=True), default=0.1)  # of the speeds, at its start
     axial_kick: Ratio = key(_AMOUNT, default=0.0)  # of a disturbance, along the axis

@@ -200,15 +200,15 @@ class Life(Pace):
     def __init__(self, title: str, *, quiet: bool = False) -> None:
         super().__init__()
         self.title, self.started = title, time.monotonic()
-        self.told = self.compiled = quiet  # which prints nothing, as `--quiet` requires
+        self.announced = self.compiled = quiet  # which prints nothing, as `--quiet` requires
         self.shows: Callable[[], object] = lambda: None
 
     def __call__(self, done: float, total: float) -> None:
         """Take in how far the work is; its first part tells what all of it takes."""
         super().__call__(done, total)
         passed = time.monotonic() - self.started
-        if not self.told and self.left is not None and passed > WORTH_PRINTING and self.share < 1.0:
-            self.told = True
+        if not self.announced and self.left is not None and passed > WORTH_PRINTING and self.share < 1.0:
+            self.announced = True
             complain(f"{self.title} takes about {in_words(passed + self.left)}.")
         self.shows()
 

@@ -16,7 +16,7 @@ SPREAD = 2000.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quantity:
-    """How a quantity is told; its unit stands at its value.
+    """How a quantity is written; its unit stands at its value.
 
     `ends` are the names of the ends of its interval, by default its own with ``_low`` and ``_high``. `form`
     is for numbers of which a reader expects fixed decimals, such as ``"+.2f"``; others have `digits`

@@ -245,6 +245,11 @@ class CageDesign:
     ball_diameter_scatter: Metre = _SAME["ball_diameter_scatter"]()
     """Standard deviation, ball to ball."""
 
+    balls_at_walls: bool = key(
+        default=False, needs=("ball_diameter_scatter", "all balls run alike and none comes to a wall")
+    )
+    """Whether a run starts with each ball at the wall of its pocket to which its diameter makes it run."""
+
     guidance: Guidance = key(default=Guidance.BALL, example='"outer"')
     """The land that guides it; "ball" for none."""
 

@@ -197,7 +197,7 @@ class StabilitySettings:
         certain=True,
         length=(0, 1000),
         rising=True,
-        without="chosen where the curve bends",
+        without="the eighths, 1/16 and 15/16",
     )
     """Where the curve is computed."""
 

@@ -25,7 +25,7 @@ from separatrix.ground.sheet import (
     widths,
     workbook_bytes,
 )
-from separatrix.ground.units import HABITS, NUMBER, UNITS, format_quantity
+from separatrix.ground.units import HABITS, NUMBER, UNITS, format_quantity, shown
 from separatrix.ground.workbook import COLUMNS, SEPARATOR, TOP
 from separatrix.study.library import Library
 from separatrix.study.study import ORDER, Study
@@ -184,6 +184,8 @@ def _example(one: Described) -> str:
     """The default as TOML, in a usual unit."""
     if isinstance(one.default, Enum):
         return f'"{one.default.value}"'
+    if isinstance(one.default, bool):
+        return shown(one.default)
     if one.unit in HABITS:
         number = isinstance(one.default, float) and one.default
         return f'"{format_quantity(one.default, one.unit)}"' if number else f'"0 {HABITS[one.unit]}"'
@@ -227,7 +229,7 @@ def _default(one: Described) -> str:
 def _word(value: Any) -> str:
     if isinstance(value, Enum):
         return f'"{value.value}"'
-    return f"{value:g}" if is_number(value) else f'"{value}"'
+    return f"{value:g}" if is_number(value) else shown(value)
 
 
 def remark_of(section: str) -> str:
@@ -292,8 +294,8 @@ def _fill(sheet: Any, section: str) -> None:
     rows = ((key, *cells) for key in study_keys(section) for cells in _cells(key, key.name, key.example))
     for row, (key, name, value, unit) in enumerate(rows, 2):
         put(sheet, row, 1, name, Look(bold=key.is_required), exact=True)
-        for column, shown in enumerate((value if key.is_on else None, None, unit), 2):
-            put(sheet, row, column, shown, Look(fill=INPUT), exact=True)
+        for column, content in enumerate((value if key.is_on else None, None, unit), 2):
+            put(sheet, row, column, content, Look(fill=INPUT), exact=True)
         put(sheet, row, 5, key.meaning if name.startswith(key.name) else "", SMALL)
         if key.is_word and "," not in "".join(key.choices):
             words = DataValidation(type="list", formula1=f'"{",".join(key.choices)}"', allow_blank=True)

@@ -37,7 +37,7 @@ class Tool:
     """A question without a study of its own: to logs, to the library, to saved answers.
 
     `options` is the class of its options: each field has an `Option` beside its type. `compute` takes the
-    options and, where it `takes_time`, the number of threads and who is told of its progress; it returns
+    options and, where it `takes_time`, the number of threads and what hears of its progress; it returns
     its document, and `page` makes the page of that. `rows` is the key of its main list, `folder` the usual
     place of its files, empty for one that writes none. `help` is its line of help if that is not in `TOOLS`.
     """

@@ -10,10 +10,7 @@ from typing import NamedTuple
 from separatrix.cage.closed_forms import linear_whirl_frequency
 from separatrix.cage.disturbance import with_kicks
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.chain.impact_restitution import (
-    SOLID_LUBRICATION_LIMIT,
-    hertz_coefficient,
-)
+from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT, hertz_coefficient
 from separatrix.chain.land_fluid import land_fluid
 from separatrix.chain.pocket_friction import contact_radius, pocket_speed
 from separatrix.chain.solution import Solution
@@ -163,8 +160,10 @@ def _bends(solution: Solution) -> Iterator[str]:
     """A sentence where the ring of the cage bends nearly as fast as it would whirl."""
     material = solution.candidate.material if solution.candidate else None
     first = bending_frequency(solution.design, material)
+    if first is None:
+        return
     whirl = linear_whirl_frequency(moving_cage(solution, 0.0))
-    if first is not None and first < STIFF * whirl:
+    if first < STIFF * whirl:
         yield (
             f"The ring of the cage first bends at {format_quantity(first, 'Hz', 2)} (solid, without its "
             f"pockets), less than {STIFF:g} times the {format_quantity(whirl, 'Hz', 2)} of its whirl, and is "

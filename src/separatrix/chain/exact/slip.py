@@ -134,21 +134,18 @@ def settle(
     p = np.zeros_like(driving) if start is None else _projected(start, g)
     S = driving + product(op, p)
     for passes in range(LARGEST_PASSES + 1):
-        z = p - c * S
-        residual, size = _norm(p - _projected(z, g)), _norm(p)
-        sets = _classified(z, c, g)
+        state, normal, turn, jump, residual = classified(p, S, c, g)
+        sets, size = Sets(state, normal, turn), _norm(p)
         if residual <= tolerance * size:
             ratio = residual / size if size > 0.0 else 0.0
             return Settled(traction=p, slip_step=S, sets=sets, residual=ratio, passes=passes)
-        slips = sets.state == SLIP
-        jump = np.where(slips, g * sets.normal - p, 0.0)
         onto_bound = S + product(op, jump) if jump.any() else S
-        right = -equations(onto_bound, np.zeros_like(p), sets.state, sets.normal, sets.turn)
+        right = -equations(onto_bound, np.zeros_like(p), state, normal, turn)
         v = solve_step(op, sets, right, max(LINEAR, 0.3 * tolerance * size / residual))
-        n, (x, y) = sets.normal, sets.normal
+        slips, (x, y) = state == SLIP, normal
         angle = np.clip((x * v[1] - y * v[0]) / np.where(slips, g, 1.0), -1.0, 1.0)
-        turned = g * (n * np.cos(angle) + np.stack([-y, x]) * np.sin(angle))
-        step = np.where(slips, turned - p, np.where(sets.state == STICK, v, 0.0))
+        cosine, sine = g * np.cos(angle), g * np.sin(angle)
+        step = np.where(slips, np.stack([x * cosine - y * sine, y * cosine + x * sine]) - p, v)
         change = product(op, step)
         part_ = 1.0
         while part_ > SHORTEST:
@@ -175,14 +172,28 @@ def _norm(p: Array) -> float:
     return float(np.linalg.norm(p))
 
 
-def _classified(z: Array, c: Array, g: Array) -> Sets:
-    """State, normal n and turn d of each cell."""
-    length = np.sqrt(z[0] * z[0] + z[1] * z[1])
-    inside = g > 0.0
-    slips = inside & (length > g)
-    normal = np.where(slips, z / np.where(slips, length, 1.0), 0.0)
-    turn = np.where(slips, (length - g) / np.where(slips, c * g, 1.0), 0.0)
-    return Sets(np.where(slips, SLIP, np.where(inside, STICK, OUTSIDE)).astype(np.int8), normal, turn)
+@kernel
+def classified(p: Array, S: Array, c: Array, g: Array) -> tuple[States, Array, Array, Array, float]:
+    """State, normal n and turn d of each cell, its jump onto the bound; |p - Proj(p - c S)|."""
+    _, ny, nx = p.shape
+    state = np.full((ny, nx), OUTSIDE, dtype=np.int8)
+    normal, jump, turn, residual = np.zeros_like(p), np.zeros_like(p), np.zeros((ny, nx)), 0.0
+    for j in range(ny):
+        for i in range(nx):
+            if g[j, i] <= 0.0:
+                continue
+            x, y = c[j, i] * S[0, j, i], c[j, i] * S[1, j, i]
+            zx, zy = p[0, j, i] - x, p[1, j, i] - y
+            length = math.sqrt(zx * zx + zy * zy)
+            state[j, i] = STICK
+            if length > g[j, i]:
+                state[j, i] = SLIP
+                normal[0, j, i], normal[1, j, i] = zx / length, zy / length
+                turn[j, i] = (length - g[j, i]) / (c[j, i] * g[j, i])
+                x, y = g[j, i] * zx / length - p[0, j, i], g[j, i] * zy / length - p[1, j, i]
+                jump[0, j, i], jump[1, j, i] = x, y
+            residual += x * x + y * y
+    return state, normal, turn, jump, math.sqrt(residual)
 
 
 def solve_step(op: Operator, sets: Sets, right: Array, tolerance: float) -> Array:
@@ -195,36 +206,38 @@ def solve_step(op: Operator, sets: Sets, right: Array, tolerance: float) -> Arra
         return np.zeros_like(right)
     state, normal, turn = sets.state, sets.normal, sets.turn
     band = slip_factors(state, op.whole, normal, turn, op.rows, op.kind, op.local)
-    images, directions = np.empty((2, LARGEST_SPACE, *right.shape))
-    total, rest = np.zeros_like(right), right.copy()
+    images, triangle = np.empty((LARGEST_SPACE, right.size)), np.zeros((LARGEST_SPACE + 1, LARGEST_SPACE))
+    directions, rest = list[Array](), right.copy()
     for k in range(LARGEST_SPACE):
         v = precondition(rest, state, op.whole, normal, turn, op.diagonal, band, op.inverses, op.kind)
+        directions.append(v)
         image = equations(product(op, v), v, state, normal, turn)
-        if advance(k, image, v, images, directions, total, rest) <= tolerance * length:
+        if advance(k, image.ravel(), images, triangle, rest.ravel()) <= tolerance * length:
             break
-    return total
+    taken = len(directions)
+    weights = np.linalg.solve(triangle[:taken, :taken], triangle[-1, :taken])
+    return np.asarray(np.tensordot(weights, np.stack(directions), axes=1))
 
 
 @kernel
-def advance(
-    k: int, image: Array, v: Array, images: Array, directions: Array, total: Array, rest: Array
-) -> float:
-    """Take the part of a direction v that lowers the rest most; the length of the new rest.
+def advance(k: int, image: Array, images: Array, triangle: Array, rest: Array) -> float:
+    """Make an image orthogonal to those before by Gram and Schmidt, take it off the rest; what is left.
 
-    Its image is made orthogonal to those before by Gram and Schmidt, in place.
+    The triangle gets its parts along the images, and in the last row that of the rest along it.
     """
     for n in range(k):
-        h = (images[n] * image).sum()
-        image -= h * images[n]
-        v -= h * directions[n]
-    size = math.sqrt((image * image).sum())
+        h = triangle[n, k] = np.dot(images[n], image)
+        for i in range(image.size):
+            image[i] -= h * images[n, i]
+    size = math.sqrt(np.dot(image, image))
     if size == 0.0:  # no way on
+        triangle[k, k] = 1.0
         return 0.0
-    images[k], directions[k] = image / size, v / size
-    share = (images[k] * rest).sum()
-    total += share * directions[k]
-    rest -= share * images[k]
-    return math.sqrt((rest * rest).sum())
+    triangle[k, k], images[k] = size, image / size
+    share = triangle[-1, k] = np.dot(images[k], rest)
+    for i in range(rest.size):
+        rest[i] -= share * images[k, i]
+    return math.sqrt(np.dot(rest, rest))
 
 
 @kernel
