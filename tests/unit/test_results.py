@@ -9,9 +9,10 @@ from typing import Annotated
 
 import numpy as np
 import pytest
+from cages import TURNING
 
 from separatrix.chain.solution import solve
-from separatrix.ground.plain_data import NotFiniteError, field_units, plain, shape
+from separatrix.ground.plain_data import Group, NotFiniteError, field_units, plain, shape, units_of
 from separatrix.ground.units import Newton, Ratio, Rows
 from separatrix.present.dataset import dataset
 from separatrix.study.reading import read_study
@@ -165,6 +166,13 @@ def test_materials_are_aligned_by_name(rows):
     assert float(data["chain_restitution_factor"]) == 0.3
     assert json.loads(data.attrs["warnings"]) == ["one"]
     assert json.loads(data.attrs["study"])["bearing"]["ball_count"]["value"] == 13
+
+
+def test_a_dataset_has_balls_that_are_held_by_unlike_numbers_of_waves():
+    """Capacity and slope around a loaded bearing fall off at different rates: each has its own dimension."""
+    cage = replace(TURNING, capacity_waves=(0.6, 0.3, 0.0), slope_waves=(0.7, 0.2, 0.0, 0.1, 0.0))
+    data = dataset({"cage": plain(cage), "units": {"cage": units_of(Group(shape(cage)))}})
+    assert [data[f"cage_{name}"].shape for name in ("capacity_waves", "slope_waves")] == [(3,), (5,)]
 
 
 def test_an_answer_is_a_table():

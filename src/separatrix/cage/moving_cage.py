@@ -133,10 +133,10 @@ class MovingCage:
     """A_h: a free ball at azimuth p, fixed in space and 0 along the radial load, is faster than the ball set
     by the sum of A_h cos h p + B_h sin h p over h = 1, 2, ..."""
     orbital_sines: Annotated[tuple[MetrePerSecond, ...], ("harmonic",)] = key(_SPEEDS, default=())  # B_h
-    capacity_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(_AMOUNTS, default=())
+    capacity_waves: Annotated[tuple[Ratio, ...], ("capacity_wave",)] = key(_AMOUNTS, default=())
     """Most that the races hold of a ball at azimuth p, over that of `traction` or `free_ball`: its mean, then
     pairs of A_h, B_h. Empty: all balls alike."""
-    slope_waves: Annotated[tuple[Ratio, ...], ("wave",)] = key(_AMOUNTS, default=())
+    slope_waves: Annotated[tuple[Ratio, ...], ("slope_wave",)] = key(_AMOUNTS, default=())
     """The same of the slope of `traction`."""
     ramp_time: Second = key(not_negative(1e4), default=0.0)  # in which all speeds rise; 0: none
     ramp_start: Ratio = key(between(0.0, 1.0, open_low=True), default=0.1)  # of the speeds, at its start
