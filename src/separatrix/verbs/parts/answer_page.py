@@ -10,7 +10,7 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
-from separatrix.present.figure import Figure, Panel
+from separatrix.present.figure import Figure, Panel, Trace
 
 NAMED = 4
 """Uncertain inputs that are named in a sentence."""
@@ -184,29 +184,20 @@ def is_chosen(model: Json) -> bool:
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
     """Return what stands above a figure: the title, and the operating point but for the inputs `varied`."""
     study = answer.values["study"]
-
-    def stated(section: str, key: str, words: str = "{}") -> str:
-        """Return an input in words; empty if there is none, if it is 0, or if it is varied."""
-        entry = (study.get(section) or {}).get(key) or {}
-        value, unit = entry.get("value"), entry.get("unit")
-        if not value or key in varied:
-            return ""
-        return words.format(format_quantity(value, unit).replace(*MICRO) if unit else value)
-
-    film = study.get("film") or {}
-    coat = [(film.get("material") or {}).get("name"), stated("film", "thickness")]
-    around = (
-        _listed(", ", stated("operation", "fluid"), stated("operation", "temperature")),
-        *(stated("operation", f"{race}_speed", f"{race} ring {{}}") for race in ("inner", "outer")),
-        *(stated("operation", f"{way}_load", f"{{}} {way}") for way in ("axial", "radial")),
-        "bare races" if film.get("is_bare") else _listed(", ", *coat),
-    )
-    return tuple(filter(None, [answer.title, _listed("; ", *around, *more)]))
+    return answer.title, _listed("; ", operation_words(study, varied), coat_words(study, varied), *more)
 
 
-def figure(answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5) -> Figure:
-    """Return a figure of an answer, with its operating point above it."""
-    return Figure(rows=rows, heading=figure_heading(answer), alt=alt, height=height)
+def figure(
+    answer: Part,
+    *rows: tuple[Panel, ...],
+    alt: str,
+    height: float = 2.5,
+    more: Sequence[str] = (),
+    legend: tuple[Trace, ...] = (),
+) -> Figure:
+    """Return a figure of an answer, with its operating point, and `more`, above it."""
+    heading = figure_heading(answer, *more)
+    return Figure(rows=rows, heading=heading, alt=alt, height=height, legend=legend)
 
 
 def _listed(between: str, *words: str | None) -> str:
@@ -220,10 +211,10 @@ MODELS = {"strips": "strips", "exact": "exact contact"}
 PRESSURES = {"hertz": "Hertz's pressure", "coated": "pressure of the coated bodies"}
 
 
-def stated(study: Json, section: str, key: str) -> str:
-    """Return an input of a resolved study as text; empty if there is none, or if it is 0."""
+def stated(study: Json, section: str, key: str, varied: Sequence[str] = ()) -> str:
+    """Return an input of a resolved study as text; empty if there is none, if it is 0, or if it is varied."""
     entry = (study.get(section) or {}).get(key) or {}
-    return entry_words(entry) if entry.get("value") or entry.get("name") else ""
+    return entry_words(entry) if key not in varied and (entry.get("value") or entry.get("name")) else ""
 
 
 def bearing_facts(answer: Part) -> list[tuple[str, str]]:
@@ -246,24 +237,31 @@ def bearing_facts(answer: Part) -> list[tuple[str, str]]:
     ]
 
 
-def operation_words(study: Json) -> str:
-    """Return speeds, loads and medium of a study."""
-    outer, inner = stated(study, "operation", "outer_speed"), study["operation"]["inner_speed"]
-    speeds = [f"inner ring {entry_words(inner)}", outer and f"outer ring {outer}"]
-    keys = (("axial_load", "axial"), ("radial_load", "radial"), ("moment", "moment"))
-    loads = [f"{load} {way}" for key, way in keys if (load := stated(study, "operation", key))]
-    around = " at ".join(filter(None, (stated(study, "operation", key) for key in ("fluid", "temperature"))))
-    return ", ".join(filter(None, [*speeds, *loads])) + (f"; {around}" if around else "")
+def operation_words(study: Json, varied: Sequence[str] = ()) -> str:
+    """Return speeds, loads and medium of a study, but for the inputs `varied`."""
+
+    def each(*keys: str, words: str = "{1}") -> Iterator[str]:
+        for key in keys:
+            if text := stated(study, "operation", key, varied):
+                yield words.format(key.partition("_")[0], text)
+
+    speeds = each("inner_speed", "outer_speed", words="{0} ring {1}")
+    loads = each("axial_load", "radial_load", "moment", words="{1} {0}")
+    return _listed("; ", ", ".join([*speeds, *loads]), " at ".join(each("fluid", "temperature")))
+
+
+def coat_words(study: Json, varied: Sequence[str] = ()) -> str:
+    """Return the film on the races; without its thickness if that is `varied`."""
+    name = (study["film"].get("material") or {}).get("name") or "film"
+    coat = _listed(", ", name, stated(study, "film", "thickness", varied))
+    return "bare races" if study["film"]["is_bare"] else coat
 
 
 def film_words(study: Json) -> str:
     """Return the film and the friction on the races."""
-    film = study["film"]
-    name = (film.get("material") or {}).get("name") or "film"
-    coat = "none: bare races" if film["is_bare"] else f"{name}, {entry_words(film['thickness'])}"
     worn = stated(study, "film", "wear.races")
     where = f"; worn on {'both races' if worn == 'both' else f'the {worn} race'}" if worn else ""
-    return f"{coat}; friction {entry_words(film['race_friction'])}{where}"
+    return f"{coat_words(study)}; friction {entry_words(study['film']['race_friction'])}{where}"
 
 
 def contact_words(study: Json) -> str:
