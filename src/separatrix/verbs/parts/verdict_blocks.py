@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import inf
-from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Cell, Column, Table, grouped, text_column
