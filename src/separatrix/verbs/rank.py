@@ -34,7 +34,6 @@ from separatrix.present.figure import (
     Mark,
     Panel,
     Trace,
-    sign,
 )
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
@@ -46,7 +45,6 @@ from separatrix.verbs.parts.quantity_text import (
     fact,
     fill,
     known_columns,
-    marks,
     number_of,
     quantity,
     show,
@@ -313,25 +311,15 @@ def pictures(answer: Part, own: Part) -> list[Block]:
 def on_the_curve(answer: Part, own: Part) -> Figure:
     """Return the paper's stability curve with the candidates where the bearing runs, and its verdicts."""
     rows = [row for row in own.materials if "friction" in row]
-    ranks = ranks_of(own.materials)
-    found: list[Mark] = []
+    found, labels = list[Mark](), list[Label]()
     for row in rows:
-        word, eta = row.get("paper_verdict"), row.restitution_factor
-        look: dict[str, Any] = {"colour": VERDICT_COLOURS.get(word, GREY)}
-        found.append(Trace(x=(0.0, 1.0), y=(row.friction, row.friction), width=0.4, **look))
-        if "restitution_threshold" in row:
-            open_ = {"marker": "o", "is_open": True, "size": 4.5}
-            found.append(marks([row], "restitution_threshold", "friction", **look, **open_))
-        look |= {"marker": VERDICT_MARKERS.get(word, "."), "size": 5.0, "hover": (hover(row),)}
-        found.append(Trace(x=(eta,), y=(row.friction,), line="", **look))
-    labels = tuple(
-        Label(y=row.friction, text=f"{ranks[row.name]}  {row.name}  {show(row, 'friction')}") for row in rows
-    )
-    signs = [
-        sign(marker, VERDICT_COLOURS[word], f"{word}, at the candidate's own $eta$")
-        for word, marker in VERDICT_MARKERS.items()
-    ]
-    signs.append(sign("o", GREY, "threshold with its 95 % interval", is_open=True))
+        word = row.get("paper_verdict") or row.get("verdict") or "not finished"
+        look, star = look_of(word), MARK * bool(row.extrapolation)
+        eta, friction = row.restitution_factor, row.friction
+        found.append(Trace(x=(0.0, 1.0), y=(friction, friction), colour=look["colour"], width=0.4))
+        found.append(Trace(x=(eta,), y=(friction,), line="", size=5.0, hover=(hover(row),), **look))
+        text = f"{row.name}  {show(row, 'friction')}{star}  {word}"
+        labels.append(Label(y=friction, text=text, colour=look["colour"]))
     panel = curve_panel(
         answer,
         answer.stability,
@@ -339,17 +327,18 @@ def on_the_curve(answer: Part, own: Part) -> Figure:
         more=found,
         frictions=[row.friction for row in rows],
         labels=labels,
-        head="rank  candidate  friction",
+        head="candidate  friction  verdict",
     )
-    return figure(
-        answer,
-        (panel,),
-        alt="Critical friction against restitution factor, with the friction of each candidate at the "
-        "bearing's own restitution factor; the table has the numbers.",
-        height=4.3,
-        more=(f"seed {answer.seed}",),
-        legend=tuple(signs),
+    alt = (
+        "Critical friction against restitution factor, with the friction of each candidate at the bearing's "
+        "own restitution factor; the table has the numbers."
     )
+    return figure(answer, (panel,), alt=alt, height=4.3, more=(f"seed {answer.seed}",))
+
+
+def look_of(word: str) -> dict[str, str]:
+    """Return colour and marker of a verdict."""
+    return {"colour": VERDICT_COLOURS.get(word, GREY), "marker": VERDICT_MARKERS.get(word, "x")}
 
 
 def hover(row: Part) -> str:
@@ -400,13 +389,7 @@ def overview(answer: Part, own: Part) -> Figure:
         shift = 0.26 - 0.52 * (at + 0.5) / len(others)
         found.append(trace(rows, shift, where, marker=marker, colour=colour, size=3.6))
     labels = tuple(
-        Label(
-            y=place[row.name],
-            text=verdict(row),
-            colour=VERDICT_COLOURS.get(verdict(row), GREY),
-            marker=VERDICT_MARKERS.get(verdict(row), "x"),
-        )
-        for row in own.materials
+        Label(y=place[row.name], text=verdict(row), **look_of(verdict(row))) for row in own.materials
     )
     ticks = tuple(f"{one}  {ranks[one]}" for one in place)
     y = Axis(label="", low=-0.6, high=len(place) - 0.4, names=ticks)

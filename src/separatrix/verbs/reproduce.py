@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -101,10 +101,10 @@ def options_from(verb: Verb, given: object) -> Any:
 def agreement(stored: Document, computed: Document) -> Document:
     """Compare two documents in their values; not in their versions, provenance and warnings."""
     found = [*_differing(stored, computed, "", None)]
-    found.sort(key=lambda one: -math.inf if one["relative"] is None else -one["relative"])
     beyond = [one for one in found if one["relative"] is None or one["relative"] > ROUNDING]
     words = DIFFERENT if beyond else ROUNDED if found else EXACT
-    return {"agreement": words, "count": len(beyond), "differences": found[:MOST_SHOWN]}
+    shown = beyond or sorted(found, key=itemgetter("relative"), reverse=True)
+    return {"agreement": words, "count": len(beyond), "differences": shown[:MOST_SHOWN]}
 
 
 def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Document]:
@@ -159,7 +159,7 @@ def _blocks(one: Part) -> Iterator[Block]:
     differ = "value differs" if one.count == 1 else "values differ"
     how = f"different: {one.count} {differ}" if one.count else f"the same, {one.agreement}"
     yield Note(f"{one.verb} {one.name}: {how}.", "lead")
-    caption = f"The largest of {one.count} differences." if one.count > MOST_SHOWN else ""
+    caption = f"{one.count - MOST_SHOWN} more." if one.count > MOST_SHOWN else ""
     yield Table(f"{one.verb} differs", COLUMNS, tuple(one.differences or ()), caption)
     others = [f"{at.name} {at.here} (then {at.stored})" for at in one.versions or ()]
     if others:

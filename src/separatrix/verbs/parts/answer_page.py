@@ -20,12 +20,7 @@ MOST_NOTES = 3
 
 INTERRUPTED = "Interrupted: only what was finished is here."
 
-PROPERTIES = {
-    "elastic_modulus": "elastic modulus",
-    "poisson_ratio": "Poisson's ratio",
-    "density": "density",
-    "expansion": "thermal expansion",
-}
+PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "thermal_expansion")
 
 MICRO = (" um", " \N{MICRO SIGN}m")
 """A micrometre as it is written, and as it is shown."""
@@ -114,26 +109,19 @@ def value_words(value: Any, unit: str) -> str:
 
 
 def _materials(study: Json, level: Level) -> list[Block]:
-    rows = tuple(dict.fromkeys(_properties(study)))
-    heads = ("material", "property", "value", "confidence", "source")
-    columns = tuple(text_column(head, itemgetter(at)) for at, head in enumerate(heads))
-    return [Table("materials", columns, rows, "Materials, at the temperature of the study.", level)]
-
-
-def _properties(study: Json) -> Iterator[tuple[str, ...]]:
+    """Return each material with its properties, how sure they are, and where they are from."""
     parts = [study.get(name) or {} for name in ("bearing", "film", "cage")]
     found = [one.get(key) for one in parts for key in ("ball_material", "ring_material", "material")]
     found += [one.get("material") for one in (study.get("ranking") or {}).get("candidates", [])]
-    for one in (one for one in found if isinstance(one, dict) and one.get("name")):
-        record = one.get("record") or {}
-        for key, words in PROPERTIES.items():
-            value = one.get(key) or {}
-            if value.get("value") is None:
-                continue
-            place = (record.get("taken") or {}).get(key)
-            taken = record["data"][key][place] if place is not None else {}
-            known = (str(taken.get(each) or one.get(each) or "-") for each in ("confidence", "source"))
-            yield str(one["name"]), words, value_words(value["value"], value.get("unit") or ""), *known
+    rows = {one["name"]: one for one in found if isinstance(one, dict) and one.get("name")}
+
+    def property_column(key: str) -> Column:
+        return text_column(key.replace("_", " "), lambda row: entry_words(row.get(key) or {}))
+
+    columns = (text_column("material", itemgetter("name")), *map(property_column, PROPERTIES))
+    caption = "Materials, at the temperature of the study."
+    known = ((name, f"{one['source']} ({one['confidence']})") for name, one in rows.items() if one["source"])
+    return [Table("materials", columns, tuple(rows.values()), caption, level), facts(*known, level=level)]
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
