@@ -211,8 +211,8 @@ def test_a_notebook_shows_the_page(answers):
 
 def test_uncertain_inputs_are_said_to_be_at_their_means(answers):
     """By verbs that do not draw them."""
-    assert "at its mean: bearing.contact_angle" in answers("bearing").summary()
-    assert "at its mean" not in answers("sensitivity").summary()
+    assert "at their means: bearing.contact_angle" in answers("bearing").summary()
+    assert "at their means" not in answers("sensitivity").summary()
 
 
 def test_an_old_document_names_what_it_lacks():

@@ -96,7 +96,7 @@ NOT_RESULTS = (
 )
 """Inputs, sentences that follow from numbers, and single drawn bearings."""
 
-LABELS = ("ball", "case", "kick", "restitution_factor")
+LABELS = ("case", "kick", "restitution_factor")
 GRIDS = ("curve", "linear_limit", "by_kick")
 """Numbers that name a row, and lists whose rows need not be at the same values in two answers."""
 
@@ -129,7 +129,7 @@ Places = dict[tuple[str, ...], Part]
 
 
 def results(part: Part, own: str | None = None, place: tuple[str, ...] = ()) -> Places:
-    """Return the single values of a document by place; arrays of numbers are left out.
+    """Return the single values of a document by place, of balls those of the most loaded one; no arrays.
 
     The places of the bearing's own environment do not name it.
     """
@@ -140,7 +140,8 @@ def results(part: Part, own: str | None = None, place: tuple[str, ...] = ()) -> 
         if isinstance(value, dict):
             found |= results(part.get(key), own, (*place, key))
         elif isinstance(value, list) and value and isinstance(value[0], dict):
-            for i, one in enumerate(part.get(key)):
+            rows = part.get(key) if key != "balls" else [part.get(key)[part.most_loaded]]
+            for i, one in enumerate(rows):
                 label = () if key == "environments" and one.get("name") == own else _label(key, one, i)
                 found |= results(one, own, (*place, *label))
     return found
@@ -151,6 +152,8 @@ def _label(key: str, row: Part, number: int) -> tuple[str, ...]:
     if isinstance(name, str):
         named = f"{name} in {environment}" if isinstance(environment, str) else name
         return (named,) if key in ("environments", "materials") else (key, named)
+    if key == "balls":
+        return ("most loaded ball",)
     if is_number(x) and is_number(y):
         return (f"x {x:.6g}, y {y:.6g}",)
     known = next((value for one in LABELS if is_number(value := row.get(one))), None)
@@ -283,9 +286,8 @@ ONE_RUN = "A single run of each is not evidence: repeated runs of the same cages
 
 def page(answer: Part) -> Page:
     """Return the page of `compare`: what a reader decides first, then inputs, then the largest changes."""
-    rows = _alike(answer.rows)
-    decisions = [one for one in rows if one.name in DECISIONS]
-    others = [one for one in rows if one.name not in DECISIONS]
+    decisions = [one for one in answer.rows if one.name in DECISIONS]
+    others = [one for one in answer.rows if one.name not in DECISIONS]
     named = [
         f"{one.title} ({printable(one.path, 80)}, seed {one.seed}){', interrupted' * (not one.complete)}"
         for one in answer.answers
@@ -302,21 +304,6 @@ def page(answer: Part) -> Page:
             *(Note(text, "legend") for text in _notes(answer)),
         ),
     )
-
-
-def _alike(rows: Sequence[Part]) -> list[Part]:
-    """Return rows of which those that say the same of numbered parts, such as balls, are one."""
-
-    def likeness(row: Part) -> tuple[str, ...]:
-        stem, _, number = row.place.rpartition(" ")
-        place = stem if number.isdigit() else row.place
-        return place, row.name, *(_side(row, which).text for which in BOTH)
-
-    alike = grouped((likeness(row), row) for row in rows).values()
-    return [
-        Part(one.values | {"place": f"{one.place} and {len(more)} more" if more else one.place}, one.units)
-        for one, *more in alike
-    ]
 
 
 def _lead(answer: Part) -> Iterator[str]:

@@ -136,10 +136,10 @@ def page(answer: Part) -> Page:
         *over_inputs(answer, rows),
         *pictures(answer, own),
         Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
-        Table(f"{own.name}, evidence", evidence(known), tuple(known)),
+        evidence(f"{own.name}, in short", known, SHORT, BRIEF),
+        evidence(f"{own.name}, evidence", known, SHORT + MOTION, LONG),
         Note(EVIDENCE, "legend", LONG),
         *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
-        Table(f"{own.name}, motion", motion(known), tuple(known), explained(motion(known)), LONG),
         reasons(rows),
         Note(f"`--full` has all evidence{', and the other environments' * bool(others)}.", level=BRIEF),
         Heading("Basis of the verdicts", LONG),
@@ -216,16 +216,17 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
     return [Note(words, level=BRIEF), heading, table]
 
 
-def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
-    """Return the columns of motion, stable runs, largest offset, drift, forces and rubbing."""
+def evidence(name: str, rows: Sequence[Part], numbers: Sequence[str], level: Level) -> Table:
+    """Return motion, stable runs from each initial disturbance, and some numbers of each candidate."""
     rolls = any(count.rolls for row in rows for count in row.by_kick)
-    return (
+    columns = (
         _name(),
         motion_column(),
         _runs("stable runs", "settles", "rolls"),
         *([_runs("of them roll", "rolls")] if rolls else []),
-        *known_columns(map(evidence_column, SHORT), rows),
+        *known_columns(map(evidence_column, numbers), rows),
     )
+    return Table(name, columns, tuple(rows), explained(columns) if level == LONG else "", level)
 
 
 def _name() -> Column:
@@ -239,12 +240,6 @@ def _runs(head: str, *keys: str) -> Column:
         return " ".join(str(sum(getattr(count, key) for key in keys)) for count in row.by_kick)
 
     return text_column(head, counts)
-
-
-def motion(rows: Sequence[Part]) -> tuple[Column, ...]:
-    """Return the columns of how the cage moves, and of the balls whose runs decide."""
-    columns = known_columns(map(evidence_column, MOTION), rows)
-    return _name(), motion_column(), text_column("balls", lambda row: row.ball), *columns
 
 
 def reasons(rows: Sequence[Part]) -> Block:

@@ -10,10 +10,7 @@ from typing import Any
 from separatrix.ground.document import Part
 from separatrix.ground.units import format_quantity
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
-from separatrix.present.figure import Figure, Panel, Trace
-
-NAMED = 4
-"""Uncertain inputs that are named in a sentence."""
+from separatrix.present.figure import Figure, Panel
 
 MOST_NOTES = 3
 """Notes that are shown on a screen; they come with the gravest first."""
@@ -36,27 +33,22 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level =
     `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
     `appendix` is where inputs and provenance are shown.
     """
-    missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED)]
-    uncertain = [one["name"] for one in answer.values["study"]["uncertain_inputs"]]
-    notes = [] if draws or not uncertain else [at_their_means(uncertain)]
+    missing = [Note(INTERRUPTED)] if answer.get("complete") is False else []
+    uncertain = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
+    notes = [f"Uncertain inputs are at their means: {uncertain}."] if uncertain and not draws else []
     texts = [*notes, *answer.warnings]
-    first, others = texts[:MOST_NOTES], texts[MOST_NOTES:]
-    more = [Note(f"`--full` has {len(others)} more.", "caveat", Level.BRIEF)] if others else []
-    caveats = [*(Note(text, "caveat") for text in first), *more]
-    caveats += [Note(text, "caveat", Level.LONG) for text in others]
+    caveats = [
+        Note(text, "caveat", Level.ALWAYS if place < MOST_NOTES else Level.LONG)
+        for place, text in enumerate(texts)
+    ]
+    if len(texts) > MOST_NOTES:
+        caveats.append(Note(f"`--full` has {len(texts) - MOST_NOTES} more.", "caveat", Level.BRIEF))
     return Page(
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",
         (*missing, *blocks, *caveats),
         tuple(sources(answer, appendix)),
     )
-
-
-def at_their_means(names: Sequence[str]) -> str:
-    """Return the sentence of a verb that takes one value of each uncertain input."""
-    listed = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
-    several = f"{len(names)} uncertain inputs are at their means"
-    return f"{several if len(names) > 1 else 'An uncertain input is at its mean'}: {listed}."
 
 
 def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
@@ -176,16 +168,10 @@ def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tupl
 
 
 def figure(
-    answer: Part,
-    *rows: tuple[Panel, ...],
-    alt: str,
-    height: float = 2.5,
-    more: Sequence[str] = (),
-    legend: tuple[Trace, ...] = (),
+    answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5, more: Sequence[str] = ()
 ) -> Figure:
     """Return a figure of an answer, with its operating point, and `more`, above it."""
-    heading = figure_heading(answer, *more)
-    return Figure(rows=rows, heading=heading, alt=alt, height=height, legend=legend)
+    return Figure(rows=rows, heading=figure_heading(answer, *more), alt=alt, height=height)
 
 
 def _listed(between: str, *words: str | None) -> str:
@@ -193,10 +179,6 @@ def _listed(between: str, *words: str | None) -> str:
 
 
 # What the study of a document states, a fact a line.
-
-
-MODELS = {"strips": "strips", "exact": "exact contact"}
-PRESSURES = {"hertz": "Hertz's pressure", "coated": "pressure of the coated bodies"}
 
 
 def stated(study: Json, section: str, key: str, varied: Sequence[str] = ()) -> str:
@@ -221,7 +203,10 @@ def bearing_facts(answer: Part) -> list[tuple[str, str]]:
         ("Contact angle", f"{contact} {grooves}"),
         ("Operation", operation_words(study)),
         ("Film on the races", film_words(study)),
-        ("Traction", contact_words(study)),
+        (
+            "Traction",
+            ", ".join(f"{key.replace('_', ' ')} {one['value']}" for key, one in study["traction"].items()),
+        ),
     ]
 
 
@@ -250,10 +235,3 @@ def film_words(study: Json) -> str:
     worn = stated(study, "film", "wear.races")
     where = f"; worn on {'both races' if worn == 'both' else f'the {worn} race'}" if worn else ""
     return f"{coat_words(study)}; friction {entry_words(study['film']['race_friction'])}{where}"
-
-
-def contact_words(study: Json) -> str:
-    """Return how the contacts are computed."""
-    asked = study["traction"]
-    slip = ", slip by the pressure included" if asked["pressure_slip"]["value"] == "included" else ""
-    return f"{MODELS[asked['model']['value']]}, {PRESSURES[asked['pressure']['value']]}{slip}"
