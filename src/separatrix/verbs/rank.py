@@ -331,7 +331,7 @@ def on_the_curve(answer: Part, own: Part) -> Figure:
     return figure(answer, (panel,), alt=alt, height=4.3, more=(f"seed {answer.seed}",))
 
 
-def look_of(word: str) -> dict[str, str]:
+def look_of(word: str) -> dict[str, Any]:
     """Return colour and marker of a verdict."""
     return {"colour": VERDICT_COLOURS.get(word, GREY), "marker": VERDICT_MARKERS.get(word, "x")}
 
