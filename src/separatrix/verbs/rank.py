@@ -95,6 +95,7 @@ MOTION = (
     "cone_ratio",
     "axial_travel",
 )
+NAME = text_column("material", lambda row: row.name)
 POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
 
 
@@ -166,7 +167,7 @@ def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> li
     ranks = ranks_of(rows)
     columns = (
         text_column("rank", lambda row: ranks[row.name], f"by {order}, = a tie within the scatter"),
-        text_column("material", lambda row: row.name),
+        NAME,
         column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
         column(compared[0], is_short=has_safety(rows)),
         column(compared[1]),
@@ -184,8 +185,9 @@ def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
     return dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
 
 
-def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
+def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
     """Return the answer of the paper's model beside another one, and where the two differ."""
+    rows = [row for row in judged if row.get("paper_verdict") is not None]
     if not has_safety(rows):
         return []
     threshold = "restitution_threshold"
@@ -194,7 +196,7 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
         return f"{number_of(row, threshold, row.restitution_threshold)}, {show(row, 'margin')}"
 
     columns = (
-        _name(),
+        NAME,
         column(threshold),
         column("margin"),
         column("paper_probability_stable"),
@@ -220,17 +222,13 @@ def evidence(name: str, rows: Sequence[Part], numbers: Sequence[str], level: Lev
     """Return motion, stable runs from each initial disturbance, and some numbers of each candidate."""
     rolls = any(count.rolls for row in rows for count in row.by_kick)
     columns = (
-        _name(),
+        NAME,
         motion_column(),
         _runs("stable runs", "settles", "rolls"),
         *([_runs("of them roll", "rolls")] if rolls else []),
         *known_columns(map(evidence_column, numbers), rows),
     )
     return Table(name, columns, tuple(rows), explained(columns) if level == LONG else "", level)
-
-
-def _name() -> Column:
-    return text_column("material", lambda row: row.name)
 
 
 def _runs(head: str, *keys: str) -> Column:

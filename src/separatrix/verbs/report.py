@@ -13,7 +13,7 @@ from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
-from separatrix.verbs.saved_answers import inputs_of_study, read_answer
+from separatrix.verbs.saved_answers import inputs_of_study, read_answer, refusing_damage
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -98,7 +98,8 @@ def report_of(
     if not pages:
         raise InputError(where, "has no answer that a report shows", cure="Name the study instead.")
     main, first = next(iter(pages.items()))
-    others = [(verb, differing(kept[main], one)) for verb, one in kept.items()]
+    with refusing_damage(where):
+        others = [(verb, differing(kept[main], one)) for verb, one in kept.items()]
     apart = [
         f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
         for verb, names in others
