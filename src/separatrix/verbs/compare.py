@@ -293,11 +293,12 @@ def page(answer: Part) -> Page:
         f"{one.title} ({printable(one.path, 80)}, seed {one.seed}){', interrupted' * (not one.complete)}"
         for one in answer.answers
     ]
+    place = answer.environment and f"{answer.environment}, where no other is named"
     return Page(
         f"Two answers of {answer.of}",
         f"Compared by separatrix {answer.separatrix_version}",
         (
-            facts(("First", named[0]), ("Second", named[1]), ("Where not named", answer.environment)),
+            facts(("First", named[0]), ("Second", named[1]), ("Environment", place)),
             Note(" ".join(_lead(answer)), "lead"),
             *_tables("Verdicts and ranks that changed", decisions, (*PLACE, *SIDES)),
             *_tables("Inputs that differ", answer.inputs or (), INPUTS),

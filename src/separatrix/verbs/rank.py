@@ -127,6 +127,7 @@ def page(answer: Part) -> Page:
     others = [one for one in answer.environments if one.name != answer.environment]
     rows = own.materials
     known = [row for row in rows if is_judged(row)]
+    motion = (NAME, *known_columns(map(evidence_column, MOTION), known))
     kicks = ", ".join(disturbances(answer))
     overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
     return page_of(
@@ -137,9 +138,9 @@ def page(answer: Part) -> Page:
         *over_inputs(answer, rows),
         *pictures(answer, own),
         Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
-        evidence(f"{own.name}, in short", known, SHORT, BRIEF),
-        evidence(f"{own.name}, evidence", known, SHORT + MOTION, LONG),
+        Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
+        Table(f"{own.name}, motion", motion, tuple(known), explained(motion), LONG),
         *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
         reasons(rows),
         Note(f"`--full` has all evidence{', and the other environments' * bool(others)}.", level=BRIEF),
@@ -218,17 +219,16 @@ def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
     return [Note(words, level=BRIEF), heading, table]
 
 
-def evidence(name: str, rows: Sequence[Part], numbers: Sequence[str], level: Level) -> Table:
-    """Return motion, stable runs from each initial disturbance, and some numbers of each candidate."""
+def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
+    """Return the columns of motion, stable runs from each initial disturbance, offset, forces and rubbing."""
     rolls = any(count.rolls for row in rows for count in row.by_kick)
-    columns = (
+    return (
         NAME,
         motion_column(),
         _runs("stable runs", "settles", "rolls"),
         *([_runs("of them roll", "rolls")] if rolls else []),
-        *known_columns(map(evidence_column, numbers), rows),
+        *known_columns(map(evidence_column, SHORT), rows),
     )
-    return Table(name, columns, tuple(rows), explained(columns) if level == LONG else "", level)
 
 
 def _runs(head: str, *keys: str) -> Column:
