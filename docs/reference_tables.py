@@ -182,29 +182,21 @@ COMPARISON = (
     Line("answers", meaning="the two in the order given: `path`, `title`, `seed`, `complete`"),
     *(Line(name, meaning=f"of an answer: {what}") for name, what in ANSWERS),
     Line("environment", meaning="the bearing's own, where both agree; else null"),
-    Line("shared_verdicts", meaning="number of verdicts that both have; null where neither has one"),
     Line("inputs", meaning="inputs that differ, `first` and `second`"),
     Line("key", meaning="of an input: key of the study, or option"),
     Line("rows", meaning="results that differ, at most 500; those that a reader decides by come first"),
     Line("left_out", meaning="number of rows beyond these"),
     Line("also", meaning="other verbs of both folders"),
-    Line("curves", meaning="points of both stability curves, for the picture; null without"),
-    Line(
-        "margins", meaning="margins of both rankings in their own environment, with their ends; null without"
-    ),
 )
 REPRODUCED = (
-    Line("same", meaning="whether an answer is the same, to rounding; at the top, whether all of them are"),
+    Line("same", meaning="whether all answers are the same, to rounding"),
     Line("answers", meaning="each answer that was computed again"),
-    Line("result", meaning="how well it agrees"),
     Line("agreement", meaning="bit for bit, to rounding, or different"),
-    Line("largest_difference", "-", meaning="of two numbers, relative; null if no number differs"),
-    Line("largest_at", meaning="its key"),
+    Line("count", "-", meaning="number of keys that differ beyond rounding"),
     Line(
         "differences",
-        meaning="the first keys that differ beyond rounding: `key`, `stored`, `computed`, `relative`",
+        meaning="the first of them, or the largest to rounding: `key`, `stored`, `computed`, `relative`",
     ),
-    Line("count", "-", meaning="number of keys that do"),
     Line("versions", meaning="versions that differ here: `name`, `stored`, `here`"),
     Line("stored", meaning="value of the saved answer"),
     Line("here", meaning="of a version: the one here"),
@@ -212,8 +204,6 @@ REPRODUCED = (
 REPORTED = (
     Line("answers", meaning="verbs whose answers the report shows"),
     Line("summary", meaning="sentences of its first page"),
-    Line("environment", meaning="the bearing's own; null without a ranking"),
-    Line("materials", meaning="of a ranking: name, verdict, rank, margin and P(stable) of each candidate"),
     Line("files", meaning="paths that were written"),
 )
 TRACTION = (

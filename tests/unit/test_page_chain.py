@@ -6,6 +6,7 @@ import pytest
 
 from separatrix.ground.document import part_of
 from separatrix.present.figure import Trace
+from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import computed, verb_named
 from separatrix.verbs.answer_files import document
@@ -105,12 +106,12 @@ def test_a_verb_that_lacks_a_section_is_refused_for_that():
 
 
 @pytest.mark.parametrize(
-    ("clearance", "first"), [('"1 mm"', "POCKETS"), ('"0.6 mm"', "BOTH"), ('"0.2 mm"', "LAND")]
+    ("clearance", "first"), [('"1 mm"', "after"), ('"0.6 mm"', "together with"), ('"0.2 mm"', "before")]
 )
 def test_what_a_cage_reaches_first(tmp_path, clearance, first):
     """The radial gap of the land against half the clearance of a pocket."""
     study = changed(tmp_path, SHIPPED, ('land_clearance = "1 mm"', f"land_clearance = {clearance}"))
-    assert answer("check", study).cage.first_reached == first
+    assert f"reached {first} the pockets" in text(verb_named("check").page(answer("check", study)))
 
 
 def test_films_have_bare_races_apart_and_the_star_at_the_study(restitution):

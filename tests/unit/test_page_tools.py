@@ -8,7 +8,7 @@ import pytest
 from separatrix.ground.document import Part, part_of
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Level, Picture
-from separatrix.present.figure import Across, Trace
+from separatrix.present.figure import Across
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, materials, tribometer
@@ -83,62 +83,56 @@ def test_the_interval_of_a_difference_of_shares_is_that_of_another_program():
 
 
 def test_noise_is_judged_by_counts_intervals_and_errors():
-    """Beyond where the interval of the change excludes 0; a margin has that of its threshold."""
+    """Beyond where the interval of the change excludes 0; what has no interval is not judged."""
 
     def node(count, eta, threshold, error):
         low, high = wilson_interval(count, 64)
         ends = {"restitution_threshold_low": threshold - 0.1, "restitution_threshold_high": threshold + 0.1}
         shares = {"probability_stable": count / 64, "probability_low": low, "probability_high": high}
-        chain = {"restitution_factor": eta, "restitution_threshold": threshold, "margin": threshold - eta}
-        rest = {"friction": 0.1 + error, "friction_error": 0.01, "verdict": "A"}
-        return results(Part({**ends, **shares, **chain, **rest}, {}))
+        rest = {"restitution_threshold": threshold, "friction": 0.1 + error, "friction_error": 0.01}
+        return results(Part({**ends, **shares, **rest, "restitution_factor": eta, "verdict": "A"}, {}))
 
-    rows = {row.name: row for row in differing("rank", node(32, 0.3, 0.5, 0.0), node(48, 0.4, 0.55, 0.05))}
-    assert {name: row.noise.name for name, row in rows.items()} == {
-        "probability_stable": "BEYOND",
-        "restitution_factor": "EXACT",
-        "restitution_threshold": "WITHIN",
-        "margin": "WITHIN",
-        "friction": "EXACT",
+    rows = {row.name: row for row in differing(node(32, 0.3, 0.5, 0.0), node(48, 0.4, 0.55, 0.05))}
+    assert {name: row.beyond_noise for name, row in rows.items()} == {
+        "probability_stable": True,
+        "restitution_factor": None,
+        "restitution_threshold": False,
+        "friction": True,
     }
-    assert (rows["margin"].first.low, rows["margin"].first.high) == pytest.approx((0.1, 0.3))
+    low, high = 0.1 - 1.959964 * 0.01, 0.1 + 1.959964 * 0.01
+    assert (rows["friction"].first.low, rows["friction"].first.high) == pytest.approx((low, high))
 
 
-def test_balls_that_changed_alike_are_one_row(tmp_path):
+def test_the_most_loaded_ball_is_compared(tmp_path):
     """And an input that differs is told with its unit; two equal answers are told to be equal."""
     study = json.loads(json.dumps(ANSWER["study"]))
     study["film"]["thickness"]["value"] = 3e-7
     balls = [ball | {"load_inner": 2.0 * ball["load_inner"]} for ball in ANSWER["balls"]]
     found = compared(tmp_path, balls=balls, study=study)
-    assert [row["name"] for row in found["rows"]] == ["load_inner"] * len(balls)
+    assert [(row["place"], row["name"]) for row in found["rows"]] == [("most loaded ball", "load_inner")]
     assert [(one["key"], one["first"], one["second"]) for one in found["inputs"]] == [
         ("film.thickness", 5e-7, 3e-7)
     ]
     words = text(compare.page(part_of(found)))
-    assert f"balls 0 and {len(balls) - 1} more  load on the inner race" in words
+    assert "most loaded ball  load on the inner race" in words
     assert "500 nm  300 nm" in words
     again = compared_answers({"bearing": ANSWER}, {"bearing": ANSWER}, names=("a", "b"))
     assert "The two answers are equal in every result." in text(compare.page(part_of(again)))
 
 
-def test_what_is_decided_by_is_drawn_for_both_answers():
-    """Margins of the own environment with their intervals, the largest on top; not those of another one."""
+def test_what_is_decided_by_comes_first():
+    """Verdicts, then safety factors of the own environment, which is not named; then those of others."""
 
-    def ranked(**margins):
-        rows = [
-            {"name": name, "restitution_factor": 0.2, "restitution_threshold": one + 0.2, "margin": one,
-             "restitution_threshold_low": one + 0.1, "restitution_threshold_high": one + 0.3}
-            for name, one in margins.items()
-        ]  # fmt: skip
-        each = [{"name": at, "materials": rows} for at in ("E", "F")]
+    def ranked(verdict, *factors):
+        rows = [[{"name": "A", "verdict": verdict, "safety_factor": one}] for one in factors]
+        each = [{"name": place, "materials": row} for place, row in zip("EF", rows, strict=True)]
         return {"rank": ANSWER | {"verb": "rank", "environment": "E", "environments": each}}
 
-    sides = ranked(A=0.1, B=0.4, C=0.2), ranked(A=0.0, B=0.5, C=0.2)
-    found = json.loads(json.dumps(compared_answers(*sides, names=("a", "b"))))
-    (picture,) = [one for one in compare.page(part_of(found)).blocks if isinstance(one, Picture)]
-    (panel,) = picture.figure().panels
-    assert panel.y.names == ("A", "B")
-    assert [list(one.x) for one in panel.marks if isinstance(one, Trace)] == [[0.1, 0.4], [0.0, 0.5]]
+    found = compared_answers(ranked("STABLE", 2.0, 3.0), ranked("UNSTABLE", 0.5, 0.1), names=("a", "b"))
+    assert [(row["place"], row["name"]) for row in found["rows"]] == [
+        *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor")),
+    ]
+    assert "Changed: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
 
 
 def test_what_cannot_be_compared_is_refused(tmp_path):

@@ -1,4 +1,4 @@
-"""The contract of every verb: Python = JSON = command line, and a page whose numbers are the document's."""
+"""The contract of every verb: Python = JSON = command line, its keys, files, and a page of its numbers."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import re
 from dataclasses import replace
 
 import pytest
+import xarray as xr
+from matplotlib import image
 
 import separatrix
 from separatrix.front import api, main
@@ -26,6 +28,7 @@ from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document
 from separatrix.verbs.parts import quantity_text
 from separatrix.verbs.saved_answers import refusing_damage
+from separatrix.verdict.ledger import NAME
 from separatrix.verdict.long_jobs import Interrupted
 
 SMALL = """
@@ -46,6 +49,40 @@ CALLS = {
     "sensitivity": {"samples": 64},
     "sweep": {"vary": ("cage.mass=3..4g:2",), "verdicts": True},
 }
+ELLIPSE = "semi_major semi_minor max_pressure approach rolling_speed"
+CURVE = "slope slope_error creep_increment traction_coefficient"
+DAMPING = "race_damping damping_ratio restitution_factor"
+CRITICAL = "restitution_factor critical_friction critical_friction_low critical_friction_high"
+MATERIAL = "name friction restitution_threshold margin probability_stable verdict rank reason"
+KEYS = {
+    ("bearing", "balls"): "contact_angle_inner contact_angle_outer load_inner load_outer orbital_speed "
+    "pitch_angle spin_roll_ratio_inner spin_roll_ratio_outer",
+    ("bearing", ""): "axial_displacement radial_displacement",
+    **{("bearing", f"contacts.{race}"): ELLIPSE for race in ("inner", "outer")},
+    **{("traction", race): CURVE for race in ("inner", "outer")},
+    ("restitution", ""): " ".join(f"{name} {name}_free_spin" for name in DAMPING.split()),
+    ("mobility", ""): "rates damping damping_relaxed effective_mass capacity speed force_forward force_law",
+    ("simulate", ""): "outcome largest_offset whirl_frequency whirl_speed pocket_power",
+    ("stability", "curve"): CRITICAL,
+    ("stability", "linear_limit"): "restitution_factor critical_friction",
+    ("rank", ""): "restitution_factor",
+    ("rank", "overall"): MATERIAL,
+    ("rank", "environments.materials"): MATERIAL,
+}
+"""Verb and place in its document -> the keys that scripts rely on."""
+
+KEPT = {verb: {NAME} for verb in VERBS if verb_named(verb).keeps_runs}
+KEPT |= {"simulate": {"moving-cage.html"}, "sweep": {"sweep.csv", NAME}}  # its verdicts are kept
+"""Files beside the answer."""
+
+COUNTS = (
+    *("most_loaded", "iterations", "whirling", "ball", "run", "runs", "nodes", "sweeps", "slip", "rank"),
+    *("whirl_direction", "friction_scatter_assumed", "settles", "rolls", "whirls"),
+    *("drifts", "unresolved", "kept_by_land", "left_pocket", "force_exceeds_races"),
+    *("input_mean", "input_standard_deviation"),  # each in the unit beside it, in input_unit
+)
+"""Ends of the names of plain numbers without a unit."""
+
 LEVELS = (Level.BRIEF, Level.FULL, Level.REPORT, Level.SHEET)
 
 
@@ -79,19 +116,113 @@ def options(verb):
     return words
 
 
+@pytest.fixture(scope="module")
+def folder(small, tmp_path_factory):
+    """The files of the answers of every verb, as the command line writes them."""
+    place = tmp_path_factory.mktemp("answers")
+    for verb in VERBS:
+        assert main([verb, str(small), *options(verb), "--out", str(place / verb), "--quiet"]) == 0
+    return place
+
+
+def saved(folder, verb):
+    """Return the document of a verb, as it was written beside the figures."""
+    return json.loads((folder / verb / f"{verb}.json").read_text(), parse_constant=pytest.fail)
+
+
 @pytest.mark.parametrize("verb", VERBS)
-def test_python_and_command_line_answer_alike(verb, small, answers, capsys, tmp_path, monkeypatch):
-    """The same document to the last digit, nothing else anywhere; the page of a saved answer is the same."""
+def test_python_and_command_line_answer_alike(verb, folder, answers):
+    """The same document to the last digit, and the same page of it."""
+    answer, found = answers(verb), saved(folder, verb)
+    assert json.loads(json.dumps(answer.document())) == found
+    assert answer.summary() == text(page_of_document(verb_named(verb), found))
+    assert answer.summary().startswith(found["title"])
+    assert has(found, "separatrix_version verb name title study seed warnings provenance")
+
+
+def test_json_alone_is_printed_and_no_file_is_written(small, answers, capsys, tmp_path, monkeypatch):
+    """One document on standard output, nothing else anywhere."""
     monkeypatch.chdir(tmp_path)
-    answer = answers(verb)
-    assert main([verb, str(small), *options(verb), "--json", "--quiet"]) == 0
+    assert main(["bearing", str(small), "--json", "--quiet"]) == 0
     out, err = capsys.readouterr()
     assert (err, list(tmp_path.iterdir())) == ("", [])
     printed = json.loads(out, parse_constant=pytest.fail)
-    assert json.loads(json.dumps(answer.document())) == printed
-    known = verb_named(verb)
-    assert answer.summary() == text(page_of_document(known, printed))
-    assert answer.summary().startswith(printed["title"])
+    assert printed == json.loads(json.dumps(answers("bearing").document()))
+
+
+def has(record, names):
+    """Whether all names are keys, each present or null."""
+    return set(names.split()) <= set(record)
+
+
+def records(found, path):
+    """Return the records at a place of a document."""
+    places = [found]
+    for key in filter(None, path.split(".")):
+        inside = [one[key] for one in places]
+        places = [one for item in inside for one in (item if isinstance(item, list) else [item])]
+    return places
+
+
+@pytest.mark.parametrize(("verb", "path"), KEYS)
+def test_documents_have_the_keys_that_scripts_rely_on(verb, path, folder):
+    """Each record at that place."""
+    found = records(saved(folder, verb), path)
+    assert found
+    assert all(has(one, KEYS[verb, path]) for one in found)
+
+
+def test_what_is_null_has_a_reason(folder):
+    """A stability point without a critical friction or without an end of its band says why."""
+    for row in saved(folder, "stability")["curve"]:
+        assert row["reason"] or None not in [row[name] for name in CRITICAL.split()]
+
+
+WRITING = [verb for verb in VERBS if verb_named(verb).writes_data]
+
+
+@pytest.mark.parametrize("verb", WRITING)
+def test_files_are_whole_and_nothing_else_is_left(verb, folder):
+    """Document, text for a terminal, dataset, each figure as PNG and SVG; no temporary file stays."""
+    names = {path.name for path in (folder / verb).iterdir()}
+    pictures = {name for name in names if name.endswith(".png")}
+    assert pictures or verb == "bearing"  # none where all balls run alike
+    own = {f"{verb}{suffix}" for suffix in (".json", ".txt", ".nc", ".xlsx", ".html")}
+    assert names == pictures | KEPT.get(verb, set()) | {f"{p[:-4]}.svg" for p in pictures} | own
+    lines = (folder / verb / f"{verb}.txt").read_text(encoding="ascii").splitlines()
+    assert max(map(len, lines)) <= 100
+
+
+@pytest.mark.parametrize("verb", WRITING)
+def test_an_answer_read_back_has_the_arrays_of_the_fresh_one(verb, folder):
+    """Values, units and places on the axes of the netCDF file; whatever has a dimension has a unit."""
+    with xr.open_dataset(folder / verb / f"{verb}.nc", engine="h5netcdf", decode_times=False) as fresh:
+        data = separatrix.load(folder / verb / f"{verb}.json")
+        xr.testing.assert_identical(data, fresh.load())
+    for name, variable in data.variables.items():
+        if variable.dtype.kind == "f":
+            assert "units" in variable.attrs or str(name).endswith(COUNTS), name
+
+
+def test_the_dataset_names_dimensions_and_units(folder):
+    """Ball and race, environment and material, are dimensions; quantities carry their unit."""
+    bearing = separatrix.load(folder / "bearing" / "bearing.json")
+    assert bearing["load_inner"].dims == ("ball",)
+    assert bearing["load_inner"].attrs["units"] == "N"
+    assert bearing["contact_max_pressure"].sel(race="inner").attrs["units"] == "Pa"
+    rank = separatrix.load(folder / "rank" / "rank.json")
+    there = {"environment": "vacuum", "material": "Vespel SP-3"}
+    assert float(rank["material_friction"].sel(there)) == 0.08
+    assert json.loads(rank.attrs["study"])["bearing"]["ball_count"]["value"] == 12
+
+
+def test_no_figure_is_clipped(folder):
+    """The outermost pixels of every picture are white: no label runs over the edge."""
+    for path in folder.rglob("*.png"):
+        pixels = image.imread(path)[..., :3]
+        edges = [pixels[:2], pixels[-2:], pixels[:, :2], pixels[:, -2:]]
+        least = min(edge.min() for edge in edges)
+        assert least > 0.98, path.name  # white is 1; a grey hint of antialiasing passes
 
 
 def numbers(value):
@@ -211,8 +342,8 @@ def test_a_notebook_shows_the_page(answers):
 
 def test_uncertain_inputs_are_said_to_be_at_their_means(answers):
     """By verbs that do not draw them."""
-    assert "at its mean: bearing.contact_angle" in answers("bearing").summary()
-    assert "at its mean" not in answers("sensitivity").summary()
+    assert "at their means: bearing.contact_angle" in answers("bearing").summary()
+    assert "at their means" not in answers("sensitivity").summary()
 
 
 def test_an_old_document_names_what_it_lacks():

@@ -32,13 +32,11 @@ elastic_modulus = { value = "3 GPa", source = "a sheet", confidence = "maker" }
 poisson_ratio = { value = 0.4, source = "a sheet", confidence = "guess" }
 """
 CASES = "film.thickness\n1 um\n0.5 um\n"
-STUDIES = ("ball-218", "lox-turbopump-radial")
 ASKED = [
-    *(("check", name) for name in STUDIES),
-    *(("bearing", name) for name in STUDIES),
-    ("restitution", "cryogenic-turbopump"),
+    ("check", "ball-218"),
+    ("bearing", "ball-218"),
+    ("bearing", "lox-turbopump-radial"),
     ("restitution", "sub/variant.toml"),
-    ("check", "sub/variant.toml"),
     ("check", "book.xlsx"),
     ("check", "tested.toml"),
     ("simulate", "sub/variant.toml", "--kick", "0.3 m/s", "--run", "3", "--model", "paper"),
@@ -112,7 +110,7 @@ def again(capsys, path: str) -> dict:
 def test_a_stored_answer_is_the_same(stored, put, capsys, asked):
     """Bit for bit, from nothing but the answer."""
     found = again(capsys, put(stored[asked]))
-    assert (found["same"], found["result"]["agreement"]) == (True, "bit for bit"), found
+    assert found["agreement"] == "bit for bit", found
     assert found["versions"] == []
 
 
@@ -137,13 +135,13 @@ def test_a_changed_number_is_found(stored, put, capsys):
 
     was = stored[VARIANT]["inner"]["load"]
     found = again(capsys, put(changed(stored[VARIANT], wrong)))
-    assert (found["same"], found["result"]["count"]) == (False, 1)
-    (one,) = found["result"]["differences"]
+    assert (found["agreement"], found["count"]) == ("different", 1)
+    (one,) = found["differences"]
     assert (one["key"], one["stored"], one["computed"]) == ("inner.load", was * 1.001, was)
     assert one["relative"] == pytest.approx(1e-3, rel=1e-2)
     found = again(capsys, put(changed(stored[VARIANT], hair)))
-    assert (found["same"], found["result"]["agreement"]) == (True, "to rounding")
-    assert found["result"]["largest_at"] == "inner.load"
+    assert found["agreement"] == "to rounding"
+    assert found["differences"][0]["key"] == "inner.load"
     assert main(["reproduce", put(changed(stored[VARIANT], wrong)), "--quiet"]) == 0
     assert "restitution variant: different: 1 value differs." in capsys.readouterr().out
 
@@ -155,8 +153,7 @@ def test_a_changed_study_is_found(stored, put, capsys):
         answer["provenance"]["study"]["data"]["operation"]["axial_load"] = "2 kN"
 
     found = again(capsys, put(changed(stored[VARIANT], edit)))
-    assert found["same"] is False
-    assert "study.operation.axial_load.value" in {one["key"] for one in found["result"]["differences"]}
+    assert "study.operation.axial_load.value" in {one["key"] for one in found["differences"]}
 
 
 def test_another_version_is_named_and_computed_all_the_same(stored, put, capsys):
@@ -182,7 +179,7 @@ def test_an_option_that_is_gone_and_was_not_asked_for_is_left_out(stored, put, c
         answer["provenance"]["command"]["question"]["animate"] = None
 
     asked = next(one for one in ASKED if one[0] == "simulate")
-    assert again(capsys, put(changed(stored[asked], older)))["same"] is True
+    assert again(capsys, put(changed(stored[asked], older)))["agreement"] == "bit for bit"
 
 
 def test_a_report_has_its_answers_in_it(stored, put, capsys):
@@ -214,7 +211,6 @@ HOSTILE = {
     "no study": (lambda kept: kept.update(study=None), "does not keep its study"),
     "no origins": (lambda kept: kept["study"].pop("origins"), "is damaged"),
     "no files": (lambda kept: kept["study"].pop("files"), "is damaged"),
-    "files that are none": (lambda kept: kept["study"].update(files={"a": 1}), "is damaged"),
     "option": (_ask(out="x"), "is not an option"),
     "value": (_ask(run="1"), "not one of this option"),
     "range": (_ask(run=-1), "must lie between"),
@@ -238,7 +234,7 @@ def test_a_kept_study_reaches_no_other_file(stored, put, capsys):
     def reach(answer):
         answer["provenance"]["study"]["data"] |= {"extends": "/etc/passwd", "library": ["../../secret"]}
 
-    assert again(capsys, put(changed(stored[VARIANT], reach)))["same"] is True
+    assert again(capsys, put(changed(stored[VARIANT], reach)))["agreement"] == "bit for bit"
 
 
 @pytest.mark.parametrize(
@@ -298,7 +294,7 @@ def test_an_answer_of_python_is_reproduced(put, capsys):
         "cryogenic-turbopump", cases=[{"film.thickness": 1e-6}, {"film.thickness": 5e-7}], jobs=1
     )
     Path(path).write_text(json.dumps(answer.document()))
-    assert again(capsys, path)["same"] is True
+    assert again(capsys, path)["agreement"] == "bit for bit"
 
 
 def test_files_too_large_are_not_kept(tmp_path, monkeypatch):

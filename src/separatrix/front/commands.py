@@ -263,7 +263,7 @@ def tool_command(tool: Tool) -> Callable[..., int]:
 def run_tool(tool: Tool, given: Mapping[str, Any]) -> int:
     """Answer a tool's question and return the exit status."""
     from separatrix.ground.document import part_of
-    from separatrix.verbs.answer_files import save_page
+    from separatrix.verbs.answer_files import save_answer
 
     usual = Path(tool.folder) if tool.folder and not given["json"] else None
     to = folder(given.get("out")) or usual
@@ -273,7 +273,7 @@ def run_tool(tool: Tool, given: Mapping[str, Any]) -> int:
         found = with_progress(tool, compute, given) if tool.takes_time else breakable(compute)
         page = tool.page(part_of(found))
         if to is not None:
-            save_page(to, tool.name, page, found)
+            save_answer(to, tool, found, page=page)
         deliver(found, lambda: page, given)
         if to is not None:
             print_place("Text, data and figures", to, given)

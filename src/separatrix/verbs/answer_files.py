@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import grouped, harmless, json_text
 from separatrix.ground.files import staged
+from separatrix.verbs.verb import Tool, Verb
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from separatrix.present.blocks import Page, Picture
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
-    from separatrix.verbs.verb import Tool, Verb
 
 
 def document(verb: Verb, found: Computed) -> Document:
@@ -76,70 +76,43 @@ def page_of_document(verb: Tool, found: Document, where: str = "The answer") -> 
 
 
 def save_answer(
-    folder: Path,
-    verb: Verb,
-    found: Document,
-    *,
-    page: Page | None = None,
-    pictures: bool = True,
+    folder: Path, asked: Tool, found: Document, *, page: Page | None = None, pictures: bool = True
 ) -> None:
-    """Write the files of an answer into a folder, all or none; of an interrupted one its document and text.
+    """Write the files of an answer into a folder that exists, all or none.
 
-    Parameters
-    ----------
-    folder : Path
-        It exists.
-    verb, found : Verb, dict
-        The verb, and the answer as `document` makes it.
-    page : Page, optional
-        The page of that document, if it has been made already.
-    pictures : bool
-        Whether figures, and the page with them, are written, too.
+    Of an interrupted one, and of `check`, these are its document and its text. `page` is that of the document
+    if it has been made already; `pictures` says whether figures, and the page with them, are written, too.
 
     Raises
     ------
     InputError
         The folder cannot be written.
     """
-    page = page or page_of_document(verb, found)
+    from separatrix.present.blocks import Level
+    from separatrix.present.text import text
+
+    page, name = page or page_of_document(asked, found), asked.name
     with staged(folder) as stage:
-        is_whole = verb.writes_data and found.get("complete") is not False
-        _write(stage, verb.name, page, found, with_pictures=pictures and is_whole, is_whole=is_whole)
-        if is_whole:
-            from separatrix.present.dataset import dataset
+        (stage / f"{name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
+        (stage / f"{name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
+        if not asked.writes_data or found.get("complete") is False:
+            return
+        from separatrix.present.dataset import dataset
+        from separatrix.present.spreadsheet import spreadsheet
 
-            dataset(found).to_netcdf(stage / f"{verb.name}.nc", engine="h5netcdf")
-            for name, content in verb.files(part_of(found)):
-                (stage / name).write_bytes(content)
-
-
-def save_page(folder: Path, name: str, page: Page, found: Document) -> None:
-    """Write the page of a tool and its document."""
-    with staged(folder) as stage:
-        _write(stage, name, page, found)
+        (stage / f"{name}.xlsx").write_bytes(spreadsheet(page))
+        if pictures:
+            _draw(page, stage, name)
+        if isinstance(asked, Verb):
+            dataset(found).to_netcdf(stage / f"{name}.nc", engine="h5netcdf")
+            for file, content in asked.files(part_of(found)):
+                (stage / file).write_bytes(content)
 
 
 def save_pictures(folder: Path, page: Page) -> None:
     """Write the pictures of a page alone."""
     with staged(folder) as stage:
         _draw(page, stage, "")
-
-
-def _write(
-    stage: Path, name: str, page: Page, found: Document, *, with_pictures: bool = True, is_whole: bool = True
-) -> None:
-    """Write document and text; of a whole answer the workbook, the pictures, and the page with them."""
-    from separatrix.present.blocks import Level
-    from separatrix.present.text import text
-
-    (stage / f"{name}.json").write_text(harmless(json_text(found) + "\n"), encoding="utf-8")
-    (stage / f"{name}.txt").write_text(harmless(text(page, Level.FULL)), encoding="utf-8")
-    if is_whole:
-        from separatrix.present.spreadsheet import spreadsheet
-
-        (stage / f"{name}.xlsx").write_bytes(spreadsheet(page))
-    if with_pictures:
-        _draw(page, stage, name)
 
 
 def _draw(page: Page, stage: Path, name: str) -> None:

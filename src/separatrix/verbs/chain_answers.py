@@ -6,7 +6,6 @@ The answer of `bearing` is a `BearingState`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum, auto
 
 import numpy as np
 
@@ -37,14 +36,6 @@ class Refusal:
     sentence: str  # why, and what to do
 
 
-class FirstReached(Enum):
-    """What a cage that moves from the middle reaches first."""
-
-    POCKETS = auto()
-    LAND = auto()
-    BOTH = auto()
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CheckedCage:
     """What follows of a cage from its study: its mass, and how far it may move at rest."""
@@ -53,7 +44,6 @@ class CheckedCage:
     half_play: Metre  # of a ball in its pocket, each way along the circumference
     lean: Radian  # of the contact of ball and pocket, towards the bearing axis
     land_gap: Metre | None  # least radial gap of the land; null without a land
-    first_reached: FirstReached | None  # pockets or land; null without a land
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import asin, isclose
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from separatrix.ground.document import Part
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from separatrix.verbs.chain_answers import CheckAnswer, CheckedCage
 
 Link = TypeVar("Link")
-FIRST = {"POCKETS": "after the pockets", "LAND": "before the pockets", "BOTH": "together with the pockets"}
 SECTIONS = ("cage", "ranking")
 """Sections that a study may lack."""
 
@@ -58,21 +58,16 @@ def _tried(link: Callable[[], Link]) -> tuple[Link | None, str]:
 
 
 def _cage(study: Study) -> CheckedCage | None:
-    from math import asin, isclose
-
     from separatrix.study.cage_body import cage_inertia
     from separatrix.study.pocket_shape import half_play, tilt
-    from separatrix.verbs.chain_answers import CheckedCage, FirstReached
+    from separatrix.verbs.chain_answers import CheckedCage
 
-    if study.cage is None:
+    cage = study.cage
+    if cage is None:
         return None
-    play, gap, first = half_play(study.cage), None, None
-    if study.cage.land_clearance is not None:
-        gap = study.cage.land_clearance / 2.0 - study.cage.land_out_of_round
-        first = FirstReached.LAND if gap < play else FirstReached.POCKETS
-        first = FirstReached.BOTH if isclose(gap, play) else first
-    mass, lean = cage_inertia(study.cage, study.bearing).mass, asin(tilt(study.cage)[1])
-    return CheckedCage(mass=mass, half_play=play, lean=lean, land_gap=gap, first_reached=first)
+    gap = None if cage.land_clearance is None else cage.land_clearance / 2.0 - cage.land_out_of_round
+    mass, lean = cage_inertia(cage, study.bearing).mass, asin(tilt(cage)[1])
+    return CheckedCage(mass=mass, half_play=half_play(cage), lean=lean, land_gap=gap)
 
 
 def page(answer: Part) -> Page:
@@ -123,14 +118,16 @@ def cage_facts(answer: Part) -> list[Any]:
     if not stated or found is None:
         return []
     guidance, state = stated["guidance"]["value"], stated["clearances"]["value"]
-    when = "" if state == RUNNING else f", {state}"
+    when = "" if state == "as running" else f", {state}"
     guided = "guided by the balls" if guidance == "ball" else f"{guidance}-guided"
     name = (stated.get("material") or {}).get("name")
     pocket = fill(found, "{half_play} each way along the circumference")
     land = "no land: the balls guide the cage"
     if "land_gap" in found:
         least = " at the least" if stated["land_out_of_round"]["value"] else ""
-        gap = f"{show(found, 'land_gap')} radial{least}, reached {FIRST[found.first_reached]}"
+        first = "before" if found.land_gap < found.half_play else "after"
+        first = "together with" if isclose(found.land_gap, found.half_play) else first
+        gap = f"{show(found, 'land_gap')} radial{least}, reached {first} the pockets"
         land = f"{entry_words(stated['land_clearance'])}: {gap}{when}"
     return [
         ("Cage", ", ".join(filter(None, [name, show(found, "mass"), guided]))),
@@ -140,9 +137,6 @@ def cage_facts(answer: Part) -> list[Any]:
         *(clearance_facts(answer.clearances) if answer.clearances else []),
         ("Running clearances", answer.clearances_reason and f"not found: {answer.clearances_reason}"),
     ]
-
-
-RUNNING = "as running"
 
 
 def candidate_facts(study: Mapping[str, Any]) -> list[tuple[str, str]]:

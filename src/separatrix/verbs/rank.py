@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
-from separatrix.ground.quantity import Estimate
 from separatrix.present.blocks import (
     Block,
-    Cell,
     Column,
-    Equation,
     Heading,
     Level,
     Note,
@@ -38,19 +34,18 @@ from separatrix.present.figure import (
     Mark,
     Panel,
     Trace,
-    sign,
 )
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts, restitution_blocks
-from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel
+from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel, disturbances
 from separatrix.verbs.parts.quantity_text import (
     axis,
     begun,
     column,
-    estimate,
     fact,
     fill,
-    marks,
+    known_columns,
+    number_of,
     quantity,
     show,
 )
@@ -62,13 +57,10 @@ from separatrix.verbs.parts.verdict_blocks import (
     deciding,
     evidence_column,
     has_safety,
-    is_any,
     is_judged,
     motion_column,
     rank_texts,
-    threshold_alone,
     verdict,
-    verdict_facts,
     verdict_sentences,
 )
 from separatrix.verbs.verb import NoOptions, Verb
@@ -81,7 +73,7 @@ if TYPE_CHECKING:
     from separatrix.verdict.long_jobs import Runner
     from separatrix.verdict.ranking_records import Ranking
 
-BRIEF, FULL, REPORT, LONG = Level.BRIEF, Level.FULL, Level.REPORT, Level.LONG
+BRIEF, REPORT, LONG = Level.BRIEF, Level.REPORT, Level.LONG
 EVIDENCE = (
     "stable runs: that settle, or roll in their pockets, from each initial disturbance; the worst one "
     "decides. Offset and forces: largest of any run; > what the races hold: there none has a meaning."
@@ -103,6 +95,8 @@ MOTION = (
     "cone_ratio",
     "axial_travel",
 )
+NAME = text_column("material", lambda row: row.name)
+POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
 
 
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
@@ -129,86 +123,87 @@ def refusals(study: Study) -> Iterator[str]:
 
 def page(answer: Part) -> Page:
     """Return the page of `rank`: the bearing's own environment, what it rests on, then the others."""
-    own = next(one for one in answer.environments if one.name == answer.environment)
+    (own,) = (one for one in answer.environments if one.name == answer.environment)
     others = [one for one in answer.environments if one.name != answer.environment]
     rows = own.materials
     known = [row for row in rows if is_judged(row)]
+    motion = (NAME, *known_columns(map(evidence_column, MOTION), known))
+    kicks = ", ".join(disturbances(answer))
+    overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
     return page_of(
         answer,
         Note(" ".join([verdict_sentences(rows, own.name), *deciding(answer, rows)]), "lead"),
-        Heading(_title(own.name), LONG),
-        *verdicts(own.name, rows, legend=LONG),
-        *footnotes(rows),
+        *verdicts(own.name, rows),
         *by_paper(answer, known),
         *over_inputs(answer, rows),
-        *pictures(answer),
-        Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {_speeds(answer)}")),
-        evidence(own.name, known),
+        *pictures(answer, own),
+        Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
+        Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
+        Table(f"{own.name}, motion", motion, tuple(known), explained(motion), LONG),
         *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
-        motion(own.name, known),
-        reasons(rows, LONG),
-        *free_balls_decided(known),
+        reasons(rows),
         Note(f"`--full` has all evidence{', and the other environments' * bool(others)}.", level=BRIEF),
-        *in_detail(known),
         Heading("Basis of the verdicts", LONG),
-        facts(*basis_facts(answer), *ensemble_facts(answer), *holds_for(answer), level=LONG),
+        facts(*basis_facts(answer), *holds_for(answer), level=LONG),
+        Heading("Ball on pocket", LONG, 3),
+        facts(*(fact(answer.pocket, name) for name in POCKET), level=LONG),
         *restitution_blocks(answer.chain, REPORT),
-        *pocket(answer.pocket),
         *(curve_blocks(answer.stability, REPORT) if "stability" in answer else []),
-        *(block for one in others for block in environment(one.name, one.materials)),
-        *(
-            environment("Overall: mean friction over the measured environments", answer.overall)
-            if others
-            else []
-        ),
-        *gaps(answer),
+        *(block for one in others for block in verdicts(one.name, one.materials, LONG)),
+        *(overall if others else []),
         candidate_numbers(answer),
         draws=True,
     )
 
 
-def _title(name: str) -> str:
-    return name[:1].upper() + name[1:]
-
-
 # Tables.
 
 
-def verdicts(
-    name: str, rows: Sequence[Part], *, legend: Level | None = None, level: Level = Level.ALWAYS
-) -> list[Block]:
+def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> list[Block]:
     """Return rank, friction, what is compared with it, and verdict of each candidate."""
-    ranks = dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
     compared, order = ("restitution_threshold", "margin"), "margin"
     if has_safety(rows):
         compared, order = ("own_critical_friction", "safety_factor"), "safety factor"
+    ranks = ranks_of(rows)
     columns = (
         text_column("rank", lambda row: ranks[row.name], f"by {order}, = a tie within the scatter"),
-        text_column("material", lambda row: row.name),
+        NAME,
         column("friction", mark=lambda row: MARK * bool(row.extrapolation)),
-        column(compared[0], is_short=True) if has_safety(rows) else threshold_column(),
+        column(compared[0], is_short=has_safety(rows)),
         column(compared[1]),
         column("probability_stable"),
         text_column("verdict", verdict),
     )
     table = Table(name, columns, tuple(rows), level=level)
-    return [table, *([Note(explained(columns), "legend", legend)] if legend else [])]
+    legend = [Note(explained(columns), "legend", LONG)] if level == Level.ALWAYS else []
+    notes = [one for one in footnotes(rows) if one.level & level]
+    return [Heading(begun(name), LONG), table, *legend, *notes]
 
 
-def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
+def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
+    """Return the ranks of candidates as text, by name."""
+    return dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
+
+
+def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
     """Return the answer of the paper's model beside another one, and where the two differ."""
+    rows = [row for row in judged if row.get("paper_verdict") is not None]
     if not has_safety(rows):
         return []
+    threshold = "restitution_threshold"
+
+    def numbers(row: Part) -> str:
+        return f"{number_of(row, threshold, row.restitution_threshold)}, {show(row, 'margin')}"
+
     columns = (
-        _name(),
-        threshold_column(),
+        NAME,
+        column(threshold),
         column("margin"),
         column("paper_probability_stable"),
         text_column("verdict", lambda row: row.paper_verdict),
     )
     model = fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    each = grouped((row.paper_verdict, row) for row in rows)
     apart = [row.name for row in rows if row.paper_verdict != row.verdict]
     why = ""
     if apart:
@@ -217,45 +212,23 @@ def by_paper(answer: Part, rows: Sequence[Part]) -> list[Block]:
             "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
             "from an impact.",
         )
-    first = next(iter(each.values()))[0]
-
-    def numbers(row: Part) -> str:
-        words = ("threshold ", "margin ") if row is first else ("", "")
-        return f"{words[0]}{threshold_alone(row)}, {words[1]}{show(row, 'margin')}"
-
-    listed = by_verdict({word: [f"{row.name} ({numbers(row)})" for row in who] for word, who in each.items()})
+    each = grouped((row.paper_verdict, f"{row.name} ({numbers(row)})") for row in rows)
+    words = f"The paper's method ({model}; threshold, margin): {by_verdict(each)}.{why}"
     heading = Heading("The paper's method", LONG, 3)
     table = Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG)
-    return [Note(f"The paper's method ({model}): {listed}.{why}", level=BRIEF), heading, table]
+    return [Note(words, level=BRIEF), heading, table]
 
 
-def threshold_column() -> Column:
-    """Return the column of restitution thresholds."""
-    one = column("restitution_threshold")
-
-    def found(row: Part) -> Cell:
-        return Cell("any") if "restitution_threshold" in row and is_any(row) else one.cell(row)
-
-    return Column(one.head, found, meaning=one.meaning)
-
-
-def evidence(name: str, rows: Sequence[Part]) -> Table:
-    """Return motion, stable runs from each initial disturbance, largest offset, drift, forces and rubbing."""
+def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
+    """Return the columns of motion, stable runs from each initial disturbance, offset, forces and rubbing."""
     rolls = any(count.rolls for row in rows for count in row.by_kick)
-    of_them = [_runs("of them roll", "rolls")] if rolls else []
-    known = [one for one in SHORT if any(one in row for row in rows)]
-    columns = (
-        _name(),
+    return (
+        NAME,
         motion_column(),
         _runs("stable runs", "settles", "rolls"),
-        *of_them,
-        *map(evidence_column, known),
+        *([_runs("of them roll", "rolls")] if rolls else []),
+        *known_columns(map(evidence_column, SHORT), rows),
     )
-    return Table(f"{name}, evidence", columns, tuple(rows))
-
-
-def _name() -> Column:
-    return text_column("material", lambda row: row.name)
 
 
 def _runs(head: str, *keys: str) -> Column:
@@ -267,39 +240,10 @@ def _runs(head: str, *keys: str) -> Column:
     return text_column(head, counts)
 
 
-def motion(name: str, rows: Sequence[Part], level: Level = LONG) -> Table:
-    """Return how the cage moves; the bearing's own restitution factor only where candidates differ in it."""
-    differ = len({show(row, "restitution_factor") for row in rows}) > 1
-    known = [one for one in MOTION if any(one in row for row in rows)]
-    eta = [column("restitution_factor")] if differ else []
-    columns = (_name(), motion_column(), *eta, *map(evidence_column, known))
-    return Table(f"{name}, motion", columns, tuple(rows), explained(columns), level)
-
-
-def reasons(rows: Sequence[Part], level: Level) -> Block:
+def reasons(rows: Sequence[Part]) -> Block:
     """Return the reasons; candidates of the same friction share theirs."""
     each = grouped((row.reason, row.name) for row in rows)
-    return facts(*((", ".join(who), reason) for reason, who in each.items()), level=level)
-
-
-def free_balls_decided(rows: Sequence[Part]) -> list[Note]:
-    """Return for which candidates free balls decided; none if for none."""
-    free = [row.name for row in rows if row.ball == "free" and row.ball_reason]
-    words = f"Free balls decided for {', '.join(free)}: with one state the cage would not be called stable."
-    return [Note(words, level=LONG)] if free else []
-
-
-def environment(name: str, rows: Sequence[Part]) -> list[Block]:
-    """Return verdicts, evidence and reasons in another environment."""
-    known = [row for row in rows if is_judged(row)]
-    notes = [Note(note.text, note.kind, FULL) for note in footnotes(rows)]
-    return [
-        Heading(_title(name), LONG),
-        *verdicts(name, rows, level=LONG),
-        *notes,
-        motion(name, known, FULL),
-        reasons(rows, FULL),
-    ]
+    return facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)
 
 
 # Words.
@@ -309,54 +253,23 @@ def footnotes(rows: Sequence[Part]) -> list[Note]:
     """Return in what respect frictions are extrapolated; on a screen, that of all of them."""
     measured = [row for row in rows if "friction" in row]
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
-    alike = grouped((tuple(names), sentence) for sentence, names in who.items())
-    of_all = alike.pop(tuple(row.name for row in measured), [])
-    some = [f"{' '.join(f'{one}.' for one in each)} ({', '.join(names)})" for names, each in alike.items()]
-    if not who:
-        return []
-    words = " ".join([f"{MARK} extrapolated beyond the tests:", *(f"{one}." for one in of_all)])
-    more = " More, by material: `--full`." if some else ""
-    whole = Note(" ".join([words, *some]), "legend", LONG if some else Level.ALWAYS)
-    return [whole, *([Note(words + more, "legend", BRIEF)] if some else [])]
+    of_all = [f"{one}." for one, names in who.items() if len(names) == len(measured)]
+    some = [f"{one} ({', '.join(names)})." for one, names in who.items() if len(names) < len(measured)]
+    words = " ".join([f"{MARK} extrapolated beyond the tests:", *of_all])
+    found = [Note(" ".join([words, *some]), "legend", LONG)]
+    found += [Note(words + " More, by material: `--full`." * bool(some), "legend", BRIEF)]
+    return found if who else []
 
 
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
     """Return the verdicts with the uncertain inputs drawn; none if the study states none."""
     known = [row for row in rows if row.get("uncertain_verdict") is not None]
-    if not known:
-        return []
     each = grouped(
         (row.uncertain_verdict, f"{row.name} {show(row, 'uncertain_probability_stable')}") for row in known
     )
     names = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
-    words = f"with a bearing drawn for each of {known[0].uncertain_runs} runs from each initial disturbance"
-    return [
-        Note(
-            f"Uncertain inputs ({names}) are at their means above; {words}, P(stable) is: {by_verdict(each)}."
-        )
-    ]
-
-
-def in_detail(rows: Sequence[Part]) -> list[Block]:
-    """Return the evidence of the first candidate."""
-    return (
-        [Heading(f"{rows[0].name} in detail", FULL), facts(*verdict_facts(rows[0]), level=FULL)]
-        if rows
-        else []
-    )
-
-
-def ensemble_facts(answer: Part) -> list[tuple[str, str]]:
-    """Return the ensemble in a few words."""
-    return [
-        ("Initial disturbances", _speeds(answer)),
-        ("Runs", fill(answer, f"{answer.runs} from each, of {{duration}}")),
-    ]
-
-
-def _speeds(answer: Part) -> str:
-    """Return the initial disturbances."""
-    return ", ".join(show(Part({"kick": one}, {"kick": "m/s"}), "kick") for one in answer.kicks)
+    words = f"Uncertain inputs ({names}) are at their means above; drawn for each run, P(stable) is: "
+    return [Note(f"{words}{by_verdict(each)}.")] if known else []
 
 
 def holds_for(answer: Part) -> list[tuple[str, Any]]:
@@ -365,207 +278,122 @@ def holds_for(answer: Part) -> list[tuple[str, Any]]:
     scatter = "none: every friction has its measured scatter"
     if any(row.friction_scatter_assumed for row in rows):
         scatter = fill(answer, "assumed to scatter by {friction_scatter} of their mean: a guess")
-    film = []
+    film = ""
     if answer.restitution_factor < answer.solid_lubrication_limit:
-        words = "The contact model predicts {restitution_factor} for this film, below this bound"
-        film = [("This film", fill(answer, f"{words} of {{solid_lubrication_limit}}. Both are shown."))]
-    return [
-        ("Unrepeated tests", scatter),
-        *_differing(answer.overall, "Mass of the cage", "cage_mass"),
-        *_differing(answer.overall, "Pocket as it runs", "pocket_clearance"),
-        *_differing(answer.overall, "Land as it runs", "land_clearance"),
-        ("The paper's bound", answer.paper_statement),
-        *film,
-    ]
-
-
-def _differing(rows: Sequence[Part], label: str, name: str) -> list[tuple[str, str]]:
-    """Return a quantity of each candidate where they differ in it."""
-    each = [f"{row.name} {show(row, name)}" for row in rows if name in row]
-    return [(label, "; ".join(each))] if len({getattr(row, name) for row in rows}) > 1 else []
-
-
-def pocket(found: Part) -> list[Block]:
-    """Return where ball and pocket rub."""
-    names = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
-    return [
-        Heading("Ball on pocket", LONG, 3),
-        Equation(
-            r"\bar p = \dfrac{F}{\pi\,r^2}", "Mean pressure of ball on pocket in an impact of force $F$."
-        ),
-        facts(*(fact(found, name) for name in names), level=LONG),
-    ]
-
-
-def gaps(answer: Part) -> list[Block]:
-    """Return in how many environments a candidate was measured, if not in all."""
-    total = len(answer.environments)
-    counts = Counter(row.name for one in answer.environments for row in one.materials if "friction" in row)
-    few = [f"{row.name} in {counts[row.name]}" for row in answer.overall if counts[row.name] < total]
-    return (
-        [Note(f"Measured in fewer than {total} environments: {', '.join(few)}.", level=LONG)] if few else []
-    )
+        film = fill(answer, " The contact model predicts {restitution_factor} for this film.")
+    return [("Unrepeated tests", scatter), ("The paper's bound", f"{answer.paper_statement}{film}")]
 
 
 # Pictures.
 
 
-def pictures(answer: Part) -> list[Block]:
-    """Return the overview, and the candidates of each environment on the paper's stability curve."""
+def pictures(answer: Part, own: Part) -> list[Block]:
+    """Return the overview, and the candidates where the bearing runs on the paper's stability curve."""
     if answer.get("complete") is False or not any("restitution_threshold" in row for row in answer.overall):
         return []
     caption = "Restitution thresholds of the candidates: larger is better; the upright line is this bearing."
     if has_safety(answer.overall):
         caption = "Safety factors of the candidates, larger is better: at 1 half the runs whirl."
-    found: list[Block] = [Picture("rank-overview", lambda: overview(answer), caption)]
-    if "stability" not in answer:
-        return found
-    order = sorted(answer.environments, key=lambda one: bool(one.name != answer.environment))
-    for place, one in enumerate(order):
-        caption = f"The candidates in {one.name} on the paper's stability curve: below it the cage is stable."
-        level = REPORT if place == 0 else FULL
-        found.append(Picture(f"rank-{_slug(one.name)}", _on_the_curve(answer, one), caption, level))
+    found: list[Block] = [Picture("rank-overview", lambda: overview(answer, own), caption)]
+    if "stability" in answer:
+        caption = f"The candidates in {own.name} on the paper's stability curve: below it the cage is stable."
+        found.append(Picture("rank-paper", lambda: on_the_curve(answer, own), caption))
     return found
 
 
-def _slug(text: str) -> str:
-    """Return a text as the part of a file's name."""
-    plain = "".join(c if c.isascii() and c.isalnum() else "-" for c in text.lower())
-    return "-".join(part for part in plain.split("-") if part)[:60] or "environment"
-
-
-def _on_the_curve(answer: Part, place: Part) -> Callable[[], Figure]:
-    return lambda: on_the_curve(answer, place)
-
-
-def on_the_curve(answer: Part, place: Part) -> Figure:
-    """Return the paper's stability curve with the candidates of one environment on it, and its verdicts."""
-    rows = [row for row in place.materials if "friction" in row]
-    ranks = dict(
-        zip(
-            (row.name for row in place.materials),
-            rank_texts(row.get("rank") for row in place.materials),
-            strict=True,
-        )
-    )
-    found: list[Mark] = []
+def on_the_curve(answer: Part, own: Part) -> Figure:
+    """Return the paper's stability curve with the candidates where the bearing runs, and its verdicts."""
+    rows = [row for row in own.materials if "friction" in row]
+    found, labels = list[Mark](), list[Label]()
     for row in rows:
-        word, eta = by_the_paper(row), row.restitution_factor
-        colour = VERDICT_COLOURS.get(word, GREY)
-        found.append(Trace(x=(0.0, 1.0), y=(row.friction, row.friction), colour=colour, width=0.4))
-        if "restitution_threshold" in row:
-            look: dict[str, Any] = {"colour": colour, "marker": "o", "is_open": True, "size": 4.5}
-            found.append(marks([row], "restitution_threshold", "friction", **look))
-        look = {"colour": colour, "marker": VERDICT_MARKERS.get(word, "."), "size": 5.0}
-        found.append(Trace(x=(eta,), y=(row.friction,), line="", hover=(hover(row),), **look))
-    labels = tuple(
-        Label(
-            y=row.friction,
-            text=f"{ranks[row.name]}  {row.name}  {show(row, 'friction')}{MARK * bool(row.extrapolation)}",
-        )
-        for row in rows
-    )
-    signs = [
-        sign(marker, VERDICT_COLOURS[word], f"{word}, at the candidate's own $eta$")
-        for word, marker in VERDICT_MARKERS.items()
-    ]
-    signs.append(sign("o", GREY, "threshold with its 95 % interval", is_open=True))
+        word = row.get("paper_verdict") or row.get("verdict") or "not finished"
+        look, star = look_of(word), MARK * bool(row.extrapolation)
+        eta, friction = row.restitution_factor, row.friction
+        found.append(Trace(x=(0.0, 1.0), y=(friction, friction), colour=look["colour"], width=0.4))
+        found.append(Trace(x=(eta,), y=(friction,), line="", size=5.0, hover=(hover(row),), **look))
+        text = f"{row.name}  {show(row, 'friction')}{star}  {word}"
+        labels.append(Label(y=friction, text=text, colour=look["colour"]))
     panel = curve_panel(
         answer,
         answer.stability,
-        title=f"The paper's method, {place.name}",
+        title=f"The paper's method, {own.name}",
         more=found,
         frictions=[row.friction for row in rows],
         labels=labels,
-        head="rank  candidate  friction",
+        head="candidate  friction  verdict",
     )
-    return Figure(
-        rows=((panel,),),
-        heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt="Critical friction against restitution factor, with the friction of each candidate at the "
-        "bearing's own restitution factor; the table has the numbers.",
-        height=4.3,
-        legend=tuple(signs),
+    alt = (
+        "Critical friction against restitution factor, with the friction of each candidate at the bearing's "
+        "own restitution factor; the table has the numbers."
     )
+    return figure(answer, (panel,), alt=alt, height=4.3, more=(f"seed {answer.seed}",))
 
 
-def by_the_paper(row: Part) -> str:
-    """Return the verdict of a row by the paper's model; a dash in another environment."""
-    return str(row.get("paper_verdict") or "-")
-
-
-def _colour(row: Part) -> str:
-    return VERDICT_COLOURS.get(verdict(row), GREY)
+def look_of(word: str) -> dict[str, Any]:
+    """Return colour and marker of a verdict."""
+    return {"colour": VERDICT_COLOURS.get(word, GREY), "marker": VERDICT_MARKERS.get(word, "x")}
 
 
 def hover(row: Part) -> str:
     """Return what a candidate's mark says under the pointer."""
-    parts = [f"{row.name}: {verdict(row)}", f"friction {show(row, 'friction')}"]
     compared = ("safety_factor",) if has_safety([row]) else ("restitution_threshold", "margin")
-    for name in (*compared, "probability_stable"):
-        parts += [f"{quantity(name).label} {show(row, name)}"] if row.get("verdict") else []
-    return "; ".join(parts)
+    names = (*compared, "probability_stable") if is_judged(row) else ()
+    numbers = [f"{quantity(name).label} {show(row, name)}" for name in ("friction", *names)]
+    return "; ".join([f"{row.name}: {verdict(row)}", *numbers])
 
 
-def overview(answer: Part) -> Figure:
+def overview(answer: Part, own: Part) -> Figure:
     """Return what candidates are ranked by in each environment and overall; best at the top.
 
     That is the safety factor, or the restitution threshold in the paper's model; with its interval where the
     bearing runs.
     """
-    own = next(one for one in answer.environments if one.name == answer.environment)
-    names = [row.name for row in own.materials][::-1]
-    place = {name: float(at) for at, name in enumerate(names)}
-    safe, here = has_safety(own.materials), f"{own.name}, with its 95 % interval"
-    name = "safety_factor" if safe else "restitution_threshold"
-    bound = (
-        (1.0, "half the runs whirl") if safe else (answer.restitution_factor, "this bearing with this film")
-    )
+    safe, ranks = has_safety(own.materials), ranks_of(own.materials)
+    place = {name: float(at) for at, name in enumerate(reversed(ranks))}
+    name, what = "restitution_threshold", "Restitution thresholds"
+    x, bound = axis(name, "-", [], low=-0.012, high=1.0), answer.restitution_factor
+    if safe:
+        name, what, bound = "safety_factor", "Safety factors", 1.0
+        x = axis(name, "-", [], is_log=True)
+
+    def known_of(rows: Sequence[Part]) -> list[Part]:
+        return [row for row in rows if f"{name}_low" in row]
 
     def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> Trace:
-        known = [row for row in rows if f"{name}_low" in row]
-        values = [estimate(row, name) for row in known]
-        found: dict[str, Any] = {"line": "", "name": where, "size": 3.6} | look
-        ends = [(one.low, one.high) if isinstance(one, Estimate) else (None, None) for one in values]
-        if where == here:
-            found |= {"ends_along": "x", "low": [low for low, _ in ends], "high": [high for _, high in ends]}
         return Trace(
-            x=[row.get(name) or row.get(f"{name}_low") for row in known],
-            y=[place[row.name] + shift for row in known],
-            hover=tuple(f"{where}; {hover(row)}" for row in known),
-            **found,
+            x=[row.get(name) or row.get(f"{name}_low") for row in known_of(rows)],
+            y=[place[row.name] + shift for row in known_of(rows)],
+            hover=tuple(f"{where}; {hover(row)}" for row in known_of(rows)),
+            line="",
+            name=where,
+            **look,
         )
 
-    others = [(one.name, one.materials) for one in answer.environments if one.name != answer.environment]
-    others += [("overall", answer.overall)] if others else []
-    found: list[Mark] = [Across(at=bound[0], name=bound[1])]
-    found.append(trace(own.materials, 0.0, here, marker="D", size=4.5))
-    looks = zip(range(99), others, cycle(MARKERS), cycle(CYCLE), strict=False)
-    found += [
-        trace(rows, 0.26 - 0.52 * (at + 0.5) / len(others), where, marker=marker, colour=colour)
-        for at, (where, rows), marker, colour in looks
+    low, high = ([row.get(f"{name}_{end}") for row in known_of(own.materials)] for end in ("low", "high"))
+    ours: dict[str, Any] = {"low": low, "high": high, "ends_along": "x", "marker": "D", "size": 4.5}
+    found: list[Mark] = [
+        Across(at=bound, name="half the runs whirl" if safe else "this bearing with this film"),
+        trace(own.materials, 0.0, f"{own.name}, with its 95 % interval", **ours),
     ]
-    verdicts_here = tuple(
-        Label(
-            y=place[row.name],
-            text=verdict(row),
-            colour=_colour(row),
-            marker=VERDICT_MARKERS.get(verdict(row), "x"),
-        )
-        for row in own.materials
+    others = [(one.name, one.materials) for one in answer.environments if one.name != own.name]
+    others += [("overall", answer.overall)] if others else []
+    looks = zip(others, cycle(MARKERS), cycle(CYCLE), strict=False)
+    for at, ((where, rows), marker, colour) in enumerate(looks):
+        shift = 0.26 - 0.52 * (at + 0.5) / len(others)
+        found.append(trace(rows, shift, where, marker=marker, colour=colour, size=3.6))
+    labels = tuple(
+        Label(y=place[row.name], text=verdict(row), **look_of(verdict(row))) for row in own.materials
     )
-    ranks = dict(zip(names[::-1], rank_texts(row.get("rank") for row in own.materials), strict=True))
-    x = axis(name, "-", [], is_log=True) if safe else axis(name, "-", [], low=-0.012, high=1.0)
-    ticks = tuple(f"{one}  {ranks[one]}" for one in names)
-    y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=ticks)
-    what = "Safety factors" if safe else "Restitution thresholds"
+    ticks = tuple(f"{one}  {ranks[one]}" for one in place)
+    y = Axis(label="", low=-0.6, high=len(place) - 0.4, names=ticks)
     title = f"{what}, larger is better; ranks in {own.name}"
-    return Figure(
-        rows=((Panel(title=title, x=x, y=y, marks=tuple(found), labels=verdicts_here, head="verdict"),),),
-        heading=figure_heading(answer, f"seed {answer.seed}"),
+    return figure(
+        answer,
+        (Panel(title=title, x=x, y=y, marks=tuple(found), labels=labels, head="verdict"),),
         alt=f"{what} of each candidate in each environment, where the bearing runs with their interval; the "
         "table has the numbers.",
-        height=0.9 + 0.32 * len(names),
+        height=0.9 + 0.32 * len(place),
+        more=(f"seed {answer.seed}",),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import page_of_document
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
+from separatrix.verbs.saved_answers import inputs_of_study, read_answer, refusing_damage
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -23,9 +24,6 @@ ORDER = (
     *("sensitivity", "simulate"),
 )
 """Verbs in the order of a report: the answer first, then the chain behind it, then what varies it."""
-
-HANDED = ("name", "verdict", "rank", "margin", "probability_stable", "probability_low", "probability_high")
-"""What the document of a report has of each candidate."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,18 +66,13 @@ class Report:
         """Plain data: what was answered in short, and where the report is."""
         from separatrix import __version__
 
-        rank = self.documents.get("rank") or {}
-        own = [one for one in rank.get("environments", ()) if one["name"] == rank["environment"]]
-        first = next(iter(self.documents.values()), {})
         return {
             "separatrix_version": __version__,
             "verb": "report",
-            "name": first.get("name"),
+            "name": next(iter(self.documents.values()))["name"],
             "title": self.page.title,
             "answers": [*self.documents],
             "summary": list(self.page.lead),
-            "environment": rank.get("environment"),
-            "materials": [{key: row.get(key) for key in HANDED} for one in own for row in one["materials"]],
             "files": [str(path) for path in files],
         }
 
@@ -104,45 +97,30 @@ def report_of(
     }
     if not pages:
         raise InputError(where, "has no answer that a report shows", cure="Name the study instead.")
-    main = next(iter(pages))
-    caveats = [Note(text, "caveat") for text in [*missing, *_differing(kept)]]
+    main, first = next(iter(pages.items()))
+    with refusing_damage(where):
+        others = [(verb, differing(kept[main], one)) for verb, one in kept.items()]
+    apart = [
+        f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
+        for verb, names in others
+        if names
+    ]
+    caveats = [Note(text, "caveat") for text in (*missing, *apart)]
     bearing = kept.get("bearing")
     drawn = bearing_picture(part_of(kept[main]), part_of(bearing).contacts if bearing else None)
-    first = replace(pages[main], blocks=(*pages[main].blocks[:1], *caveats, *pages[main].blocks[1:], drawn))
-    parts = [(_title(verb), first if verb == main else page) for verb, page in pages.items()]
+    pages[main] = replace(first, blocks=(*first.blocks[:1], *caveats, *first.blocks[1:], drawn))
+    parts = [(VERBS[verb].rstrip("."), page) for verb, page in pages.items()]
     return Report(joined(first.title, first.subtitle, parts), kept)
-
-
-def _title(verb: str) -> str:
-    return VERBS[verb].rstrip(".")
-
-
-def _differing(found: Mapping[str, Document]) -> Iterator[str]:
-    """Yield how answers of a folder differ in their inputs from the main one, a sentence for each."""
-    main = next(iter(found))
-    for verb, one in found.items():
-        if names := differing(found[main], one):
-            yield f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
 
 
 def differing(one: Document, other: Document) -> str:
     """Return the inputs in which two answers differ, the first four by name; empty if there are none."""
-    ours, theirs = _inputs(one), _inputs(other)
+    ours, theirs = (
+        dict(inputs_of_study(found["study"])) | {"version of separatrix": (found["separatrix_version"], None)}
+        for found in (one, other)
+    )
     names = [key for key in {**ours, **theirs} if ours.get(key) != theirs.get(key)]
     return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if names[4:] else "")
-
-
-def _inputs(found: Document) -> dict[str, object]:
-    """Return what an answer was computed from, without the lines of files where it stands."""
-    from separatrix.study.sources import inputs_of
-
-    known: dict[str, object] = {
-        f"{section}.{key}": {part: one for part, one in entry.items() if part != "origin"}
-        for section, key, entry in inputs_of(found["study"])
-    }
-    ranking = found["study"]["ranking"] or {"candidates": ()}
-    known |= {f"candidate {one['name']}": one for one in ranking["candidates"]}
-    return known | {"version of separatrix": found["separatrix_version"]}
 
 
 def asked_by(study: Study) -> Document:
@@ -169,28 +147,27 @@ def report_of_study(
     """
     from separatrix.study.reading import require
     from separatrix.verbs.answer_files import save_answer
-    from separatrix.verbs.saved_answers import read_answer
 
     asked, found, missing = asked_by(study), dict[str, Document](), list[str]()
     for path in [folder / f"{verb}.json" for verb in ORDER] if folder is not None else []:
         one = read_answer(path) if path.exists() else {}
         if one.get("complete", True) is True and asked.items() <= one.items():
             found[path.stem] = one
-    of_cage = ("restitution", "stability" if study.ranking is None else "rank")
-    for name in ("bearing", "traction", *(of_cage if study.cage is not None else ())):
-        if name in found:
+    of_cage = ("restitution", "stability" if study.ranking is None else "rank") if study.cage else ()
+    for verb in map(verb_named, ("bearing", "traction", *of_cage)):
+        if verb.name in found:
             continue
-        verb = verb_named(name)
         try:
-            require(study, name, *verb.needs)
-            found[name] = compute(verb)
+            require(study, verb.name, *verb.needs)
+            made = compute(verb)
         except InputError as error:
             if not found:
                 raise
-            missing.append(f"`{name}` was not computed: {error}")
+            missing.append(f"`{verb.name}` was not computed: {error}")
             continue
         if folder is not None:
-            save_answer(folder, verb, found[name], pictures=pictures)
-        if found[name].get("complete") is False:
+            save_answer(folder, verb, made, pictures=pictures)
+        if made.get("complete") is False:
             return None
+        found[verb.name] = made
     return report_of(found, missing, str(folder or study.name))

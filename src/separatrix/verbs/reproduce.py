@@ -5,17 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
-from separatrix.ground.quantity import ABSENT, Quantity, alone
+from separatrix.ground.quantity import ABSENT, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 from separatrix.present.blocks import Block, Cell, Column, Note, Page, Table, text_column
 from separatrix.verbs import verb_named
-from separatrix.verbs.saved_answers import AGAIN, is_number, read_answers, refusing_damage
+from separatrix.verbs.saved_answers import is_number, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool, Verb
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -
     for one in read_answers(options.result).values():
         with refusing_damage(where):
             found.append(_again(one, where, jobs, progress))
-    same = all(one["same"] for one in found)
+    same = all(one["agreement"] != DIFFERENT for one in found)
     return {"separatrix_version": __version__, "verb": "reproduce", "same": same, "answers": found}
 
 
@@ -57,7 +58,12 @@ def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -
     from separatrix.verbs.answer_files import document
     from separatrix.verdict.long_jobs import Interrupted
 
-    kept = kept_by(stored, where)
+    kept = stored.get("provenance")
+    if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
+        raise InputError(where, "has no provenance", cure="Answer its question again.")
+    if not isinstance(kept.get("study"), dict):
+        why = printable(kept.get("reason") or "", 200)
+        raise InputError(where, "does not keep its study", cure=why)
     if stored.get("complete") is False:
         raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
     verb, study = verb_named(stored["verb"]), study_again(kept["study"])
@@ -66,25 +72,9 @@ def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -
     found = computed(verb, study, options, jobs=jobs, progress=progress)
     if not found.is_complete:  # what was finished cannot be compared
         raise Interrupted
-    result = agreement(stored, json.loads(json.dumps(document(verb, found))))
-    known = {"verb": verb.name, "name": study.name, "title": study.title, "result": result}
-    return known | {"same": result["agreement"] != DIFFERENT, "versions": [*_versions(stored, kept)]}
-
-
-def kept_by(stored: Document, where: str) -> Document:
-    """Provenance of an answer, with what must be there."""
-    kept = stored.get("provenance")
-    if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
-        raise InputError(where, "has no provenance", cure="Answer its question again.")
-    study, why = kept.get("study"), kept.get("reason")
-    if not isinstance(study, dict):
-        raise InputError(where, "does not keep its study", cure=printable(why, 200) if why else "")
-    kinds = {"name": str, "data": dict, "files": dict, "origins": dict}
-    is_right = all(isinstance(study.get(name), kind) for name, kind in kinds.items())
-    if not is_right or not all(isinstance(x, str) for at in ("files", "origins") for x in study[at].values()):
-        rule = "is damaged: provenance.study must have name, data, files and origins"
-        raise InputError(where, rule, cure=AGAIN)
-    return kept
+    known = {"verb": verb.name, "name": study.name, "title": study.title}
+    again = json.loads(json.dumps(document(verb, found)))
+    return known | agreement(stored, again) | {"versions": [*_versions(stored, kept)]}
 
 
 def options_from(verb: Verb, given: object) -> Any:
@@ -110,17 +100,11 @@ def options_from(verb: Verb, given: object) -> Any:
 
 def agreement(stored: Document, computed: Document) -> Document:
     """Compare two documents in their values; not in their versions, provenance and warnings."""
-    found = list(_differing(stored, computed, "", None))
+    found = [*_differing(stored, computed, "", None)]
     beyond = [one for one in found if one["relative"] is None or one["relative"] > ROUNDING]
-    numbers = [one for one in found if one["relative"] is not None]
-    largest = max(numbers, key=lambda one: one["relative"], default={"relative": None, "key": None})
-    return {
-        "agreement": DIFFERENT if beyond else ROUNDED if found else EXACT,
-        "largest_difference": largest["relative"],
-        "largest_at": largest["key"],
-        "differences": beyond[:MOST_SHOWN],
-        "count": len(beyond),
-    }
+    words = DIFFERENT if beyond else ROUNDED if found else EXACT
+    shown = beyond or sorted(found, key=itemgetter("relative"), reverse=True)
+    return {"agreement": words, "count": len(beyond), "differences": shown[:MOST_SHOWN]}
 
 
 def _differing(a: object, b: object, key: str, scale: float | None) -> Iterator[Document]:
@@ -152,12 +136,10 @@ def _versions(stored: Document, kept: Document) -> Iterator[Document]:
     from separatrix import __version__
     from separatrix.study.sources import versions
 
-    given = kept.get("versions")
-    before = {"separatrix": stored["separatrix_version"], **(given if isinstance(given, dict) else {})}
+    before = {"separatrix": stored["separatrix_version"], **(kept.get("versions") or {})}
     for name, here in {"separatrix": __version__, **versions()}.items():
-        value = before.get(name)
-        if value != here:
-            yield {"name": name, "stored": printable(str(value), 40) if value else None, "here": here}
+        if before.get(name) != here:
+            yield {"name": name, "stored": printable(str(before.get(name) or "unknown"), 40), "here": here}
 
 
 # --- the page -----------------------------------------------------------------------------------
@@ -174,17 +156,12 @@ def page(answer: Part) -> Page:
 
 
 def _blocks(one: Part) -> Iterator[Block]:
-    found = one.result
-    differ = "value differs" if found.count == 1 else "values differ"
-    how = f"the same, {found.agreement}" if one.same else f"different: {found.count} {differ}"
+    differ = "value differs" if one.count == 1 else "values differ"
+    how = f"different: {one.count} {differ}" if one.count else f"the same, {one.agreement}"
     yield Note(f"{one.verb} {one.name}: {how}.", "lead")
-    if "largest_at" in found:
-        largest = alone(found.largest_difference, RELATIVE, "-")
-        yield Note(f"Largest relative difference {largest}, of `{found.largest_at}`.")
-    rows = tuple(found.differences or ())
-    more = f"{found.count - MOST_SHOWN} more." if found.count > MOST_SHOWN else ""
-    yield Table(f"{one.verb} differs", COLUMNS, rows, more)
-    others = [f"{at.name} {at.here} (then {at.stored or 'unknown'})" for at in one.versions or ()]
+    caption = f"{one.count - MOST_SHOWN} more." if one.count > MOST_SHOWN else ""
+    yield Table(f"{one.verb} differs", COLUMNS, tuple(one.differences or ()), caption)
+    others = [f"{at.name} {at.here} (then {at.stored})" for at in one.versions or ()]
     if others:
         yield Note(f"Other versions here: {', '.join(others)}.")
 

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn, TypeGuard
+from typing import Any, NoReturn, TypeGuard
 
 from separatrix.ground.document import Document
 from separatrix.ground.errors import InputError
@@ -31,13 +31,13 @@ REPORT = re.compile(
 )
 """The documents of the answers in a report."""
 
-ENVELOPE: dict[str, tuple[type, str]] = {
-    **dict.fromkeys(("separatrix_version", "name", "title"), (str, "text")),
-    "seed": (int, "a whole number"),
-    "units": (dict, "the units of the answer"),
-    "warnings": (list, "a list of texts"),
+ENVELOPE: dict[str, type] = {
+    **dict.fromkeys(("separatrix_version", "name", "title"), str),
+    "seed": int,
+    "units": dict,
+    "warnings": list,
 }
-"""What every answer has beside those of its verb: the type of each, and its words."""
+"""What every answer has beside those of its verb, and the type of each."""
 
 DAMAGE = (ValueError, TypeError, LookupError, AttributeError, RecursionError, ArithmeticError, StopIteration)
 """What a document raises whose parts are not those of an answer."""
@@ -87,6 +87,33 @@ def read_folder(folder: Path) -> dict[str, Document]:
     return found
 
 
+Input = tuple[object, str | None]
+"""Value of an input, and its unit."""
+
+BESIDE = ("record", "table", "other_tests", "distribution")
+"""Parts of a resolved study that are not inputs: whole records of the library."""
+
+
+def inputs_of_study(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Input]]:
+    """Yield name, value and unit of every input of a resolved study; of an uncertain one its distribution."""
+    if "value" in node:
+        known, unit = node.get("distribution"), node.get("unit")
+        words = known.get("written") or known.get("words") if isinstance(known, Mapping) else None
+        yield path, (words or node["value"], unit if not words and isinstance(unit, str) else None)
+        return
+    if path and isinstance(node.get("name"), str):
+        yield path, (node["name"], None)
+    for key, item in node.items():
+        if isinstance(item, Mapping) and key not in BESIDE:
+            yield from inputs_of_study(item, f"{path}.{key}" if path else key)
+        elif key == "candidates" and isinstance(item, list):
+            for one in item:
+                for place, measured in (one.get("friction") or {}).items():
+                    for name in ("mean", "standard_deviation") if measured else ():
+                        yield f"friction of {one['name']} in {place}, {name}", (measured.get(name), "-")
+                yield from inputs_of_study(one.get("material") or {}, f"material of {one['name']}")
+
+
 @contextmanager
 def refusing_damage(where: str) -> Iterator[None]:
     """Refuse an answer, under its file, whose parts are not what its page or its comparison takes."""
@@ -121,13 +148,13 @@ def _checked(found: object, where: str, named: str = "") -> Document:
         raise InputError(where, f"must be an answer of {', '.join(VERBS)}", got=got)
     if named not in ("", verb):
         raise InputError(where, f"must be an answer of {printable(named, 40)}", verb)
-    for key, (kind, words) in ENVELOPE.items():
+    for key, kind in ENVELOPE.items():
         if key not in found:
             raise InputError(where, f"lacks {key}", cure=AGAIN)
-        value = found[key]
-        is_right = isinstance(value, kind) and (key not in ("name", "title") or str(value).strip())
-        if not is_right or (key == "warnings" and not all(isinstance(one, str) for one in value)):
-            raise InputError(where, f"is damaged: {key} must be {words}", cure=AGAIN)
+        if not isinstance(found[key], kind) or (kind is str and not found[key].strip()):
+            raise InputError(where, f"is damaged: {key}", cure=AGAIN)
+    if not all(isinstance(one, str) for one in found["warnings"]):
+        raise InputError(where, "is damaged: warnings", cure=AGAIN)
     return found
 
 

@@ -39,7 +39,8 @@ class Tool:
     `options` is the class of its options: each field has an `Option` beside its type. `compute` takes the
     options and, where it `takes_time`, the number of threads and what hears of its progress; it returns
     its document, and `page` makes the page of that. `rows` is the key of its main list, `folder` the usual
-    place of its files, empty for one that writes none. `help` is its line of help if that is not in `TOOLS`.
+    place of its files, empty for one that writes none; one that `writes_data` writes more than its document
+    and its text. `help` is its line of help if that is not in `TOOLS`.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Tool:
     help: str = ""
     rows: str = ""
     folder: str = ""
+    writes_data: bool = True
 
     def shown_options(self) -> Mapping[str, tuple[Any, Option, Any]]:
         """Type, help and default of each option, by name; `dataclasses.MISSING` of one without a default."""
@@ -78,7 +80,6 @@ class Verb(Tool):
 
     needs: tuple[str, ...] = ()
     moves_a_cage: bool = False
-    writes_data: bool = True
     keeps_runs: bool = False
     files: Callable[[Part], Iterable[tuple[str, bytes]]] = lambda answer: ()  # noqa: ARG005
     refusals: Callable[[Study], Iterable[str]] = lambda study: ()  # noqa: ARG005

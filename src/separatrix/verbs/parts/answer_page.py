@@ -12,20 +12,12 @@ from separatrix.ground.units import format_quantity
 from separatrix.present.blocks import Block, Column, Heading, Level, Note, Page, Table, facts, text_column
 from separatrix.present.figure import Figure, Panel
 
-NAMED = 4
-"""Uncertain inputs that are named in a sentence."""
-
 MOST_NOTES = 3
 """Notes that are shown on a screen; they come with the gravest first."""
 
 INTERRUPTED = "Interrupted: only what was finished is here."
 
-PROPERTIES = {
-    "elastic_modulus": "elastic modulus",
-    "poisson_ratio": "Poisson's ratio",
-    "density": "density",
-    "expansion": "thermal expansion",
-}
+PROPERTIES = ("elastic_modulus", "poisson_ratio", "density", "thermal_expansion")
 
 MICRO = (" um", " \N{MICRO SIGN}m")
 """A micrometre as it is written, and as it is shown."""
@@ -41,27 +33,22 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level =
     `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
     `appendix` is where inputs and provenance are shown.
     """
-    missing = [] if answer.get("complete") is not False else [Note(INTERRUPTED)]
-    uncertain = [one["name"] for one in answer.values["study"]["uncertain_inputs"]]
-    notes = [] if draws or not uncertain else [at_their_means(uncertain)]
+    missing = [Note(INTERRUPTED)] if answer.get("complete") is False else []
+    uncertain = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
+    notes = [f"Uncertain inputs are at their means: {uncertain}."] if uncertain and not draws else []
     texts = [*notes, *answer.warnings]
-    first, others = texts[:MOST_NOTES], texts[MOST_NOTES:]
-    more = [Note(f"`--full` has {len(others)} more.", "caveat", Level.BRIEF)] if others else []
-    caveats = [*(Note(text, "caveat") for text in first), *more]
-    caveats += [Note(text, "caveat", Level.LONG) for text in others]
+    caveats = [
+        Note(text, "caveat", Level.ALWAYS if place < MOST_NOTES else Level.LONG)
+        for place, text in enumerate(texts)
+    ]
+    if len(texts) > MOST_NOTES:
+        caveats.append(Note(f"`--full` has {len(texts) - MOST_NOTES} more.", "caveat", Level.BRIEF))
     return Page(
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",
         (*missing, *blocks, *caveats),
         tuple(sources(answer, appendix)),
     )
-
-
-def at_their_means(names: Sequence[str]) -> str:
-    """Return the sentence of a verb that takes one value of each uncertain input."""
-    listed = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
-    several = f"{len(names)} uncertain inputs are at their means"
-    return f"{several if len(names) > 1 else 'An uncertain input is at its mean'}: {listed}."
 
 
 def sources(answer: Part, level: Level = APPENDIX) -> list[Block]:
@@ -114,26 +101,19 @@ def value_words(value: Any, unit: str) -> str:
 
 
 def _materials(study: Json, level: Level) -> list[Block]:
-    rows = tuple(dict.fromkeys(_properties(study)))
-    heads = ("material", "property", "value", "confidence", "source")
-    columns = tuple(text_column(head, itemgetter(at)) for at, head in enumerate(heads))
-    return [Table("materials", columns, rows, "Materials, at the temperature of the study.", level)]
-
-
-def _properties(study: Json) -> Iterator[tuple[str, ...]]:
+    """Return each material with its properties, how sure they are, and where they are from."""
     parts = [study.get(name) or {} for name in ("bearing", "film", "cage")]
     found = [one.get(key) for one in parts for key in ("ball_material", "ring_material", "material")]
     found += [one.get("material") for one in (study.get("ranking") or {}).get("candidates", [])]
-    for one in (one for one in found if isinstance(one, dict) and one.get("name")):
-        record = one.get("record") or {}
-        for key, words in PROPERTIES.items():
-            value = one.get(key) or {}
-            if value.get("value") is None:
-                continue
-            place = (record.get("taken") or {}).get(key)
-            taken = record["data"][key][place] if place is not None else {}
-            known = (str(taken.get(each) or one.get(each) or "-") for each in ("confidence", "source"))
-            yield str(one["name"]), words, value_words(value["value"], value.get("unit") or ""), *known
+    rows = {one["name"]: one for one in found if isinstance(one, dict) and one.get("name")}
+
+    def property_column(key: str) -> Column:
+        return text_column(key.replace("_", " "), lambda row: entry_words(row.get(key) or {}))
+
+    columns = (text_column("material", itemgetter("name")), *map(property_column, PROPERTIES))
+    caption = "Materials, at the temperature of the study."
+    known = ((name, f"{one['source']} ({one['confidence']})") for name, one in rows.items() if one["source"])
+    return [Table("materials", columns, tuple(rows.values()), caption, level), facts(*known, level=level)]
 
 
 def _frictions(ranking: Json, level: Level) -> list[Block]:
@@ -184,29 +164,14 @@ def is_chosen(model: Json) -> bool:
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
     """Return what stands above a figure: the title, and the operating point but for the inputs `varied`."""
     study = answer.values["study"]
-
-    def stated(section: str, key: str, words: str = "{}") -> str:
-        """Return an input in words; empty if there is none, if it is 0, or if it is varied."""
-        entry = (study.get(section) or {}).get(key) or {}
-        value, unit = entry.get("value"), entry.get("unit")
-        if not value or key in varied:
-            return ""
-        return words.format(format_quantity(value, unit).replace(*MICRO) if unit else value)
-
-    film = study.get("film") or {}
-    coat = [(film.get("material") or {}).get("name"), stated("film", "thickness")]
-    around = (
-        _listed(", ", stated("operation", "fluid"), stated("operation", "temperature")),
-        *(stated("operation", f"{race}_speed", f"{race} ring {{}}") for race in ("inner", "outer")),
-        *(stated("operation", f"{way}_load", f"{{}} {way}") for way in ("axial", "radial")),
-        "bare races" if film.get("is_bare") else _listed(", ", *coat),
-    )
-    return tuple(filter(None, [answer.title, _listed("; ", *around, *more)]))
+    return answer.title, _listed("; ", operation_words(study, varied), coat_words(study, varied), *more)
 
 
-def figure(answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5) -> Figure:
-    """Return a figure of an answer, with its operating point above it."""
-    return Figure(rows=rows, heading=figure_heading(answer), alt=alt, height=height)
+def figure(
+    answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5, more: Sequence[str] = ()
+) -> Figure:
+    """Return a figure of an answer, with its operating point, and `more`, above it."""
+    return Figure(rows=rows, heading=figure_heading(answer, *more), alt=alt, height=height)
 
 
 def _listed(between: str, *words: str | None) -> str:
@@ -216,14 +181,10 @@ def _listed(between: str, *words: str | None) -> str:
 # What the study of a document states, a fact a line.
 
 
-MODELS = {"strips": "strips", "exact": "exact contact"}
-PRESSURES = {"hertz": "Hertz's pressure", "coated": "pressure of the coated bodies"}
-
-
-def stated(study: Json, section: str, key: str) -> str:
-    """Return an input of a resolved study as text; empty if there is none, or if it is 0."""
+def stated(study: Json, section: str, key: str, varied: Sequence[str] = ()) -> str:
+    """Return an input of a resolved study as text; empty if there is none, if it is 0, or if it is varied."""
     entry = (study.get(section) or {}).get(key) or {}
-    return entry_words(entry) if entry.get("value") or entry.get("name") else ""
+    return entry_words(entry) if key not in varied and (entry.get("value") or entry.get("name")) else ""
 
 
 def bearing_facts(answer: Part) -> list[tuple[str, str]]:
@@ -242,32 +203,35 @@ def bearing_facts(answer: Part) -> list[tuple[str, str]]:
         ("Contact angle", f"{contact} {grooves}"),
         ("Operation", operation_words(study)),
         ("Film on the races", film_words(study)),
-        ("Traction", contact_words(study)),
+        (
+            "Traction",
+            ", ".join(f"{key.replace('_', ' ')} {one['value']}" for key, one in study["traction"].items()),
+        ),
     ]
 
 
-def operation_words(study: Json) -> str:
-    """Return speeds, loads and medium of a study."""
-    outer, inner = stated(study, "operation", "outer_speed"), study["operation"]["inner_speed"]
-    speeds = [f"inner ring {entry_words(inner)}", outer and f"outer ring {outer}"]
-    keys = (("axial_load", "axial"), ("radial_load", "radial"), ("moment", "moment"))
-    loads = [f"{load} {way}" for key, way in keys if (load := stated(study, "operation", key))]
-    around = " at ".join(filter(None, (stated(study, "operation", key) for key in ("fluid", "temperature"))))
-    return ", ".join(filter(None, [*speeds, *loads])) + (f"; {around}" if around else "")
+def operation_words(study: Json, varied: Sequence[str] = ()) -> str:
+    """Return speeds, loads and medium of a study, but for the inputs `varied`."""
+
+    def each(*keys: str, words: str = "{1}") -> Iterator[str]:
+        for key in keys:
+            if text := stated(study, "operation", key, varied):
+                yield words.format(key.partition("_")[0], text)
+
+    speeds = each("inner_speed", "outer_speed", words="{0} ring {1}")
+    loads = each("axial_load", "radial_load", "moment", words="{1} {0}")
+    return _listed("; ", ", ".join([*speeds, *loads]), " at ".join(each("fluid", "temperature")))
+
+
+def coat_words(study: Json, varied: Sequence[str] = ()) -> str:
+    """Return the film on the races; without its thickness if that is `varied`."""
+    name = (study["film"].get("material") or {}).get("name") or "film"
+    coat = _listed(", ", name, stated(study, "film", "thickness", varied))
+    return "bare races" if study["film"]["is_bare"] else coat
 
 
 def film_words(study: Json) -> str:
     """Return the film and the friction on the races."""
-    film = study["film"]
-    name = (film.get("material") or {}).get("name") or "film"
-    coat = "none: bare races" if film["is_bare"] else f"{name}, {entry_words(film['thickness'])}"
     worn = stated(study, "film", "wear.races")
     where = f"; worn on {'both races' if worn == 'both' else f'the {worn} race'}" if worn else ""
-    return f"{coat}; friction {entry_words(film['race_friction'])}{where}"
-
-
-def contact_words(study: Json) -> str:
-    """Return how the contacts are computed."""
-    asked = study["traction"]
-    slip = ", slip by the pressure included" if asked["pressure_slip"]["value"] == "included" else ""
-    return f"{MODELS[asked['model']['value']]}, {PRESSURES[asked['pressure']['value']]}{slip}"
+    return f"{coat_words(study)}; friction {entry_words(study['film']['race_friction'])}{where}"

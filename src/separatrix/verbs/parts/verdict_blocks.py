@@ -4,19 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import inf
-from typing import Any
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Cell, Column, Table, grouped, text_column
-from separatrix.verbs.parts.quantity_text import all_numbers, cell, column, fact, fill, show
+from separatrix.verbs.parts.quantity_text import all_numbers, cell, column, fill, number_of, show
 
-MOTIONS = {
-    "CENTRED": "the cage rests among its balls, clear of its land",
-    "ON THE LAND": "the cage rests on its land, or moves on it as loads and the land's friction make it",
-    "ROLLING": "a whirl in the pockets, weaker than what frame and loads can give the cage",
-    "WHIRLING": "friction in the pockets sustains the motion, or makes it grow",
-    "DRIFTING": "the cage has no land, and nothing holds its centre",
-}
 DIRECTIONS = {1: "forward", -1: "backward", 0: ""}
 MARK = "*"
 """After a friction that is extrapolated beyond its tests."""
@@ -89,56 +81,6 @@ def motion_column() -> Column:
     return text_column("motion", lambda row: (row.cage_motion or "unresolved") if is_judged(row) else "-")
 
 
-def verdict_facts(row: Part) -> list[tuple[str, Any]]:
-    """Return a verdict with its evidence, a fact each."""
-    motion = row.cage_motion
-    drift = fill(row, "{drift_rate}") + (
-        fill(row, "; by the linear law {drift_rate_law}") if row.drift_rate_law else ""
-    )
-    growth = fill(row, "{growth_rate}, from {worst_kick}, the worst initial disturbance")
-    offset = "{largest_offset} at most; {mean_offset} at the end, relative spread {orbit_evenness}"
-    return [
-        ("Verdict", f"{row.verdict}. {row.reason}"),
-        ("Motion", f"{motion}: {MOTIONS[motion]}" if motion else "unresolved in most runs"),
-        fact(row, "probability_stable"),
-        ("Ball", f"{row.ball}. {row.ball_reason or 'The study asks for it.'}"),
-        ("Growth rate", growth),
-        ("Offset", fill(row, offset)),
-        *_space_facts(row),
-        ("Drift rate", drift),
-        ("Largest forces", f"{_force_words(row)}; {show(row, 'largest_land_force')} at the land"),
-        *_left_facts(row),
-        ("Impacts", _impacts(row)),
-        ("Whirl", _whirl(row)),
-        ("Energy at the end", fill(row, "{end_energy}; frame and loads alone can supply {drive_energy}")),
-        *power_facts(row),
-        ("Runs", fill(row, f"{row.runs} from each initial disturbance, of up to {{longest_run}}")),
-    ]
-
-
-def _force_words(row: Part) -> str:
-    if row.force_exceeds_races:
-        return fill(row, "above what the races hold, {force_limit}, at a pocket")
-    return fill(row, "{largest_contact_force} at a pocket")
-
-
-def _space_facts(row: Part) -> list[tuple[str, str]]:
-    if row.largest_tilt is None or row.axial_travel is None:
-        return []
-    cone = fill(row, "; its lean goes round at {cone_ratio} of the balls") if "cone_ratio" in row else ""
-    return [
-        ("Tilt", fill(row, "{largest_tilt} at most") + cone),
-        ("Axial motion", fill(row, "{axial_travel} from end to end")),
-        ("Impacts at pockets", fill(row, "{impact_rate} in the last part")),
-    ]
-
-
-def _left_facts(row: Part) -> list[tuple[str, str]]:
-    every = row.runs * len(row.by_kick)
-    where = f"in {row.left_pocket} of {every} runs a ball reached the edge of its pocket's wall"
-    return [("Left its pocket", where)] if row.left_pocket else []
-
-
 def power_facts(row: Part) -> list[tuple[str, str]]:
     """Return what friction feeds into the cage or takes from it, and what rubs on the land."""
     powers = (("pocket", "pocket_power"), ("land", "land_power"))
@@ -151,58 +93,31 @@ def power_facts(row: Part) -> list[tuple[str, str]]:
     return rows
 
 
-def _impacts(row: Part) -> str:
-    """Return which pocket takes most impacts, against an even share, and the share of the land."""
-    shares = row.pocket_impact_shares
-    if not any(shares):
-        return f"none at a pocket, {'all' if row.land_impact_share else 'none'} at the land"
-    most = max(range(len(shares)), key=shares.__getitem__)
-    share = show(Part({"pocket_impact_shares": shares[most]}, {}), "pocket_impact_shares")
-    land = fill(row, "; {land_impact_share} of all impacts are at the land")
-    return f"pocket {most + 1} takes {share} of the impacts at {len(shares)} pockets{land}"
-
-
-def _whirl(row: Part) -> str:
-    """Return frequency and direction in the turning frame, and the whirl ratio in the fixed one."""
-    seen = f"{show(row, 'whirl_frequency')} {DIRECTIONS[row.whirl_direction] or 'without direction'}"
-    if row.whirl_ratio is None:
-        return f"{seen}; the ball set is at rest"
-    return fill(
-        row, f"{seen}, seen from the balls; the centre orbits at {{whirl_ratio}} of the ball set's speed"
-    )
-
-
 def verdict_sentences(rows: Sequence[Part], place: str) -> str:
-    """Return the answer of a ranking: the first, its margin and why it is undecided if it is, the others."""
+    """Return the answer of a ranking: the first, its safety factor or margin, the others."""
     first = [row for row in rows if row.get("rank") == 1]
     if not first:
         return f"No candidate was ranked in {place}."
     each = grouped((verdict(row), row.name) for row in first)
-    word, names = next(iter(each)), ", ".join(row.name for row in first)
-    lead = f"{names} ranks first in {place}: {word}."
+    names = ", ".join(row.name for row in first)
+    lead = f"{names} ranks first in {place}: {verdict(first[0])}."
     if len(first) > 1:
-        words = f" ({names}): {word}" if len(each) == 1 else f": {by_verdict(each)}"
+        words = f" ({names}): {verdict(first[0])}" if len(each) == 1 else f": {by_verdict(each)}"
         lead = f"{len(first)} materials tie for first in {place}{words}."
+    margin = _safety(first) if has_safety(first) else _margin(first)
     others = grouped((verdict(row), row.name) for row in rows if row not in first)
     rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
-    if has_safety(first):
-        return f"{lead} {_safety(first)} {rest}"
-    limits = (
-        show(first[0], "restitution_threshold") if len(first) == 1 else span(first, "restitution_threshold")
+    return f"{lead} {margin} {rest}"
+
+
+def _margin(first: Sequence[Part]) -> str:
+    """Return the restitution thresholds of the candidates that rank first, in the paper's model."""
+    name = "restitution_threshold"
+    threshold = span(first, name) if len(first) > 1 else show(first[0], name)
+    return (
+        f"From the reference disturbance the largest stable restitution factor is {threshold}; this bearing "
+        f"and film have {span(first, 'restitution_factor')}, a margin of {span(first, 'margin')}."
     )
-    whose = "The cage" if len(first) == 1 else "Their cages"
-    up_to = f"{whose} remain{'s' * (len(first) == 1)} stable up to a restitution factor of {limits}"
-    if all(map(is_any, first)):
-        up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at any restitution factor"
-    if not any(row.restitution_threshold for row in first):
-        up_to = f"{whose} {'is' if len(first) == 1 else 'are'} stable at no restitution factor above 0"
-    elif [*each] != ["STABLE"]:
-        up_to = f"From the reference disturbance the largest stable restitution factor is {limits}"
-    etas, margins = span(first, "restitution_factor"), span(first, "margin")
-    by_it = f"{up_to}; this bearing and film have {etas}, a margin of {margins}."
-    if first[0].verdict == "UNDECIDED":
-        by_it += f" {first[0].name}: {first[0].reason}"
-    return f"{lead} {by_it} {rest}"
 
 
 def _safety(first: Sequence[Part]) -> str:
@@ -215,17 +130,6 @@ def _safety(first: Sequence[Part]) -> str:
         f"Safety factor {at}{factor}: half the runs whirl at a friction of {criticals}, the pockets have "
         f"{frictions}."
     )
-
-
-def is_any(row: Part) -> bool:
-    """Whether the cage is stable at any restitution factor, within the whole interval."""
-    return bool(row.restitution_threshold >= row.restitution_threshold_low >= 1.0)
-
-
-def threshold_alone(row: Part) -> str:
-    """Return the restitution threshold of a row without its interval."""
-    name = "restitution_threshold"
-    return "any" if is_any(row) else show(Part({name: row.restitution_threshold}, {}), name)
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
@@ -258,11 +162,9 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
 
 def span(rows: Sequence[Part], name: str) -> str:
     """Return the least and the largest value of a quantity among some rows, one where they look alike."""
-    known = sorted((row for row in rows if name in row), key=lambda row: getattr(row, name))
-    if not known:
-        return show(rows[0], name)
-    ends = [Part({name: getattr(row, name)}, row.units) for row in (known[0], known[-1])]
-    return " to ".join(dict.fromkeys(show(one, name) for one in ends))
+    known = [getattr(row, name) for row in rows if name in row]
+    ends = [number_of(rows[0], name, one) for one in (min(known), max(known))] if known else []
+    return " to ".join(dict.fromkeys(ends)) or show(rows[0], name)
 
 
 def candidate_numbers(answer: Part) -> Table:
