@@ -3,26 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import (
-    Cell,
-    Column,
-    Equation,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Picture,
-    Table,
-    facts,
-    text_column,
-)
+from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, cell, fill, named, place_column, quantity, show
+from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, place_column, show
 from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -31,17 +18,10 @@ if TYPE_CHECKING:
     from separatrix.verbs.chain_answers import MobilityAnswer
 
 SMALL = (
-    "damping",
-    "effective_mass",
-    "damping_relaxed",
-    "damping_locked",
-    "groove_damping",
-    "groove_stiffness",
-    "pitch_angle",
-    "pocket_friction_effect",
-    "slip_speed_inner",
-    "slip_speed_outer",
+    *("damping", "effective_mass", "damping_relaxed", "damping_locked", "groove_damping", "groove_stiffness"),
+    *("pitch_angle", "pocket_friction_effect", "slip_speed_inner", "slip_speed_outer"),
 )
+PUSH = ("speed", "force_forward", "force_backward", "force_law")
 
 
 def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
@@ -67,14 +47,11 @@ def page(answer: Part) -> Page:
         "{damping}, and carry at most {capacity}."
     )
     law = answer.traction
-    columns = map(partial(place_column, answer), ("speed", "force_forward", "force_backward", "force_law"))
     return page_of(
         answer,
         Note(fill(answer, lead), "lead"),
         Heading("Small motion of the most loaded ball"),
-        small_motion(answer),
-        Heading("Modes"),
-        modes(answer),
+        facts(*(fact(answer, name, named(name)) for name in SMALL)),
         Heading("Push along the orbit"),
         Equation(
             r"F(u) = \dfrac{C\,u}{\left(1 + (u/v)^4\right)^{1/4}}",
@@ -87,7 +64,12 @@ def page(answer: Part) -> Page:
             ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", fill(answer, "up to {asymmetry} of the capacity")),
         ),
-        Table("pushes", tuple(columns), tuple(range(len(answer.speed))), level=Level.SHEET),
+        Table(
+            "pushes",
+            tuple(place_column(answer, name) for name in PUSH),
+            tuple(range(len(answer.speed))),
+            level=Level.SHEET,
+        ),
         Picture(
             "mobility",
             lambda: push_figure(answer),
@@ -95,26 +77,6 @@ def page(answer: Part) -> Page:
             "ways, by the law of traction and by its slope at the origin.",
         ),
     )
-
-
-def small_motion(answer: Part) -> Table:
-    """Return the small motion by both slip laws, a quantity a row."""
-
-    def by(part: Part) -> Column:
-        return Column(part.slip_law, lambda name: cell(part, name))
-
-    return Table("small motion", (text_column("", named), by(answer), by(answer.rigid)), SMALL)
-
-
-def modes(answer: Part) -> Table:
-    """Return the modes of a pushed ball, by rising rate."""
-    rigid = dict(enumerate(answer.rigid.rates))
-    unit = answer.rigid.unit("rates")
-    columns = [text_column("mode", lambda i: str(i + 1)), place_column(answer, "rates")]
-    columns += [place_column(answer, "oscillations")] if any(answer.oscillations) else []
-    columns += [place_column(answer, "shares")]
-    columns += [Column("rate, rigid", lambda i: Cell(rigid.get(i), quantity("rates"), unit))]
-    return Table("modes", tuple(columns), tuple(range(len(answer.rates))))
 
 
 def push_figure(answer: Part) -> Figure:
@@ -142,8 +104,8 @@ def push_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="mobility",
-    epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
-    "the capacity of the races.",
+    epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
+    "of the races; rates and shares of its modes are in the JSON.",
     compute=compute,
     page=page,
     refusals=refusals,

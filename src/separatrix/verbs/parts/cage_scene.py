@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Hertz, Metre
@@ -13,8 +14,8 @@ from separatrix.present.view import RIM, Scene
 AROUND = np.linspace(0.0, 2 * np.pi, 721)
 """Directions in which boundaries are drawn: half a degree apart."""
 
-FINE, LAST = 6, 5
-"""Points drawn for a sample of the path, and turns at its end that are drawn darker."""
+FINE = 6
+"""Points drawn for a sample of the path."""
 
 BEYOND, NEVER = 2.0, 1e3
 """Half the play over the land's gap from which the pockets are left out of the picture; over the play, along
@@ -83,26 +84,17 @@ def land_heights(answer: Part) -> Array:
     return np.zeros(1) if cage.land_count == 1 else 0.5 * cage.land_spacing * np.array([-1.0, 1.0])
 
 
-def smooth_path(time: Array, position: Array, velocity: Array) -> Array:
+def smooth_path(answer: Part) -> Array:
     """Return the path through samples as the cubics that have their positions and velocities.
 
     Straight lines between the samples of a fast whirl would be drawn as a polygon.
     """
-    s = np.linspace(0.0, 1.0, FINE, endpoint=False)[:, np.newaxis]
-    step = np.diff(time)[:, np.newaxis, np.newaxis]
-    start, end = position[:-1, np.newaxis], position[1:, np.newaxis]
-    slope, next_slope = step * velocity[:-1, np.newaxis], step * velocity[1:, np.newaxis]
-    there = start + (end - start) * s**2 * (3 - 2 * s)
-    path = there + slope * s * (1 - s) ** 2 - next_slope * s**2 * (1 - s)
-    return np.concatenate([path.reshape(-1, 2), position[-1:]])
-
-
-def last_turns(path: Array) -> int:
-    """Return the first point of the `LAST` turns, by their length; 0 if the path is not much longer."""
-    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    around = 2 * np.pi * float(np.hypot(*path[-1]))
-    first = int(np.searchsorted(length, length[-1] - LAST * around))
-    return first if length[-1] > 2 * LAST * around and around > 0.0 else 0
+    time, position, velocity = (array(answer, name) for name in ("time", "position", "velocity"))
+    if time.size < 2:
+        return position
+    places = np.linspace(0, time.size - 1, FINE * (time.size - 1) + 1)
+    found = CubicHermiteSpline(time, position, velocity)(np.interp(places, np.arange(time.size), time))
+    return np.asarray(found)
 
 
 def whirl_spectrum(answer: Part) -> tuple[Array, Array]:
@@ -218,7 +210,6 @@ def scene(answer: Part) -> Scene:
 
 
 def _largest_since(values: Array, moments: Array) -> Array:
-    """Return the largest of some values between each moment and the one before it."""
-    before = np.concatenate([[moments[0]], moments[:-1] + 1])
-    pairs = [(min(a, b), b + 1) for a, b in zip(before, moments, strict=True)]
-    return np.array([values[a:b].max(axis=0) for a, b in pairs])
+    """Return the largest of some values between each moment and the one before it, from the first sample."""
+    starts = np.concatenate([[0], moments[:-1] + 1])
+    return np.asarray(np.maximum.reduceat(values[: moments[-1] + 1], starts))

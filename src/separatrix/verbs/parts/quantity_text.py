@@ -213,3 +213,8 @@ def is_proportional(values: Sequence[float]) -> bool:
 def value_of(parameter: Part, name: str, value: float | None) -> Cell:
     """Return a value of a parameter of this name, in its unit."""
     return Cell(value, quantity(name), parameter.get("unit") or "-")
+
+
+def at(parameter: Part, name: str, value: float | None) -> str:
+    """Return a parameter and its value in words."""
+    return f"{quantity(name).label} {value_of(parameter, name, value).text}"
