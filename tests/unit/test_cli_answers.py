@@ -56,7 +56,6 @@ EXTRA = {
 VERBS = [verb_named(name) for name in NAMES]
 KEPT = {verb.name: {NAME} for verb in VERBS if verb.keeps_runs}
 KEPT["simulate"] = {"moving-cage.html"}
-KEPT["sweep"] = {"sweep.csv"}
 """Files beside the answer."""
 
 pytestmark = pytest.mark.usefixtures("elsewhere")

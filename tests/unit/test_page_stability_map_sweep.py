@@ -1,15 +1,12 @@
 """What is special in the pages of stability curves, maps and sweeps: cases of sentences, data of figures."""
 
-import csv
-import io
-
 import pytest
 
 from separatrix.ground.document import part_of
 from separatrix.verbs.map import map_figure, nearest_words
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import is_proportional, quantity
-from separatrix.verbs.sweep import SHOWN, case_table, csv_text, envelope_figure, worst_words
+from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 
 def test_the_linear_law_is_that_of_the_physics():
@@ -126,10 +123,3 @@ def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
     grid.values["parameters"].pop()
     first, frequencies = envelope_figure(grid).panels
     assert [one.x.label for one in (first, frequencies)] == ["case [-]"] * 2
-
-
-def test_the_table_of_cases_is_written_with_units():
-    """A row for each case in SI units; what is absent is empty."""
-    head, first, *_ = csv.reader(io.StringIO(csv_text(swept())))
-    assert head[:3] == ["case", "film.thickness [m]", "restitution_factor [-]"]
-    assert first == ["0", "1e-06", "0.0", "10.0", "50.0", "", "", ""]

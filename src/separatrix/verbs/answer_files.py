@@ -109,8 +109,6 @@ def save_answer(
             from separatrix.present.dataset import dataset
 
             dataset(found).to_netcdf(stage / f"{verb.name}.nc", engine="h5netcdf")
-            for name, content in verb.files(part_of(found)):
-                (stage / name).write_bytes(content)
 
 
 def save_page(folder: Path, name: str, page: Page, found: Document) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Equation, Heading, Level, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLUE, VERMILION, Figure, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState
     from separatrix.study.study import Study
 
-ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
-CREEP = ("spin_roll_ratio", "creep_spin", "creep_curvature")
+CONTACT = (
+    *("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed"),
+    *("spin_roll_ratio", "creep_spin", "creep_curvature"),
+)
 
 
 def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
@@ -55,13 +57,12 @@ def page(answer: Part) -> Page:
         balls(answer),
         *([] if are_alike(answer) else [Picture("bearing-balls", lambda: balls_figure(answer), AROUND)]),
         Heading("Contacts of the most loaded ball"),
-        by_race("contacts", *contacts, *ELLIPSE),
+        by_race("contacts", *contacts, *CONTACT),
         Equation(
             r"\xi(y) = \delta + s\,y + q\,y^2 + \delta\xi",
             "Creep across the groove [14, 16]: free-rolling offset, spin $s$, curvature $q$ (Heathcote), and "
             "the increment $dxi$ that an impact of the cage adds.",
         ),
-        by_race("creep", *contacts, *CREEP, level=Level.LONG, caption="Creep in these contacts."),
         *clearance_blocks(answer.clearances),
     )
 
@@ -110,8 +111,7 @@ def balls_figure(answer: Part) -> Figure:
             every += [one for one in known if one is not None]
         x = axis("azimuth", "rad", [ball.azimuth for ball in balls])
         panels.append(Panel(title=title, x=x, y=axis(name, balls[0].unit(key), every), marks=tuple(marks)))
-    alt = "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers."
-    return figure(answer, tuple(panels), alt=alt)
+    return figure(answer, tuple(panels), alt=AROUND)
 
 
 VERB = Verb(name="bearing", compute=compute, page=page)

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
-from separatrix.present.blocks import Column, Heading, Level, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
 from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
-from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
@@ -92,15 +91,9 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     return made_into(made, lambda: stability_map(asked, runner=runner))
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no cage to move."""
-    yield from refused(study, cage_motion)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `map`."""
     refused = [one for one in answer.points if one.get("state") == "REFUSED"]
-    friction = [] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]
     return page_of(
         answer,
         Note(" ".join(filter(None, [counted(answer), nearest_words(answer)])), "lead"),
@@ -109,17 +102,11 @@ def page(answer: Part) -> Page:
             ("Across", _axis_words(answer.x)),
             ("Upward", _axis_words(answer.y)),
             ("Runs", runs_words(answer)),
+            *([] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]),
         ),
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
         bands(answer),
-        Heading("Basis of this answer", Level.LONG),
-        facts(
-            *basis_facts(answer),
-            *friction,
-            ("Scatter of the balls", show(answer, "ball_scatter")),
-            level=Level.LONG,
-        ),
         *(
             all_numbers(name, (), ((one,) for one in answer.get(name) or ()))
             for name in ("points", "changes")
@@ -315,5 +302,5 @@ VERB = Verb(
     "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
     "command to resume. With --json and no --out nothing is kept.",
     keeps_runs=True,
-    refusals=refusals,
+    refusals=lambda study: refused(study, cage_motion),
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
@@ -35,11 +34,6 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
     return MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why no push of a ball has an answer."""
-    yield from refused(study, rolling, push)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `mobility`."""
     lead = (
@@ -70,13 +64,14 @@ def page(answer: Part) -> Page:
             tuple(range(len(answer.speed))),
             level=Level.SHEET,
         ),
-        Picture(
-            "mobility",
-            lambda: push_figure(answer),
-            "Force of the races against the speed of a ball beyond its free orbit, by the slip fields both "
-            "ways, by the law of traction and by its slope at the origin.",
-        ),
+        Picture("mobility", lambda: push_figure(answer), PUSHED),
     )
+
+
+PUSHED = (
+    "Force of the races against the speed of a ball beyond its free orbit, by the slip fields both ways, by "
+    "the law of traction and by its slope at the origin."
+)
 
 
 def push_figure(answer: Part) -> Figure:
@@ -97,9 +92,8 @@ def push_figure(answer: Part) -> Figure:
     x = axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1])
     label, most = "force of the races $F$", 1.25 * capacity
     y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
-    alt = "Force against speed: it rises with the damping, then levels off at the capacity of the races."
     panel = Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks))
-    return figure(answer, (panel,), alt=alt, height=3.2)
+    return figure(answer, (panel,), alt=PUSHED, height=3.2)
 
 
 VERB = Verb(
@@ -108,5 +102,5 @@ VERB = Verb(
     "of the races; rates and shares of its modes are in the JSON.",
     compute=compute,
     page=page,
-    refusals=refusals,
+    refusals=lambda study: refused(study, rolling, push),
 )

@@ -17,12 +17,13 @@ from separatrix.verbs.parts.refused import impact, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from separatrix.study.study import Study
     from separatrix.verbs.chain_answers import RestitutionAnswer
 
 ETA = "restitution_factor"
+TITLE = "Restitution factor with other films: race dampings summed (Eq. 18)"
 
 
 def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
@@ -46,11 +47,6 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
         lubrication=solution.lubrication,
         notes=(*solution.notes, *overdamped),
     )
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no restitution factor."""
-    yield from refused(study, rolling, impact)
 
 
 def page(answer: Part) -> Page:
@@ -116,13 +112,18 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     decades = [10.0**power for power in range(-9, -3) if bare < 10.0**power <= 1.001 * max(thickness)]
     ticks = ((bare, "bare"), *((one, format_number(one / along.size)) for one in decades))
     panel = Panel(
-        title="Other films: race dampings summed (Eq. 18)",
+        title=TITLE,
         x=replace(along, low=0.5 * bare, high=1.3 * max(thickness), ticks=ticks),
         y=axis(ETA, curve.unit(ETA), [1.0], low=-0.02, high=1.0),
         marks=tuple(marks),
     )
-    alt = "Restitution factor against thickness of the film, a curve for each friction."
-    return figure(answer, (panel,), alt=alt, height=3.0)
+    return figure(answer, (panel,), alt=TITLE, height=3.0)
 
 
-VERB = Verb(name="restitution", compute=compute, page=page, needs=("cage",), refusals=refusals)
+VERB = Verb(
+    name="restitution",
+    compute=compute,
+    page=page,
+    needs=("cage",),
+    refusals=lambda study: refused(study, rolling, impact),
+)

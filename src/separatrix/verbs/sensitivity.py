@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
@@ -35,7 +34,6 @@ from separatrix.present.figure import (
     sign,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
     column,
@@ -70,11 +68,6 @@ GUESS = "?"
 """After a friction whose scatter is a guess."""
 
 OVERALL = "over all environments, mean friction"
-SOURCES = {
-    "study": "from the study",
-    "measured": "with measured scatter",
-    "assumed": "with the default scatter, a guess",
-}
 PICTURE = "Probability that a bearing's cage settles, of each candidate in each environment."
 LISTED, LEAST = 6, 0.02
 """Items of a list, and the least share of an input shown; the workbook has all."""
@@ -150,7 +143,7 @@ def page(answer: Part) -> Page:
         Heading("Which friction a new material may have"),
         *allowed_frictions(answer),
         Heading("Basis of this answer", Level.LONG),
-        facts(*basis_facts(answer), *ensemble_facts(answer), level=Level.LONG),
+        facts(*ensemble_facts(answer), level=Level.LONG),
         candidate_numbers(answer),
         all_numbers(
             "all shares",
@@ -210,8 +203,6 @@ def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
 def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:
     """Yield the uncertain inputs, and the ensemble with its seed."""
     yield from ((row.name, row.distribution) for row in answer.inputs if not is_friction(row.name))
-    origins = Counter(SOURCES[row.source] for row in answer.inputs if is_friction(row.name))
-    yield "Frictions", ", ".join(f"{count} {source}" for source, count in origins.items())
     failed = f", of which {answer.failed} make no bearing" if answer.failed else ""
     yield "Bearings drawn", f"{show(answer, 'bearings')}{failed}; seed {answer.seed}"
     yield "Initial disturbances", ", ".join(number_of(answer, "kicks", one) for one in answer.kicks)
@@ -293,7 +284,7 @@ def probabilities_figure(answer: Part) -> Figure:
     return Figure(
         rows=tuple(tuple(panels[at : at + 2]) for at in range(0, len(panels), 2)),
         heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt="P(stable) with its interval of each candidate in each environment; the tables have the numbers.",
+        alt=PICTURE,
         height=0.75 + 0.17 * max(len(rows) for _, rows in places),
         legend=(
             *(sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()),

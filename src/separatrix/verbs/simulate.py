@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Annotated
@@ -33,6 +32,7 @@ from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import SimulationAnswer
 
@@ -124,11 +124,11 @@ def given_factor(options: Options) -> float | None:
     return eta
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why the pocket has no friction, or there is no cage to move."""
+def friction_of_pocket(solution: Solution) -> None:
+    """Refuse a pocket of unknown friction."""
     from separatrix.study.candidates import require_friction
 
-    yield from refused(study, lambda solution: require_friction(solution.study), cage_motion)
+    require_friction(solution.study)
 
 
 def page(answer: Part) -> Page:
@@ -262,5 +262,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    refusals=refusals,
+    refusals=lambda study: refused(study, friction_of_pocket, cage_motion),
 )

@@ -41,11 +41,6 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     )
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no cage to move."""
-    yield from refused(study, cage_motion)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `stability`."""
     below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
@@ -135,5 +130,5 @@ VERB = Verb(
     epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
     "restitution factor.",
     keeps_runs=True,
-    refusals=refusals,
+    refusals=lambda study: refused(study, cage_motion),
 )

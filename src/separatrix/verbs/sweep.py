@@ -157,13 +157,13 @@ def worst_words(answer: Part) -> str:
 
 
 def case_table(answer: Part) -> Table:
-    """Return parameters and answers of the worst cases; workbook and sweep.csv have all, with reasons."""
+    """Return parameters and answers of the worst cases; the workbook has all, with reasons."""
     cases, worst = answer.cases, answer.get("worst")
     caption, name = "", worst.quantity if worst else ETA
     if len(cases) > SHOWN:
         sign = -1.0 if name == ETA else 1.0
         cases = sorted(cases, key=lambda one: sign * one.get(name) if name in one else float("inf"))[:SHOWN]
-        caption = f"The worst {SHOWN} of {len(answer.cases)} cases; sweep.csv and sweep.json have all."
+        caption = f"The worst {SHOWN} of {len(answer.cases)} cases; sweep.json and the workbook have all."
 
     def of(one: Part) -> Column:
         known = quantity(one.name)
@@ -176,30 +176,6 @@ def case_table(answer: Part) -> Table:
         words = text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")
         columns.append(words)
     return Table("worst cases", tuple(columns), tuple(cases), caption)
-
-
-def csv_text(answer: Part) -> str:
-    """Return the table of all cases for spreadsheets and other programs, in SI units."""
-    import csv
-    import io
-
-    from separatrix.ground.sheet import text_for_cell
-
-    cases = answer.cases
-    names = list(cases[0].values)
-    units = answer.units.get("cases") or {}
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream)
-    writer.writerow([f"{name} [{units[name]}]" if units.get(name) else name for name in names])
-    for case in cases:
-        row = (case.values[name] for name in names)
-        writer.writerow([text_for_cell(one) if isinstance(one, str) else one for one in row])
-    return stream.getvalue()
-
-
-def files(answer: Part) -> Iterator[tuple[str, bytes]]:
-    """Yield the table of all cases as CSV."""
-    yield "sweep.csv", csv_text(answer).encode()
 
 
 # The picture.
@@ -255,7 +231,7 @@ def envelope_figure(answer: Part) -> Figure:
     return Figure(
         rows=tuple(tuple(panels[i : i + 2]) for i in range(0, len(panels), 2)),
         heading=figure_heading(answer, varied=[one.name.rpartition(".")[2] for one in answer.parameters]),
-        alt="Stability and frequencies over the cases of the sweep; the table has the numbers.",
+        alt=ENVELOPE,
         height=2.4,
     )
 
@@ -295,10 +271,9 @@ VERB = Verb(
     options=Options,
     compute=compute,
     page=page,
-    files=files,
     moves_a_cage=True,
     epilog="Every value of one --vary goes with every value of the others. A case that is refused is a row "
-    "with its reason. The table is sweep.csv, sweep.xlsx and sweep.nc in the folder of the answer: "
+    "with its reason. The table is sweep.xlsx and sweep.nc in the folder of the answer: "
     '--vary "film.thickness=0.2..2um:10:log" --vary bearing.contact_angle=15..25deg:11.',
     keeps_runs=True,
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import cycle
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
@@ -21,13 +20,11 @@ from separatrix.present.figure import (
     Trace,
 )
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, by_race, column, fill, number_of, place_column, show
+from separatrix.verbs.parts.quantity_text import axis, by_race, fill, number_of, place_column, show
 from separatrix.verbs.parts.refused import refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from separatrix.study.study import Study
     from separatrix.verbs.chain_answers import TractionAnswer
 
@@ -60,11 +57,6 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
     )
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there are no traction curves."""
-    yield from refused(study, rolling)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `traction`."""
     inner, outer = answer.inner, answer.outer
@@ -79,8 +71,6 @@ def page(answer: Part) -> Page:
         ),
         by_race("traction", inner, outer, *CONTACT),
         Picture("traction-curves", lambda: curves_figure(answer), CURVES),
-        Heading("Slope at other pivoting to rolling ratios, by strips"),
-        by_ratio(answer),
         *([Heading("Range of the strips")] if answer.outside else []),
         *(Note(sentence) for sentence in answer.outside),
         *(curve_table(part, race) for race, part in (("inner", inner), ("outer", outer))),
@@ -95,22 +85,11 @@ CURVES = (
 )
 
 
-def by_ratio(answer: Part) -> Table:
-    """Return the slopes at other ratios, whose signs are those of this bearing."""
-    columns = tuple(
-        column(name, of=itemgetter(place), head=f"{head}, {race} race")
-        for place, race in enumerate(("inner", "outer"))
-        for name, head in (("spin_roll_ratio", "ratio"), ("slope", "slope"))
-    )
-    rows = zip(answer.inner.by_spin_roll_ratio, answer.outer.by_spin_roll_ratio, strict=True)
-    return Table("other ratios", columns, tuple(rows))
-
-
 def curve_table(part: Part, race: str) -> Table:
     """Return the points of the curves of a race, for the workbook."""
     columns = [place_column(part, name) for name in ("creep_increment", "traction_coefficient")]
     for one in part.by_spin_roll_ratio:
-        head = f"traction coefficient at {show(one, 'spin_roll_ratio')}"
+        head = fill(one, "traction coefficient at {spin_roll_ratio}, slope {slope}")
         columns.append(place_column(one, "traction_coefficient", head=head))
     rows = tuple(range(len(part.creep_increment)))
     return Table(f"curves, {race} race", tuple(columns), rows, level=Level.SHEET)
@@ -123,8 +102,7 @@ def curves_figure(answer: Part) -> Figure:
     y = axis("traction_coefficient", answer.inner.unit("traction_coefficient"), [], low=-high, high=high)
     titles = "a  Ball on inner race", "b  Ball on outer race"
     panels = tuple(curves_panel(part, title, y) for part, title in zip(races, titles, strict=True))
-    alt = "Traction coefficient against creep increment for both races, and shear in a strip of each contact."
-    return figure(answer, panels, (shear_panel(answer),), alt=alt, height=2.6)
+    return figure(answer, panels, (shear_panel(answer),), alt=CURVES, height=2.6)
 
 
 def curves_panel(part: Part, title: str, y: Axis) -> Panel:
@@ -171,4 +149,4 @@ def shear_panel(answer: Part) -> Panel:
     )
 
 
-VERB = Verb(name="traction", compute=compute, page=page, refusals=refusals)
+VERB = Verb(name="traction", compute=compute, page=page, refusals=lambda study: refused(study, rolling))

@@ -24,9 +24,8 @@ the radius of one ball, from which a boundary does not exist."""
 SHORTEST, STRONG, PRESENT = 8, 0.3, 0.05
 """Least samples of a spectrum; shares of its largest amplitude from which a whirl is strong, and is shown."""
 
-A_TURN, GAP = 6, 1.5
-"""Least frames in a turn of the fastest strong whirl: fewer may reverse its sense; steps over the usual one
-from which frames have a gap."""
+A_TURN = 6
+"""Least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
 
 MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 """Most frames, and most numbers in all: they keep a page under 1 MB."""
@@ -118,28 +117,20 @@ def spectrum_reach(answer: Part) -> Hertz:
     return float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
 
 
-def frame_moments(answer: Part, most: int) -> Array:
+def frame_moments(answer: Part, most: int) -> list[Array]:
     """Return the samples that become frames, rising, with the first and the last.
 
-    They are close enough to show each turn of the whirl; if the whole run would take too many, its beginning
-    and its end are shown.
+    They are close enough to show each turn of the whirl; if the whole run would take too many, two parts, its
+    beginning and its end, are shown.
     """
     time, (frequency, share) = array(answer, "time"), whirl_spectrum(answer)
     even: Any = np.unique(np.linspace(0, time.size - 1, min(most, time.size)).astype(int))
     turns = float(np.abs(frequency[share > STRONG]).max(initial=0.0) * time[-1])  # none of a cage at rest
     step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
     if int(np.diff(even).max(initial=1)) <= step:
-        return even  # type: ignore[no-any-return]
-    half = np.arange(most // 2) * step
-    return np.unique(np.concatenate([half, time.size - 1 - half]))
-
-
-def shown_parts(time: Array, moments: Array) -> tuple[tuple[float, float], ...]:
-    """Return beginning and end of each part of a run that some frames show [s]."""
-    steps = np.diff(moments)
-    usual = float(np.median(steps)) if steps[1:].size else float(moments[-1])
-    parts = np.split(time[moments], np.flatnonzero(steps > GAP * usual + 1) + 1)
-    return tuple((float(part[0]), float(part[-1])) for part in parts)
+        return [even]
+    half: Any = np.arange(most // 2) * step
+    return [half, time.size - 1 - half[::-1]]
 
 
 def turned_by(cage: Part, time: Array) -> Array:
@@ -158,7 +149,8 @@ def scene(answer: Part) -> Scene:
     two pockets, the pockets within the cage, and the cage in the picture.
     """
     most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (9 + 3 * len(answer.pocket_angle))))
-    moments, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
+    parts, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
+    moments: Any = np.concatenate(parts)
     plays, land, in_space = array(answer, "half_play"), land_boundary(answer), "lean" in answer
     radius, pitch = float(cage.pitch_radius), 2.0 * np.pi * cage.pitch_radius / max(3, plays.size)
     ball = 0.5 * (float(cage.ball_diameter) or 0.75 * pitch)
@@ -194,7 +186,7 @@ def scene(answer: Part) -> Scene:
         gap=0.0 if land is None else float(land.max()),
         in_space=in_space,
         time=time[moments],
-        parts=shown_parts(time, moments),
+        parts=tuple((float(time[one[0]]), float(time[one[-1]])) for one in parts),
         turned=turned_by(cage, time[moments]),
         centre=centre,
         lean=lean,
