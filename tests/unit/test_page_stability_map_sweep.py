@@ -3,7 +3,7 @@
 import pytest
 
 from separatrix.ground.document import part_of
-from separatrix.verbs.map import map_figure, nearest_words
+from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import is_proportional, quantity
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
@@ -53,20 +53,22 @@ def mapped(**more):
     points = [*column, none | {"x": 2e-6, "y": 0.1}, none | {"x": 2e-6, "y": 0.3, "state": "NOT_RUN"}]
     change = {"x": 1e-6, "y_low": 0.1, "y_high": 0.3, "whirls_above": True, "margin": -0.1}
     x = {"parameter": "film.thickness", "unit": "m", "values": [1e-6, 2e-6], "here": 1.2e-6}
-    y = {"parameter": "film.race_friction", "unit": "-", "values": [0.1, 0.3], "here": 0.4}
+    y = {"parameter": "film.race_friction", "unit": "-", "values": [0.1, 0.3], "here": 0.25}
     found = {"x": x, "y": y, "points": points, "changes": [change], "kick": 0.5, "title": "A map"}
     return part_of({**found, "study": {}, "units": {"kick": "m/s"}, **more})
 
 
-def test_a_map_says_where_it_changes_next_to_the_study():
-    """The nearest column is told with both ends of its change; of one without any, what was run there."""
+def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
+    """The nearest point with its runs, and both ends of a change in its column."""
     words = nearest_words(mapped())
     assert words.startswith(
-        "Next to the study, at film thickness 1 \N{MICRO SIGN}m, the cage begins to whirl "
+        "The point next to the study: film thickness 1 \N{MICRO SIGN}m, race friction 0.3: "
     )
-    assert "between race friction 0.1 and 0.3." in words
-    assert "share of the runs that whirl: 0 to 1." in nearest_words(mapped(changes=[]))
-    assert "was not finished" in nearest_words(mapped(changes=[], points=[]))
+    assert words.endswith("the cage begins to whirl between race friction 0.1 and 0.3.")
+    assert nearest_words(mapped(changes=[])).endswith("6 runs.")
+    assert [*unchanged(mapped(changes=[]))] == []
+    calm = [one.values | {"probability_high": 0.3} for one in mapped().points]
+    assert [*unchanged(mapped(changes=[], points=calm))] == [("Whirls nowhere", "at 1 \N{MICRO SIGN}m")]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():

@@ -18,7 +18,6 @@ from separatrix.verbs.parts.quantity_text import (
     all_numbers,
     at,
     fill,
-    number_of,
     parameter_axis,
     quantity,
     show,
@@ -107,6 +106,7 @@ def page(answer: Part) -> Page:
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
         bands(answer),
+        facts(*unchanged(answer)),
         *(
             all_numbers(name, (), ((one,) for one in answer.get(name) or ()))
             for name in ("points", "changes")
@@ -164,24 +164,19 @@ def _axis_words(axis: Part) -> str:
 
 
 def nearest_words(answer: Part) -> str:
-    """Return where the answer changes in the column next to the study; empty if the map is elsewhere."""
+    """Return the point next to the study, and where its column changes; empty if the map is elsewhere."""
     x, y = answer.x, answer.y
-    if not _has_here(x):
+    if not (_has_here(x) and _has_here(y)):
         return ""
-    place = _nearest(x.get("values"), x.here)
-    found = [
-        f"{'begins' if one.whirls_above else 'ceases'} to whirl between {at(y, y.parameter, one.y_low)} and "
-        f"{_value(y, one.y_high)}"
-        for one in answer.get("changes") or ()
-        if one.x == place
-    ]
-    shares = [one.probability_whirl for one in answer.points if one.x == place and one.runs]
-    if not found and shares:
-        ends = (number_of(answer, "probability_whirl", pick(shares)) for pick in (min, max))
-        found = [f"has no boundary that was found; share of the runs that whirl: {' to '.join(ends)}"]
-    own = " and ".join(at(one, one.parameter, one.here) for one in (x, y) if "here" in one)
-    does = f"the cage {', and '.join(found) or 'was not finished'}"
-    return f"Next to the study, at {at(x, x.parameter, place)}, {does}. The study itself has {own}."
+    place = tuple(_nearest(one.get("values"), one.here) for one in (x, y))
+    point = next(one for one in answer.points if (one.x, one.y) == place)
+    words = f"The point next to the study: {_hover(answer, point)}."
+    for one in answer.get("changes") or ():
+        if one.x == point.x:
+            does = "begins" if one.whirls_above else "ceases"
+            ends = f"{at(y, y.parameter, one.y_low)} and {_value(y, one.y_high)}"
+            words += f" In this column the cage {does} to whirl between {ends}."
+    return words
 
 
 def _has_here(axis: Part) -> bool:
@@ -219,6 +214,22 @@ def bands(answer: Part) -> Table:
     chosen = tuple(every[round(i * step)] for i in range(min(SHOWN, len(every))))
     part = f"{SHOWN} of {len(every)} places; map.json has all. " if len(every) > SHOWN else ""
     return Table("bands", columns, chosen, part + LEGEND)
+
+
+def unchanged(answer: Part) -> Iterator[tuple[str, str]]:
+    """Yield at which values of x the cage whirls at no point, or at every one, beyond the scatter."""
+    columns: dict[float, list[Part]] = {}
+    for one in answer.points:
+        if one.runs:
+            columns.setdefault(one.x, []).append(one)
+    changed = {one.x for one in answer.get("changes") or ()}
+    known = {x: along for x, along in columns.items() if x not in changed}
+    calm = [x for x, along in known.items() if all(one.probability_high < 0.5 for one in along)]
+    wild = [x for x, along in known.items() if all(one.probability_low > 0.5 for one in along)]
+    for words, found in (("Whirls nowhere", calm), ("Whirls everywhere", wild)):
+        if found:
+            values = ", ".join(_value(answer.x, x) for x in found[:SHOWN])
+            yield words, f"at {values}" + ", ..." * (len(found) > SHOWN)
 
 
 LEGEND = (

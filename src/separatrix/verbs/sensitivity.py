@@ -34,14 +34,7 @@ from separatrix.present.figure import (
     sign,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.quantity_text import (
-    all_numbers,
-    column,
-    fill,
-    marks,
-    number_of,
-    show,
-)
+from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, marks, number_of, show
 from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,

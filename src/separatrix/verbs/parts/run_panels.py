@@ -54,7 +54,7 @@ def orbit(answer: Part) -> Panel:
     first = first if answer.followed > answer.judged_from else 0
     if first:
         marks.append(_line(path[: first + 1], "path", colour=SKY, width=0.35, opacity=0.8))
-    marks.append(_line(path[first:], "judged part" if first else "path", colour=BLUE, width=0.7))
+    marks.append(_line(path[first:], "path, judged part" if first else "path", colour=BLUE, width=0.7))
     marks.append(_line(path[:1], "start", line="", marker="o", size=3.5))
     marks.append(_line(path[-1:], "end", line="", marker="s", size=3.5, is_open=True))
     unit = answer.unit("position")
@@ -80,32 +80,27 @@ class Course(NamedTuple):
     line: str = "-"
 
 
-class Limit(NamedTuple):
-    """A value at which a cage touches; None if it does so nowhere."""
+Limits = dict[tuple[str, str], float | None]
+"""Name and colour of what a cage touches -> the value at which it does; None if it does so nowhere."""
 
-    label: str
-    value: float | None
-    colour: str = BLACK
+POCKETS, LAND = ("pockets", BLACK), ("land", VERMILION)
 
 
 def offset(answer: Part) -> Panel:
     """Return the offset of the centre against time, in space with the axial place of the cage."""
     land = land_boundary(answer)
-    limits = Limit("pockets", largest_play(answer)), _land(None if land is None else float(land.max()))
+    limits: Limits = {POCKETS: largest_play(answer), LAND: None if land is None else float(land.max())}
     courses = [Course("offset", np.hypot(*array(answer, "position").T))]
     courses += [Course("axial place", array(answer, "axial_place"), GREEN)] if "lean" in answer else []
     return _course(answer, "largest_offset", "c  Offset", courses, limits)
-
-
-def _land(value: float | None) -> Limit:
-    return Limit("land", value, VERMILION)
 
 
 def tilt(answer: Part) -> Panel:
     """Return the angle between the axes of cage and bearing; limits are those of a centred cage."""
     play, land = cage_scene.axial_half_play(answer) / answer.cage.pitch_radius, land_boundary(answer)
     reach = float(cage_scene.land_heights(answer).max(initial=0.0)) + 0.5 * answer.cage.land_width
-    limits = Limit("pockets", play or None), _land(None if land is None or not reach else land.max() / reach)
+    at_land = None if land is None or not reach else float(land.max()) / reach
+    limits: Limits = {POCKETS: play or None, LAND: at_land}
     courses = [Course("tilt", np.hypot(*array(answer, "lean").T))]
     return _course(answer, "largest_tilt", "e  Tilt", courses, limits)
 
@@ -115,26 +110,26 @@ def forces(answer: Part) -> Panel:
     pocket, land = array(answer, "contact_force").max(axis=1), array(answer, "land_force")
     courses = [Course("pocket, largest", pocket)]
     courses += [Course("land", land, VERMILION, "--")] if np.any(land) else []
-    limit = Limit("races hold", answer.get("force_limit"), GREY)
-    return _course(answer, "contact_force", "d  Forces", courses, (limit,), label="force")
+    limits: Limits = {("races hold", GREY): answer.get("force_limit")}
+    return _course(answer, "contact_force", "d  Forces", courses, limits, label="force")
 
 
 def _course(
-    answer: Part, name: str, title: str, courses: list[Course], limits: tuple[Limit, ...], label: str = ""
+    answer: Part, name: str, title: str, courses: list[Course], limits: Limits, label: str = ""
 ) -> Panel:
     """Return courses of one quantity against time, with the limits near to them and the judged part."""
     time, every = array(answer, "time"), np.concatenate([one.values for one in courses])
     near = NEAR * float(np.abs(every).max())
-    known = [(one.value, one) for one in limits if one.value is not None and one.value <= near]
-    high = 1.12 * max([0.0, float(every.max()), *(value for value, _ in known)]) or 1e-12
+    known = {one: value for one, value in limits.items() if value is not None and value <= near}
+    high = 1.12 * max([0.0, float(every.max()), *known.values()]) or 1e-12
     low, first, until = min(0.0, 1.1 * float(every.min())), answer.judged_from, answer.followed
     marks, labels = list[Mark](), list[Label]()
     if until > first:
         look: dict[str, Any] = {"colour": GREY, "opacity": 0.2, "name": "judged part"}
         marks.append(Band(x=[first, until], low=[low, low], high=[high, high], **look))
-    for value, one in known:
-        marks.append(Across(at=value, axis="y", colour=one.colour, line="--"))
-        labels.append(Label(y=value, text=one.label, colour=one.colour))
+    for (touched, colour), value in known.items():
+        marks.append(Across(at=value, axis="y", colour=colour, line="--"))
+        labels.append(Label(y=value, text=touched, colour=colour))
     for course in courses:
         at = thinned(course.values)
         x, y = time[at].tolist(), course.values[at].tolist()
