@@ -10,7 +10,7 @@ from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import computed, verb_named
 from separatrix.verbs.answer_files import document
-from separatrix.verbs.parts.bearing_drawing import bearing_picture, shape_of
+from separatrix.verbs.parts.bearing_drawing import CAGE, bearing_picture, section_of
 
 SHIPPED = "cryogenic-turbopump"
 
@@ -117,7 +117,7 @@ def test_what_a_cage_reaches_first(tmp_path, clearance, first):
 def test_films_have_bare_races_apart_and_the_star_at_the_study(restitution):
     """A logarithmic axis has no zero."""
     pictures = [one for one in verb_named("restitution").page(restitution).blocks if hasattr(one, "figure")]
-    (panel, _) = pictures[0].figure().panels
+    (panel,) = pictures[0].figure().panels
     traces = [one for one in panel.marks if isinstance(one, Trace)]
     lines, star = [one for one in traces if one.line], traces[-1]
     assert all(min(line.x) > 0.0 for line in lines)
@@ -134,15 +134,15 @@ def test_bare_races_have_no_other_films(restitution):
     assert any("names no film material" in getattr(one, "text", "") for one in blocks)
 
 
-def test_the_drawing_dashes_what_the_study_does_not_state(restitution):
-    """Guessed parts are named, the stated clearance is kept, and every ball is there."""
+def test_the_section_keeps_what_the_study_states(restitution):
+    """Clearance of the land, contact angles, ball within its pocket; the cage is dashed."""
     study = restitution.values["study"]
-    shape = shape_of(study)
-    assert shape.guessed == {"rings", "cage"}
+    section = section_of(study)
+    assert not section.is_cage_stated
     gap = study["cage"]["land_clearance"]["value"]
-    assert shape.lands[1] - shape.cage[1] == pytest.approx(gap / 2)  # rounding
+    assert section.lands[1] - section.cage[1] == pytest.approx(gap / 2)  # rounding
+    assert section.hole > section.ball
     picture = bearing_picture(restitution, restitution)
-    assert "the cage's section" in picture.caption
-    _, view = picture.figure().panels
-    balls = [one for one in view.marks if isinstance(one, Trace) and one.face == "#eef1f5"]
-    assert len(balls) == len(shape.angles) == study["bearing"]["ball_count"]["value"]
+    assert "contact angle 30.9 deg inner, 25.31 deg outer" in picture.caption
+    (panel,) = picture.figure().panels
+    assert {one.line for one in panel.marks if one.face == CAGE} == {"--"}

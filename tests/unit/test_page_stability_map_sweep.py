@@ -1,39 +1,12 @@
 """What is special in the pages of stability curves, maps and sweeps: cases of sentences, data of figures."""
 
-import csv
-import io
-
 import pytest
 
-from separatrix.ground.document import Part, part_of
-from separatrix.verbs.map import map_figure, nearest_words, rows
-from separatrix.verbs.parts.curve_blocks import band_words, linear_law, pocket_friction
+from separatrix.ground.document import part_of
+from separatrix.verbs.map import map_figure, nearest_words, unchanged
+from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import is_proportional, quantity
-from separatrix.verbs.sweep import case_tables, csv_text, envelope_figure, worst_words
-
-POINT = {"critical_friction_low": 0.1, "critical_friction_high": 0.3}
-
-
-@pytest.mark.parametrize(
-    ("lacks", "sentence"),
-    [
-        ((), "From every disturbance runs settle or roll below 0.1; they whirl from every one above 0.3."),
-        (
-            ("critical_friction_high",),
-            "From every disturbance runs settle or roll below 0.1; up to 1 there is none above which they "
-            "whirl from every one.",
-        ),
-        (
-            ("critical_friction_low",),
-            "There is no friction at which runs settle or roll from every disturbance; they whirl from every "
-            "one above 0.3.",
-        ),
-    ],
-)
-def test_a_band_may_lack_an_end(lacks, sentence):
-    """An end of the band that was not found is stated, and is not a dash in a sentence."""
-    at = part_of({**POINT, **dict.fromkeys(lacks)})
-    assert band_words(part_of({"searched_friction": 1.0}), at) == sentence
+from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
 
 
 def test_the_linear_law_is_that_of_the_physics():
@@ -80,31 +53,22 @@ def mapped(**more):
     points = [*column, none | {"x": 2e-6, "y": 0.1}, none | {"x": 2e-6, "y": 0.3, "state": "NOT_RUN"}]
     change = {"x": 1e-6, "y_low": 0.1, "y_high": 0.3, "whirls_above": True, "margin": -0.1}
     x = {"parameter": "film.thickness", "unit": "m", "values": [1e-6, 2e-6], "here": 1.2e-6}
-    y = {"parameter": "film.race_friction", "unit": "-", "values": [0.1, 0.3], "here": 0.4}
+    y = {"parameter": "film.race_friction", "unit": "-", "values": [0.1, 0.3], "here": 0.25}
     found = {"x": x, "y": y, "points": points, "changes": [change], "kick": 0.5, "title": "A map"}
     return part_of({**found, "study": {}, "units": {"kick": "m/s"}, **more})
 
 
-def test_a_map_says_where_it_changes_next_to_the_study():
-    """The nearest column is told with both ends of its change."""
+def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
+    """The nearest point with its runs, and both ends of a change in its column."""
     words = nearest_words(mapped())
     assert words.startswith(
-        "Next to the study, at film thickness 1 \N{MICRO SIGN}m, the cage begins to whirl "
+        "The point next to the study: film thickness 1 \N{MICRO SIGN}m, race friction 0.3: "
     )
-    assert "between race friction 0.1 and 0.3." in words
-    assert [row.kind for row in rows(mapped(), [1e-6, 2e-6])] == ["whirls above", "was not finished"]
-
-
-@pytest.mark.parametrize("count", [10, 40])
-def test_the_rows_of_a_map_look_at_each_point_once(count, monkeypatch):
-    """However many columns: an interrupted map of ten thousand points has two seconds for its page."""
-    made, usual = [], Part.__init__
-    monkeypatch.setattr(Part, "__init__", lambda self, *given: made.append(usual(self, *given)))
-    places = range(count)
-    points = [{"x": x, "y": y, "state": "NOT_RUN", "runs": 0} for x in places for y in places]
-    found = rows(part_of({"points": points}), places)
-    assert [row.kind for row in found] == ["was not finished"] * count
-    assert len(made) == 1 + count**2
+    assert words.endswith("the cage begins to whirl between race friction 0.1 and 0.3.")
+    assert nearest_words(mapped(changes=[])).endswith("6 runs.")
+    assert [*unchanged(mapped(changes=[]))] == []
+    calm = [one.values | {"probability_high": 0.3} for one in mapped().points]
+    assert [*unchanged(mapped(changes=[], points=calm))] == [("Whirls nowhere", "at 1 \N{MICRO SIGN}m")]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():
@@ -134,11 +98,9 @@ def swept(count=3, **more):
     return part_of({**found, "parameters": parameters, "study": {}, "units": units, **more})
 
 
-def test_a_screen_has_the_worst_cases():
-    """A long sweep is cut to the worst ones on a screen; a workbook has all of them."""
-    brief, _, sheet = case_tables(swept(50))
-    assert [row.case for row in brief.rows[:3]] == [49, 48, 47]
-    assert len(sheet.rows) == 50
+def test_a_long_sweep_is_cut_to_its_worst_cases():
+    """A workbook has all of them."""
+    assert [row.case for row in case_table(swept(50)).rows] == [49 - i for i in range(SHOWN)]
 
 
 def test_cases_that_are_alike_have_no_worst():
@@ -149,8 +111,17 @@ def test_cases_that_are_alike_have_no_worst():
     assert other == alike + 1
 
 
-def test_the_table_of_cases_is_written_with_units():
-    """A row for each case in SI units; what is absent is empty."""
-    head, first, *_ = csv.reader(io.StringIO(csv_text(swept())))
-    assert head[:3] == ["case", "film.thickness [m]", "restitution_factor [-]"]
-    assert first == ["0", "1e-06", "0.0", "10.0", "50.0", "", "", ""]
+def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
+    """Over the first input where it rises along each curve; else over the numbers of the cases."""
+    grid = swept(4)
+    for case, (thickness, friction) in zip(
+        grid.values["cases"], [(1, 2), (1, 3), (4, 2), (4, 3)], strict=True
+    ):
+        case |= {"film.thickness": 1e-6 * thickness, "film.race_friction": friction}
+    grid.values["parameters"].append({"name": "film.race_friction", "unit": "-"})
+    (panel,) = envelope_figure(grid).panels
+    assert [one.x for one in panel.marks[:2]] == [[1e-6, 4e-6]] * 2
+    assert [one.name for one in panel.marks[:2]] == ["race friction 2", "race friction 3"]
+    grid.values["parameters"].pop()
+    first, frequencies = envelope_figure(grid).panels
+    assert [one.x.label for one in (first, frequencies)] == ["case [-]"] * 2

@@ -72,7 +72,7 @@ KEYS = {
 """Verb and place in its document -> the keys that scripts rely on."""
 
 KEPT = {verb: {NAME} for verb in VERBS if verb_named(verb).keeps_runs}
-KEPT |= {"simulate": {"moving-cage.html"}, "sweep": {"sweep.csv", NAME}}  # its verdicts are kept
+KEPT |= {"simulate": {"moving-cage.html"}, "sweep": {NAME}}  # its verdicts are kept
 """Files beside the answer."""
 
 COUNTS = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -113,17 +112,12 @@ def test_what_is_no_list_of_cases_is_refused(cases, rule):
 
 
 def test_every_value_goes_with_every_other(capsys):
-    """Two axes of 2 and 3 values: six cases, the last axis first to change; the same in all three tables."""
+    """Two axes of 2 and 3 values: six cases, the last axis first to change; the same in the workbook."""
     axes = ["--vary", "cage.mass=3..4g:2", "--vary", "film.thickness=0.5..1um:3"]
     found = document(capsys, "sweep", "momentum-wheel", *axes, "--out", "s")
     assert [case["cage.mass"] for case in found["cases"]] == [0.003] * 3 + [0.004] * 3
     assert [case["film.thickness"] for case in found["cases"]] == [5e-7, 7.5e-7, 1e-6] * 2
     assert found["parameters"][0] == {"name": "cage.mass", "unit": "kg"}
-    with Path("s/sweep.csv").open(newline="") as file:
-        head, *rows = csv.reader(file)
-    assert head[:3] == ["case", "cage.mass [kg]", "film.thickness [m]"]
-    at = head.index("restitution_factor [-]")
-    assert [float(row[at]) for row in rows] == [case["restitution_factor"] for case in found["cases"]]
     sheet = openpyxl.load_workbook("s/sweep.xlsx")["cases"]
     factor = [cell.value for cell in sheet[1]].index("restitution factor") + 1
     assert sheet.cell(2, factor).value == found["cases"][0]["restitution_factor"]

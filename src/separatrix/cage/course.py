@@ -100,7 +100,7 @@ class History:
     cause: Cause  # why the run is unresolved, or that friction on the land keeps it moving
     judged_from: Second  # the last part of the run, by which it was judged
     followed: Second  # its end; the history may go on
-    end_energy: Joule
+    end_energy: Joule  # mean kinetic energy at the end
     growth_rate: PerSecond
     drift_rate: PerSecond  # growth rate of the mean offset
     largest_offset: Metre
@@ -109,18 +109,18 @@ class History:
     orbit_speed: RadianPerSecond  # of the centre about the axis in the fixed frame, at the end
     whirl_frequency: Hertz
     whirl_direction: int  # of the centre's velocity, seen from the balls: 1 forward, -1 backward
-    pocket_power: Watt
-    land_power: Watt
-    rubbing_force: Newton
-    rubbing_speed: MetrePerSecond
+    pocket_power: Watt  # that pocket friction feeds into the cage; below 0 it takes from it
+    land_power: Watt  # the same of the land
+    rubbing_force: Newton  # mean normal force on the land
+    rubbing_speed: MetrePerSecond  # sliding speed there, weighted with the force
     largest_contact_force: Newton
     largest_land_force: Newton
     land_impacts: int  # impacts of the cage on its land
     left_ball: int  # first ball, from 1, that reached the edge of its pocket's wall; 0 if none did
-    left_time: Second
+    left_time: Second  # at which a ball reaches the edge of its pocket's wall
     energy_imbalance: Ratio  # unexplained part of the energy balance, over the work done
     largest_tilt: Radian | None  # between the axes of cage and bearing
-    cone_speed: RadianPerSecond | None
+    cone_speed: RadianPerSecond | None  # of the lean of the axis, in the fixed frame
     axial_low: Metre | None  # extremes of the axial place
     axial_high: Metre | None  # of the axial place
 

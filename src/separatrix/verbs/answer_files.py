@@ -105,8 +105,6 @@ def save_answer(
             _draw(page, stage, name)
         if isinstance(asked, Verb):
             dataset(found).to_netcdf(stage / f"{name}.nc", engine="h5netcdf")
-            for file, content in asked.files(part_of(found)):
-                (stage / file).write_bytes(content)
 
 
 def save_pictures(folder: Path, page: Page) -> None:

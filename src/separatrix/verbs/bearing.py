@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Equation, Heading, Level, Page, Picture, Table, facts, text_column
-from separatrix.present.figure import BLUE, VERMILION, Figure, Label, Panel, Trace
+from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, facts, text_column
+from separatrix.present.figure import BLUE, VERMILION, Figure, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.quantity_text import axis, by_race, cell, column, fact, show
@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState
     from separatrix.study.study import Study
 
-ELLIPSE = ("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed")
-CREEP = ("spin_roll_ratio", "creep_spin", "creep_curvature")
+CONTACT = (
+    *("load", "contact_angle", "semi_major", "semi_minor", "max_pressure", "approach", "rolling_speed"),
+    *("spin_roll_ratio", "creep_spin", "creep_curvature"),
+)
 
 
 def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
@@ -40,10 +42,6 @@ def page(answer: Part) -> Page:
         answer,
         Heading("Inner ring"),
         Equation(
-            r"\sum_j \left(Q_{ij}\,\sin\,\alpha_{ij} + T_{ij}\,\cos\,\alpha_{ij}\right) = F_a",
-            "Balance of the inner ring along the axis: ball loads $Q$ at the contact angles, tractions $T$.",
-        ),
-        Equation(
             r"Q_o\,\cos\,\alpha_o - T_o\,\sin\,\alpha_o = Q_i\,\cos\,\alpha_i - T_i\,\sin\,\alpha_i + F_c, "
             r"\qquad T_i + T_o = \dfrac{2 M_g}{D}",
             "Balance of a ball: centrifugal force $F_c$ and gyroscopic moment $M_g$.",
@@ -59,17 +57,12 @@ def page(answer: Part) -> Page:
         balls(answer),
         *([] if are_alike(answer) else [Picture("bearing-balls", lambda: balls_figure(answer), AROUND)]),
         Heading("Contacts of the most loaded ball"),
-        Equation(
-            r"p_0 = \dfrac{3\,Q}{2\,\pi\,a\,b}",
-            "Hertz: maximum pressure $p_0$ of the ellipse with semi-axes $a$ and $b$.",
-        ),
-        by_race("contacts", *contacts, *ELLIPSE),
+        by_race("contacts", *contacts, *CONTACT),
         Equation(
             r"\xi(y) = \delta + s\,y + q\,y^2 + \delta\xi",
             "Creep across the groove [14, 16]: free-rolling offset, spin $s$, curvature $q$ (Heathcote), and "
             "the increment $dxi$ that an impact of the cage adds.",
         ),
-        by_race("creep", *contacts, *CREEP, level=Level.LONG, caption="Creep in these contacts."),
         *clearance_blocks(answer.clearances),
     )
 
@@ -104,27 +97,21 @@ AROUND = "Ball loads and contact angles around the bearing."
 
 def balls_figure(answer: Part) -> Figure:
     """Return load and contact angle around the bearing; a contact without a load has no angle."""
-    balls, azimuth = answer.balls, [ball.azimuth for ball in answer.balls]
-    panels = []
+    balls, panels = answer.balls, []
     for name, title in (("load", "a  Ball load"), ("contact_angle", "b  Contact angle")):
-        marks, labels, every = [], [], [0.0]
+        marks, every = [], []
         for race, colour, marker in (("inner", BLUE, "o"), ("outer", VERMILION, "s")):
             key = f"{name}_{race}"
             known = [
-                getattr(ball, key) if name == "load" or getattr(ball, f"{race}_contact") else None
-                for ball in balls
+                ball.get(key) if name == "load" or ball.get(f"{race}_contact") else None for ball in balls
             ]
-            every += [one for one in known if one is not None]
             hover = tuple(f"ball {ball.ball + 1}, {race} race: {cell(ball, key).text}" for ball in balls)
-            marks.append(Trace(x=azimuth, y=known, hover=hover, colour=colour, marker=marker, width=0.8))
-            labels += [Label(y=known[-1], text=race, colour=colour)] if known[-1] is not None else []
-        low, high = min(every), max(every)
-        top = high + 0.15 * (high - low or 1.0)
-        y = axis(name, balls[0].unit(f"{name}_inner"), every[1:], low=low, high=top)
-        x = axis("azimuth", "rad", azimuth)
-        panels.append(Panel(title=title, x=x, y=y, marks=tuple(marks), labels=tuple(labels)))
-    alt = "Two panels against the azimuth of the ball: load and contact angle; the table has the numbers."
-    return figure(answer, tuple(panels), alt=alt)
+            look: dict[str, Any] = {"colour": colour, "marker": marker, "name": f"{race} race"}
+            marks.append(Trace(x=[ball.azimuth for ball in balls], y=known, hover=hover, width=0.8, **look))
+            every += [one for one in known if one is not None]
+        x = axis("azimuth", "rad", [ball.azimuth for ball in balls])
+        panels.append(Panel(title=title, x=x, y=axis(name, balls[0].unit(key), every), marks=tuple(marks)))
+    return figure(answer, tuple(panels), alt=AROUND)
 
 
 VERB = Verb(name="bearing", compute=compute, page=page)

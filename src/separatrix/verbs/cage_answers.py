@@ -122,11 +122,13 @@ def _(found: SimulationAnswer) -> Node:
 
 @shape.register
 def _(found: StabilityMap) -> Node:
-    """Places of points have the units of their axes."""
-    node = fields_of(found)
-    points = node["points"]
-    for row, at in zip(points.records or () if isinstance(points, Table) else (), found.points, strict=True):
-        row |= {"x": Leaf(at.x, found.x.unit), "y": Leaf(at.y, found.y.unit)}
+    """Places of points and of changes have the units of their axes."""
+    node, x, y = fields_of(found), found.x.unit, found.y.unit
+    units = {"x": x, **dict.fromkeys(("y", "y_low", "y_high", "margin"), y)}
+    for table in (node["points"], node["changes"]):
+        for row in table.records or () if isinstance(table, Table) else ():
+            known = {name: one.value for name, one in row.items() if name in units and isinstance(one, Leaf)}
+            row |= {name: Leaf(value, units[name]) for name, value in known.items()}
     return node
 
 

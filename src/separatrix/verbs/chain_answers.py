@@ -17,15 +17,7 @@ from separatrix.chain.impact_restitution import LubricationCurve
 from separatrix.chain.solution import Solution
 from separatrix.chain.traction_curve import ShearField, TractionCurve
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, fields_of, shape
-from separatrix.ground.units import (
-    Kilogram,
-    Metre,
-    MetrePerSecond,
-    MetreRadianPerSecond,
-    Radian,
-    Ratio,
-    Rows,
-)
+from separatrix.ground.units import Kilogram, Metre, MetrePerSecond, MetreRadianPerSecond, Radian, Ratio, Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

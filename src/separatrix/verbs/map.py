@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
-from separatrix.present.blocks import Column, Heading, Level, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
 from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
-from separatrix.verbs.parts.chain_blocks import basis_facts
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
-from separatrix.verbs.parts.quantity_text import all_numbers, fill, parameter_axis, quantity, show, value_of
+from separatrix.verbs.parts.quantity_text import (
+    all_numbers,
+    at,
+    fill,
+    parameter_axis,
+    quantity,
+    show,
+    value_of,
+)
 from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.verb import Option, Verb
 
@@ -29,8 +36,8 @@ X, Y = "restitution_factor=0..1", "ball_cage_friction=0..0.5"
 FRICTION, RESTITUTION, KICK = "ball_cage_friction", "restitution_factor", "kick"
 KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "not_run")
 
-SOME_COLUMNS, MORE_COLUMNS = 9, 40
-"""Columns of a map whose bands stand on a screen and in a report: of more, so many are chosen."""
+SHOWN = 9
+"""Changes in the table: of more, so many are chosen."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,16 +90,9 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     return made_into(made, lambda: stability_map(asked, runner=runner))
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no cage to move."""
-    yield from refused(study, cage_motion)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `map`."""
     refused = [one for one in answer.points if one.get("state") == "REFUSED"]
-    friction = [] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]
-    scatter = ("Scatter of the balls", show(answer, "ball_scatter"))
     return page_of(
         answer,
         Note(" ".join(filter(None, [counted(answer), nearest_words(answer)])), "lead"),
@@ -101,30 +101,21 @@ def page(answer: Part) -> Page:
             ("Across", _axis_words(answer.x)),
             ("Upward", _axis_words(answer.y)),
             ("Runs", runs_words(answer)),
+            *([] if FRICTION in _names(answer) else [("Pocket friction", pocket_friction(answer))]),
         ),
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
-        *bands(answer),
-        Heading("Basis of this answer", Level.LONG),
-        facts(*basis_facts(answer), *friction, scatter, level=Level.LONG),
-        all_numbers("points", (), _with_units(answer, answer.points)),
-        all_numbers("changes", (), _with_units(answer, answer.get("changes") or ())),
+        bands(answer),
+        facts(*unchanged(answer)),
+        *(
+            all_numbers(name, (), ((one,) for one in answer.get(name) or ()))
+            for name in ("points", "changes")
+        ),
     )
 
 
 def _names(answer: Part) -> tuple[str, str]:
     return answer.x.parameter, answer.y.parameter
-
-
-def _with_units(answer: Part, points: Iterable[Part]) -> Iterator[tuple[Part]]:
-    """Yield points, or changes, with their places under the names of the parameters, and in their units."""
-    names, (x, y) = _names(answer), (one.get("unit") or "-" for one in (answer.x, answer.y))
-    units = dict(zip(names, (x, y), strict=True)) | dict.fromkeys(("y_low", "y_high", "margin"), y)
-    own = {"x", "y", *names}
-    for point in points:
-        place = dict(zip(names, (point.x, point.get("y")), strict=True))
-        rest = {key: value for key, value in point.values.items() if key not in own}
-        yield (Part(place | rest, {**point.units, **units}),)
 
 
 def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str, dict[str, object]]:
@@ -134,7 +125,7 @@ def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str,
     is that the command chose.
     """
     axes = ((answer["x"], x), (answer["y"], y))
-    point = {axis["parameter"]: _nearest(axis["values"], at) for axis, at in axes}
+    point = {axis["parameter"]: _nearest(axis["values"], place) for axis, place in axes}
     units = {axis["parameter"]: axis["unit"] for axis, _ in axes}
     plain = {name: name.rpartition(".")[2].replace("_", " ") for name in point}
     words = ", ".join(f"{plain[name]} {format_number(value)}" for name, value in point.items())
@@ -150,8 +141,8 @@ def at_point(answer: Document, base: str, x: float, y: float) -> tuple[str, str,
     return words, "".join(f"{key} = {value}\n" for key, value in keys.items()), options
 
 
-def _nearest(values: Sequence[float], at: float) -> float:
-    return min(values, key=lambda one: abs(one - at))
+def _nearest(values: Sequence[float], place: float) -> float:
+    return min(values, key=lambda one: abs(one - place))
 
 
 def counted(answer: Part) -> str:
@@ -165,32 +156,33 @@ def _value(axis: Part, value: float | None) -> str:
     return value_of(axis, axis.parameter, value).text
 
 
-def _at(axis: Part, value: float | None) -> str:
-    return f"{quantity(axis.parameter).label} {_value(axis, value)}"
-
-
 def _axis_words(axis: Part) -> str:
     values = axis.get("values")
     here = f"; the study has {_value(axis, axis.here)}" if "here" in axis else ""
-    ends = f"{_value(axis, values[0])} to {_value(axis, values[-1])}"
-    return f"{quantity(axis.parameter).label}, {ends}, {len(values)} values{here}"
+    ends = f"{at(axis, axis.parameter, values[0])} to {_value(axis, values[-1])}"
+    return f"{ends}, {len(values)} values{here}"
 
 
 def nearest_words(answer: Part) -> str:
-    """Return where the answer changes in the column next to the study; empty if the map is elsewhere."""
-    x, y, values = answer.x, answer.y, answer.x.get("values")
-    if "here" not in x or not values[0] <= x.here <= values[-1]:
+    """Return the point next to the study, and where its column changes; empty if the map is elsewhere."""
+    x, y = answer.x, answer.y
+    if not (_has_here(x) and _has_here(y)):
         return ""
-    at = min(values, key=lambda value: abs(value - x.here))
-    found = []
-    for row in rows(answer, [at]):
-        words = row.kind
-        if row.change is not None:
-            words = "begins to whirl" if row.change.whirls_above else "ceases to whirl"
-            words += f" between {_at(y, row.change.y_low)} and {_value(y, row.change.y_high)}"
-        found.append(words)
-    own = f"{_at(x, x.here)} and {_at(y, y.here)}" if "here" in y else _at(x, x.here)
-    return f"Next to the study, at {_at(x, at)}, the cage {', and '.join(found)}. The study itself has {own}."
+    place = tuple(_nearest(one.get("values"), one.here) for one in (x, y))
+    point = next(one for one in answer.points if (one.x, one.y) == place)
+    words = f"The point next to the study: {_hover(answer, point)}."
+    for one in answer.get("changes") or ():
+        if one.x == point.x:
+            does = "begins" if one.whirls_above else "ceases"
+            ends = f"{at(y, y.parameter, one.y_low)} and {_value(y, one.y_high)}"
+            words += f" In this column the cage {does} to whirl between {ends}."
+    return words
+
+
+def _has_here(axis: Part) -> bool:
+    """Whether the study's own value is on an axis."""
+    values = axis.get("values")
+    return "here" in axis and bool(values[0] <= axis.here <= values[-1])
 
 
 def runs_words(answer: Part) -> str:
@@ -204,70 +196,40 @@ def runs_words(answer: Part) -> str:
     return f"{words}, each of {show(answer, 'duration')}{kick}"
 
 
-# Where the answer changes.
-
-
-NOTHING = Part({}, {})
-
-
-class Row(NamedTuple):
-    """A change in a column of the map; of a column without one, what the cage does there."""
-
-    x: float
-    change: Part | None
-    kind: str
-
-
-def rows(answer: Part, columns: Sequence[float]) -> list[Row]:
-    """Return the changes in some columns of the map."""
-    found, points, changes = [], _by_column(answer.points), _by_column(answer.get("changes") or ())
-    for x in columns:
-        along = changes.get(x, ())
-        found += [Row(x, one, "whirls above" if one.whirls_above else "whirls below") for one in along]
-        if not along:
-            found.append(Row(x, None, _kind(points.get(x, ()))))
-    return found
-
-
-def _by_column(parts: Iterable[Part]) -> dict[float, list[Part]]:
-    columns: dict[float, list[Part]] = {}
-    for one in parts:
-        columns.setdefault(one.x, []).append(one)
-    return columns
-
-
-def _kind(column: Sequence[Part]) -> str:
-    """Return what the cage does in a column without a change."""
-    if any(_state(one) == "NOT_RUN" for one in column):
-        return "was not finished"
-    run = [one for one in column if one.runs]
-    if run and all(one.probability_low > 0.5 for one in run):
-        return "whirls everywhere"
-    if run and all(one.probability_high < 0.5 for one in run):
-        return "whirls nowhere"
-    return "has no boundary that was found"
-
-
-def bands(answer: Part) -> Iterator[Table]:
-    """Yield the bands of the columns, so many as a screen and a report have room for; a workbook has all."""
-    x, y, every = answer.x, answer.y, answer.x.get("values")
+def bands(answer: Part) -> Table:
+    """Return where the answer changes, in some columns of the map; a workbook has all."""
+    x, y, every = answer.x, answer.y, answer.get("changes") or []
 
     def of(name: str, head: str) -> Column:
-        return Column(head, lambda row: value_of(y, y.parameter, (row.change or NOTHING).get(name)))
+        return Column(head, lambda change: value_of(y, y.parameter, change.get(name)))
 
     columns = (
-        Column(quantity(x.parameter).label, lambda row: value_of(x, x.parameter, row.x)),
+        Column(quantity(x.parameter).label, lambda change: value_of(x, x.parameter, change.x)),
         of("y_low", f"{quantity(y.parameter).label} from"),
         of("y_high", "to"),
-        text_column("the cage", lambda row: row.kind),
+        text_column("whirls", lambda change: "above" if change.whirls_above else "below"),
         of("margin", "margin"),
     )
-    for most, level in ((SOME_COLUMNS, Level.BRIEF), (MORE_COLUMNS, Level.LONG)):
-        step = max(1.0, (len(every) - 1) / (most - 1))
-        chosen = [every[round(i * step)] for i in range(min(most, len(every)))]
-        cut = f"{len(chosen)} of {len(every)} columns; map.json has all. "
-        part = "" if len(chosen) == len(every) else cut
-        yield Table("bands", columns, tuple(rows(answer, chosen)), part + LEGEND, level)
+    step = max(1.0, (len(every) - 1) / (SHOWN - 1))
+    chosen = tuple(every[round(i * step)] for i in range(min(SHOWN, len(every))))
+    part = f"{SHOWN} of {len(every)} places; map.json has all. " if len(every) > SHOWN else ""
+    return Table("bands", columns, chosen, part + LEGEND)
+
+
+def unchanged(answer: Part) -> Iterator[tuple[str, str]]:
+    """Yield at which values of x the cage whirls at no point, or at every one, beyond the scatter."""
+    columns: dict[float, list[Part]] = {}
+    for one in answer.points:
+        if one.runs:
+            columns.setdefault(one.x, []).append(one)
+    changed = {one.x for one in answer.get("changes") or ()}
+    known = {x: along for x, along in columns.items() if x not in changed}
+    calm = [x for x, along in known.items() if all(one.probability_high < 0.5 for one in along)]
+    wild = [x for x, along in known.items() if all(one.probability_low > 0.5 for one in along)]
+    for words, found in (("Whirls nowhere", calm), ("Whirls everywhere", wild)):
+        if found:
+            values = ", ".join(_value(answer.x, x) for x in found[:SHOWN])
+            yield words, f"at {values}" + ", ..." * (len(found) > SHOWN)
 
 
 LEGEND = (
@@ -282,19 +244,14 @@ LEGEND = (
 
 def map_figure(answer: Part) -> Figure:
     """Return the share of the runs that whirl, where it changes, and what has no verdict."""
-    axes = [
+    x, y = (
         parameter_axis(one.parameter, one.get("unit") or "-", one.get("values"), is_tight=True)
         for one in (answer.x, answer.y)
-    ]
-    kick = "" if KICK in _names(answer) else fill(answer, ", initial disturbance {kick}")
-    panel = Panel(
-        title=f"Share of the runs that whirl{kick}",
-        x=axes[0],
-        y=axes[1],
-        marks=(*_cells(answer), *_overlays(answer)),
     )
+    kick = "" if KICK in _names(answer) else fill(answer, ", initial disturbance {kick}")
+    title, marks = f"Share of the runs that whirl{kick}", (*_cells(answer), *_overlays(answer))
     return Figure(
-        rows=((panel,),),
+        rows=((Panel(title=title, x=x, y=y, marks=marks),),),
         heading=figure_heading(answer, varied=[one.rpartition(".")[2] for one in _names(answer)]),
         alt="Map of the share of runs that whirl over two inputs of the study.",
         height=4.1,
@@ -305,31 +262,29 @@ def map_figure(answer: Part) -> Figure:
 def _cells(answer: Part) -> Iterator[Mark]:
     """Yield the share at each point, and what has none."""
     x, y = answer.x.get("values"), answer.y.get("values")
-    table = [answer.points[at :: len(y)] for at in range(len(y))]
+    points = answer.points
+    table = [points[i :: len(y)] for i in range(len(y))]
     label = f"{quantity('probability_whirl').label} [-]"
     values = [[one.probability_whirl for one in row] for row in table]
     hover = [[_hover(answer, one) for one in row] for row in table]
     yield Cells(x=x, y=y, values=values, label=label, low=0.0, high=1.0, colours="cividis", hover=hover)
-    refused = [[_state(one) == "REFUSED" for one in row] for row in table]
+    refused = [[one.get("state") == "REFUSED" for one in row] for row in table]
     undecided = [[one.decision == "UNDECIDED" for one in row] for row in table]
-    crossed: dict[str, Any] = {"name": "refused", "strokes": "xxxx", "fill": "#9a9a9a"}
-    striped: dict[str, Any] = {"name": "undecided: the runs, or their drift, allow no verdict"}
-    for where, look in ((refused, crossed), (undecided, striped)):
-        if any(map(any, where)):
-            yield Hatched(x=x, y=y, where=where, **look)
-
-
-def _state(point: Part) -> str:
-    """Return what became of a point."""
-    return "RUN" if point.runs else str(point.state)
+    striped = "undecided: the runs, or their drift, allow no verdict"
+    if any(map(any, refused)):
+        yield Hatched(x=x, y=y, where=refused, name="refused", strokes="xxxx", fill="#9a9a9a")
+    if any(map(any, undecided)):
+        yield Hatched(x=x, y=y, where=undecided, name=striped)
 
 
 def _hover(answer: Part, point: Part) -> str:
-    at = f"{_at(answer.x, point.x)}, {_at(answer.y, point.y)}"
+    place = ", ".join(
+        at(one, one.parameter, point.get(way)) for way, one in (("x", answer.x), ("y", answer.y))
+    )
     if point.decision is None:
-        return f"{at}: {point.reason}"
+        return f"{place}: {point.reason}"
     share = f"share that whirls {show(point, 'probability_whirl')}, {point.runs} runs"
-    return f"{at}: {point.decision}; {share}"
+    return f"{place}: {point.decision}; {share}"
 
 
 def _overlays(answer: Part) -> Iterator[Mark]:
@@ -339,9 +294,9 @@ def _overlays(answer: Part) -> Iterator[Mark]:
         law = linear_law(2.0 * sqrt(2.0 / answer.cage.ball_count), is_upright=x.parameter == FRICTION)
         yield replace(law, colour=BLACK, has_halo=True)
     if found:
-        at, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
-        yield Trace(x=at, y=low, low=low, high=high, line="", colour=VERMILION)
-    if all("here" in one and one.get("values")[0] <= one.here <= one.get("values")[-1] for one in (x, y)):
+        place, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
+        yield Trace(x=place, y=low, low=low, high=high, line="", colour=VERMILION)
+    if _has_here(x) and _has_here(y):
         look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
         yield Trace(x=[x.here], y=[y.here], name="the study itself", **look)
 
@@ -358,5 +313,5 @@ VERB = Verb(
     "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
     "command to resume. With --json and no --out nothing is kept.",
     keeps_runs=True,
-    refusals=refusals,
+    refusals=lambda study: refused(study, cage_motion),
 )

@@ -2,27 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import (
-    Cell,
-    Column,
-    Equation,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Picture,
-    Table,
-    facts,
-    text_column,
-)
+from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, cell, fill, named, place_column, quantity, show
+from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, place_column, show
 from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -31,17 +17,10 @@ if TYPE_CHECKING:
     from separatrix.verbs.chain_answers import MobilityAnswer
 
 SMALL = (
-    "damping",
-    "effective_mass",
-    "damping_relaxed",
-    "damping_locked",
-    "groove_damping",
-    "groove_stiffness",
-    "pitch_angle",
-    "pocket_friction_effect",
-    "slip_speed_inner",
-    "slip_speed_outer",
+    *("damping", "effective_mass", "damping_relaxed", "damping_locked", "groove_damping", "groove_stiffness"),
+    *("pitch_angle", "pocket_friction_effect", "slip_speed_inner", "slip_speed_outer"),
 )
+PUSH = ("speed", "force_forward", "force_backward", "force_law")
 
 
 def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
@@ -55,11 +34,6 @@ def compute(study: Study, _options: NoOptions) -> MobilityAnswer:
     return MobilityAnswer(mobility=found, rigid=rigid, notes=solution.notes)
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why no push of a ball has an answer."""
-    yield from refused(study, rolling, push)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `mobility`."""
     lead = (
@@ -67,14 +41,11 @@ def page(answer: Part) -> Page:
         "{damping}, and carry at most {capacity}."
     )
     law = answer.traction
-    columns = map(partial(place_column, answer), ("speed", "force_forward", "force_backward", "force_law"))
     return page_of(
         answer,
         Note(fill(answer, lead), "lead"),
         Heading("Small motion of the most loaded ball"),
-        small_motion(answer),
-        Heading("Modes"),
-        modes(answer),
+        facts(*(fact(answer, name, named(name)) for name in SMALL)),
         Heading("Push along the orbit"),
         Equation(
             r"F(u) = \dfrac{C\,u}{\left(1 + (u/v)^4\right)^{1/4}}",
@@ -87,34 +58,20 @@ def page(answer: Part) -> Page:
             ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", fill(answer, "up to {asymmetry} of the capacity")),
         ),
-        Table("pushes", tuple(columns), tuple(range(len(answer.speed))), level=Level.SHEET),
-        Picture(
-            "mobility",
-            lambda: push_figure(answer),
-            "Force of the races against the speed of a ball beyond its free orbit, by the slip fields both "
-            "ways, by the law of traction and by its slope at the origin.",
+        Table(
+            "pushes",
+            tuple(place_column(answer, name) for name in PUSH),
+            tuple(range(len(answer.speed))),
+            level=Level.SHEET,
         ),
+        Picture("mobility", lambda: push_figure(answer), PUSHED),
     )
 
 
-def small_motion(answer: Part) -> Table:
-    """Return the small motion by both slip laws, a quantity a row."""
-
-    def by(part: Part) -> Column:
-        return Column(part.slip_law, lambda name: cell(part, name))
-
-    return Table("small motion", (text_column("", named), by(answer), by(answer.rigid)), SMALL)
-
-
-def modes(answer: Part) -> Table:
-    """Return the modes of a pushed ball, by rising rate."""
-    rigid = dict(enumerate(answer.rigid.rates))
-    unit = answer.rigid.unit("rates")
-    columns = [text_column("mode", lambda i: str(i + 1)), place_column(answer, "rates")]
-    columns += [place_column(answer, "oscillations")] if any(answer.oscillations) else []
-    columns += [place_column(answer, "shares")]
-    columns += [Column("rate, rigid", lambda i: Cell(rigid.get(i), quantity("rates"), unit))]
-    return Table("modes", tuple(columns), tuple(range(len(answer.rates))))
+PUSHED = (
+    "Force of the races against the speed of a ball beyond its free orbit, by the slip fields both ways, by "
+    "the law of traction and by its slope at the origin."
+)
 
 
 def push_figure(answer: Part) -> Figure:
@@ -135,16 +92,15 @@ def push_figure(answer: Part) -> Figure:
     x = axis("speed", answer.unit("speed"), u, low=0.0, high=u[-1])
     label, most = "force of the races $F$", 1.25 * capacity
     y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
-    alt = "Force against speed: it rises with the damping, then levels off at the capacity of the races."
     panel = Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks))
-    return figure(answer, (panel,), alt=alt, height=3.2)
+    return figure(answer, (panel,), alt=PUSHED, height=3.2)
 
 
 VERB = Verb(
     name="mobility",
-    epilog="Rates, dampings and effective mass of the most loaded ball, its law of traction F(u) with "
-    "the capacity of the races.",
+    epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
+    "of the races; rates and shares of its modes are in the JSON.",
     compute=compute,
     page=page,
-    refusals=refusals,
+    refusals=lambda study: refused(study, rolling, push),
 )

@@ -17,10 +17,13 @@ from separatrix.verbs.parts.refused import impact, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from separatrix.study.study import Study
     from separatrix.verbs.chain_answers import RestitutionAnswer
+
+ETA = "restitution_factor"
+TITLE = "Restitution factor with other films: race dampings summed (Eq. 18)"
 
 
 def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
@@ -46,11 +49,6 @@ def compute(study: Study, _options: NoOptions) -> RestitutionAnswer:
     )
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no restitution factor."""
-    yield from refused(study, rolling, impact)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `restitution`."""
     lead = (
@@ -74,10 +72,10 @@ def film_blocks(answer: Part, curve: Part | None) -> list[Block]:
         return [Note(f"Other films are not computed. {answer.lubrication_reason}", "text", Level.LONG)]
     caption = (
         f"Restitution factor against the thickness of a film of {curve.film_material} on the races and their "
-        "friction (the paper's Fig. 8); the star is this bearing. Kinematics and loads are those of this "
-        "bearing throughout."
+        "friction (the paper's Fig. 8), with race dampings summed (Eq. 18); the star is this bearing. "
+        "Kinematics and loads are those of this bearing throughout."
     )
-    tables = (films_table(curve, name) for name in ("restitution_factor", "restitution_factor_free_spin"))
+    tables = (films_table(curve, name) for name in (ETA, f"{ETA}_free_spin"))
     return [Picture("restitution-film", lambda: film_figure(answer, curve), caption), *tables]
 
 
@@ -89,46 +87,43 @@ def films_table(curve: Part, name: str) -> Table:
         head = f"$eta$ at $f_BT$ {number_of(curve, 'race_friction', curve.race_friction[place])}"
         return Column(head, lambda row: Cell(values[row], quantity(name), curve.unit(name)))
 
-    frictions = map(at, range(len(curve.race_friction)))
-    columns = (place_column(curve, "film_thickness"), *frictions)
-    rows = tuple(range(len(curve.film_thickness)))
-    return Table(f"films, {name}", columns, rows, level=Level.SHEET)
+    columns = (place_column(curve, "film_thickness"), *map(at, range(len(curve.race_friction))))
+    return Table(f"films, {name}", columns, tuple(range(len(curve.film_thickness))), level=Level.SHEET)
 
 
 def film_figure(answer: Part, curve: Part) -> Figure:
-    """Return eta against thickness for each race friction: dampings summed, and the ball free to spin."""
-    summed = films_panel(answer, curve, "restitution_factor", "a  Race dampings summed (Eq. 18)")
-    free = films_panel(answer, curve, "restitution_factor_free_spin", "b  Ball free to spin in the impact")
-    alt = "Two panels: restitution factor against thickness of the film, a curve for each friction."
-    return figure(answer, (summed, free), alt=alt, height=3.0)
-
-
-def films_panel(answer: Part, curve: Part, name: str, title: str) -> Panel:
     """Return a curve for each race friction; bare races are apart from the films, at the left."""
     thickness: Sequence[float] = curve.film_thickness
-    films = [place for place, one in enumerate(thickness) if one > 0.0]
-    bare = 0.2 * min(thickness[place] for place in films)
+    bare = 0.2 * min(one for one in thickness if one > 0.0)
     marks: list[Mark] = []
     looks = zip(cycle(SEQUENCE), cycle(("-", "--", "-.", ":")), strict=False)
-    for friction, eta, (colour, line) in zip(curve.race_friction, getattr(curve, name), looks, strict=False):
+    for friction, etas, (colour, line) in zip(curve.race_friction, getattr(curve, ETA), looks, strict=False):
         words = f"race friction $f_BT$ = {number_of(curve, 'race_friction', friction)}"
-        x, y = [thickness[i] for i in films], [eta[i] for i in films]
+        known = [*zip(thickness, etas, strict=True)]
+        x, y = zip(*((at, eta) for at, eta in known if at > 0.0), strict=True)
         marks.append(Trace(x=x, y=y, name=words, colour=colour, line=line))
-        at = [one for i, one in enumerate(eta) if i not in films]
-        marks.append(Trace(x=[bare] * len(at), y=at, marker="o", line="", colour=colour, size=3.5))
+        alone = [eta for at, eta in known if at == 0.0]
+        marks.append(Trace(x=[bare] * len(alone), y=alone, marker="o", line="", colour=colour, size=3.5))
     own = entry_words(answer.values["study"]["film"]["race_friction"])
     words = f"this bearing, race friction $f_BT$ = {own}"
     here = answer.film_thickness_here or bare
-    marks.append(Trace(x=[here], y=[getattr(answer, name)], name=words, marker="*", line="", size=9.0))
+    marks.append(Trace(x=[here], y=[getattr(answer, ETA)], name=words, marker="*", line="", size=9.0))
     along = axis("film_thickness", curve.unit("film_thickness"), [1e-6], is_log=True)
     decades = [10.0**power for power in range(-9, -3) if bare < 10.0**power <= 1.001 * max(thickness)]
     ticks = ((bare, "bare"), *((one, format_number(one / along.size)) for one in decades))
-    return Panel(
-        title=title,
+    panel = Panel(
+        title=TITLE,
         x=replace(along, low=0.5 * bare, high=1.3 * max(thickness), ticks=ticks),
-        y=axis("restitution_factor", curve.unit(name), [1.0], low=-0.02, high=1.0),
+        y=axis(ETA, curve.unit(ETA), [1.0], low=-0.02, high=1.0),
         marks=tuple(marks),
     )
+    return figure(answer, (panel,), alt=TITLE, height=3.0)
 
 
-VERB = Verb(name="restitution", compute=compute, page=page, needs=("cage",), refusals=refusals)
+VERB = Verb(
+    name="restitution",
+    compute=compute,
+    page=page,
+    needs=("cage",),
+    refusals=lambda study: refused(study, rolling, impact),
+)

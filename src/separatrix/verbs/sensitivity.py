@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
@@ -17,6 +16,7 @@ from separatrix.present.blocks import (
     Page,
     Picture,
     Table,
+    explained,
     facts,
     grouped,
     text_column,
@@ -34,15 +34,7 @@ from separatrix.present.figure import (
     sign,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.quantity_text import (
-    all_numbers,
-    column,
-    fill,
-    marks,
-    number_of,
-    show,
-)
+from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, marks, number_of, show
 from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
@@ -65,19 +57,13 @@ if TYPE_CHECKING:
 SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 """Bearings that `sensitivity` draws."""
 
-BRIEF, LONG = Level.BRIEF, Level.LONG
 GUESS = "?"
 """After a friction whose scatter is a guess."""
 
 OVERALL = "over all environments, mean friction"
-SOURCES = {
-    "study": "from the study",
-    "measured": "with measured scatter",
-    "assumed": "with the default scatter, a guess",
-}
 PICTURE = "Probability that a bearing's cage settles, of each candidate in each environment."
 LISTED, LEAST = 6, 0.02
-"""Items of a list on a screen, and the least share of an input shown."""
+"""Items of a list, and the least share of an input shown; the workbook has all."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,15 +118,16 @@ def _drawable(solution: Solution) -> None:
 def page(answer: Part) -> Page:
     """Return the page of `sensitivity`: verdicts, what decides them, what to test, what is allowed."""
     own = next(one for one in answer.environments if one.name == answer.environment)
-    others = {one.name: one.materials for one in answer.environments if one.name != answer.environment}
-    others |= {OVERALL: answer.overall} if others else {}
+    others = [(one.name, one.materials) for one in answer.environments if one.name != answer.environment]
+    others += [(OVERALL, answer.overall)] if others else []
     return page_of(
         answer,
         Note(f"With the uncertain inputs drawn, in {own.name}: {each_verdict(own.materials)}.", "lead"),
-        *environment(own.name, own.materials, Level.ALWAYS),
+        Heading(_title(own.name)),
+        *candidates(own),
         *footnotes(answer, own.materials),
-        Heading("Verdicts elsewhere", BRIEF),
-        facts(*((_title(name), each_verdict(rows)) for name, rows in others.items()), level=BRIEF),
+        Heading("Verdicts elsewhere"),
+        facts(*((_title(name), each_verdict(rows)) for name, rows in others)),
         Picture("sensitivity-probabilities", lambda: probabilities_figure(answer), PICTURE),
         Heading("Which test to run next"),
         *next_tests(answer),
@@ -148,10 +135,14 @@ def page(answer: Part) -> Page:
         *sources(answer),
         Heading("Which friction a new material may have"),
         *allowed_frictions(answer),
-        *(block for name, rows in others.items() for block in environment(name, rows, LONG)),
-        Heading("Basis of this answer", LONG),
-        facts(*basis_facts(answer), *holds_for(answer), level=LONG),
-        *sheets(answer),
+        Heading("Basis of this answer", Level.LONG),
+        facts(*ensemble_facts(answer), level=Level.LONG),
+        candidate_numbers(answer),
+        all_numbers(
+            "all shares",
+            ("environment", "material"),
+            ((one.environment, one.name, each) for one in answer.drivers for each in one.shares),
+        ),
         draws=True,
     )
 
@@ -168,30 +159,20 @@ def each_verdict(rows: Sequence[Part]) -> str:
     return by_verdict(grouped((verdict(row), row.name) for row in rows))
 
 
-def environment(name: str, rows: Sequence[Part], level: Level) -> list[Block]:
-    """Return friction, P(stable), verdict and motion of each candidate in one environment."""
+def candidates(own: Part) -> list[Block]:
+    """Return friction, P(stable), verdict and motion of each candidate in the study's environment."""
+    runs = "from the worst initial disturbance; fewer where the verdict was plain before"
     columns = (
         text_column("material", lambda row: row.name),
         column("friction", head="friction of a new cage", mark=friction_mark),
-        column("friction_deviation", head="s.d."),
+        column("friction_deviation"),
         column("probability_stable", of=judged),
         text_column("verdict", verdict),
         motion_column(),
         *map(evidence_column, ("largest_offset", "largest_contact_force")),
-        column("runs", of=judged),
+        replace(column("runs", of=judged), meaning=runs),
     )
-    legend = (
-        "s.d.: standard deviation of the friction of a new cage: its scatter from sample to sample, how well "
-        "the mean is known, and what was not tested. P(stable): share of the bearings whose cage settles or "
-        "rolls in its pockets, from the worst initial disturbance, with its 95 % interval. Motion: class of "
-        "most of them. Offset and force: largest in any run; > what the races hold: there it has no meaning. "
-        "Runs: bearings from the worst initial disturbance; fewer where the verdict was plain before."
-    )
-    return [
-        Heading(_title(name), level),
-        Table(name, columns, tuple(rows), level=level),
-        *([Note(legend, "legend", LONG)] if level is Level.ALWAYS else []),
-    ]
+    return [Table(own.name, columns, tuple(own.materials)), Note(explained(columns), "legend", Level.LONG)]
 
 
 def friction_mark(row: Part) -> str:
@@ -205,29 +186,20 @@ def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
     if etas:
         each = by_verdict(etas) if len(etas) > 1 else next(iter(etas))
         yield Note(f"Restitution factor $eta$ of the drawn bearings, median (nine in ten): {each}.", "legend")
-    rows = [row for one in answer.environments for row in one.materials if "friction" in row]
-    if any(row.friction_scatter_assumed for row in rows):
+    if any(row.get("friction_scatter_assumed") for row in own):
         assumed = "its scatter from sample to sample was not measured: {default_scatter} of the mean is "
         yield Note(fill(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
-    words = dict.fromkeys(text for row in rows for text in row.extrapolation)
-    if words:
-        yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend", LONG)
-        yield Note(f"{MARK} extrapolated beyond the tests: see `--full`.", "legend", BRIEF)
+    if words := dict.fromkeys(text for row in own for text in row.extrapolation):
+        yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend")
 
 
-def holds_for(answer: Part) -> Iterator[tuple[str, str]]:
-    """Yield the uncertain inputs, the ensemble, its seed, and the largest drift."""
+def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:
+    """Yield the uncertain inputs, and the ensemble with its seed."""
     yield from ((row.name, row.distribution) for row in answer.inputs if not is_friction(row.name))
-    origins = Counter(SOURCES[row.source] for row in answer.inputs if is_friction(row.name))
-    yield "Frictions", ", ".join(f"{count} {source}" for source, count in origins.items())
     failed = f", of which {answer.failed} make no bearing" if answer.failed else ""
     yield "Bearings drawn", f"{show(answer, 'bearings')}{failed}; seed {answer.seed}"
     yield "Initial disturbances", ", ".join(number_of(answer, "kicks", one) for one in answer.kicks)
     yield "Runs", f"{show(answer, 'runs')} in all"
-    drifting = [row for row in answer.overall if "drift_rate" in row]
-    if drifting:
-        fastest = max(drifting, key=lambda row: row.drift_rate)
-        yield "Largest drift", f"{show(fastest, 'drift_rate')} (median of a case)"
     yield "Ended early", fill(answer, "at a risk of {stopped_risk} of another verdict at each look")
 
 
@@ -247,16 +219,20 @@ def next_tests(answer: Part) -> Iterator[Block]:
         pairs = zip(test.cases, test.chances, strict=True)
         return "; ".join(f"{case} {number_of(test, 'chances', chance)}" for case, chance in pairs)
 
-    heads = "input to measure", "chance of a verdict"
-    columns = text_column(heads[0], lambda test: test.name), column("settled"), text_column(heads[1], chances)
-    for level, most in ((BRIEF, LISTED), (LONG, None)):
-        yield Table("next tests", columns, tuple(answer.next_tests[:most]), level=level)
+    measured, chance = text_column("input to measure", lambda test: test.name), "chance of a verdict"
+    columns = measured, column("settled"), text_column(chance, chances)
+    yield Table("next tests", columns, tuple(answer.next_tests[:LISTED]))
 
 
 def sources(answer: Part) -> Iterator[Block]:
-    """Yield the sources of the cases that have any, and the others."""
-    known = least_decided(answer)
-    shares = [(case, one) for case in known for one in largest_first(case.shares)]
+    """Yield the sources of the cases that have any, the least decided first, and how many have none."""
+    places = [(one.name, row) for one in answer.environments for row in one.materials]
+    chances = {(place, row.name): row.get("probability_stable") or 0.0 for place, row in places}
+    drivers = answer.drivers
+    known = [one for one in drivers if one.shares]
+    known.sort(key=lambda one: abs(chances.get((one.environment, one.name), 0.0) - 0.5))
+    largest = [(case, one) for case in known for one in sorted(case.shares, key=lambda one: -one.share)]
+    shares = [(case, one) for case, one in largest if one.share >= LEAST]
     columns = (
         text_column("case", lambda row: f"{row[0].name}, {row[0].environment}"),
         text_column("input", lambda row: "own friction" if is_friction(row[1].name) else row[1].name),
@@ -268,25 +244,10 @@ def sources(answer: Part) -> Iterator[Block]:
         "logistic regression of the runs; chance: the single run's disturbance and leads. Skill: part of the "
         "deviance explained, on bearings left out of the fit. The least decided cases come first."
     )
-    for level, most in ((BRIEF, 2 * LISTED), (LONG, None)):
-        yield Table("sources", columns, tuple(shares[:most]), caption, level)
-    reasons = Counter(one.skill is None for one in answer.drivers if not one.shares)
-    for is_few, count in reasons.items():
-        reason = "too few bearings end otherwise" if is_few else "the inputs explain almost no variance"
-        yield Note(f"No sources of {count} cases: {reason}.", level=LONG if known else Level.ALWAYS)
-
-
-def least_decided(answer: Part) -> list[Part]:
-    """Return the cases whose sources are known, the least decided first."""
-    places = [(one.name, row) for one in answer.environments for row in one.materials]
-    chances = {(place, row.name): row.get("probability_stable") or 0.0 for place, row in places}
-    known = [one for one in answer.drivers if one.shares]
-    return sorted(known, key=lambda one: abs(chances.get((one.environment, one.name), 0.0) - 0.5))
-
-
-def largest_first(shares: Sequence[Part]) -> list[Part]:
-    """Return the shares that are worth a word."""
-    return sorted((one for one in shares if one.share >= LEAST), key=lambda one: -one.share)
+    yield Table("sources", columns, tuple(shares[: 2 * LISTED]), caption)
+    if none := len(drivers) - len(known):
+        reason = "too few bearings end otherwise, or the inputs explain almost no variance"
+        yield Note(f"No sources of {none} cases: {reason}.", level=Level.LONG if known else Level.ALWAYS)
 
 
 def is_friction(name: str) -> bool:
@@ -294,29 +255,15 @@ def is_friction(name: str) -> bool:
     return name.startswith("ranking.") and ".material." not in name
 
 
-# What is allowed.
-
-
 def allowed_frictions(answer: Part) -> Iterator[Note]:
     """Yield the largest friction that a new material may have, with the pockets of some candidates."""
     for one in answer.allowed_friction:
         pocket = f" in the pockets of {', '.join(one.names)}" if answer.allowed_friction[1:] else ""
         wanted = f"with a probability of {{probability}}{pocket}"
+        words = f"At most {{friction}}, if it scatters by {{scatter}} of itself, to be stable {wanted}."
         if one.friction is None:
-            yield Note(fill(one, f"To be stable {wanted}, no friction can be named: {one.reason}."))
-        else:
-            most = "At most {friction}, if it scatters by {scatter} of itself"
-            yield Note(fill(one, f"{most}, to be stable {wanted}."))
-
-
-# The workbook.
-
-
-def sheets(answer: Part) -> Iterator[Table]:
-    """Yield every number of the candidates, and all shares of inputs."""
-    yield candidate_numbers(answer)
-    shares = ((one.environment, one.name, each) for one in answer.drivers for each in one.shares)
-    yield all_numbers("all shares", ("environment", "material"), shares)
+            words = f"To be stable {wanted}, no friction can be named: {one.reason}."
+        yield Note(fill(one, words))
 
 
 # The picture.
@@ -327,16 +274,17 @@ def probabilities_figure(answer: Part) -> Figure:
     places = [(one.name, one.materials) for one in answer.environments]
     places += [(OVERALL, answer.overall)] if places[1:] and answer.overall else []
     panels = [_panel(name, rows) for name, rows in places]
-    signs = [sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()]
-    signs.append(sign("", GREY, "95 % interval", line="-"))
-    signs.append(sign("", GREY, "probabilities of 0.5 and 0.9", line=":"))
-    signs.append(sign("", GREY, f"{MARK} extrapolated beyond the tests"))
     return Figure(
         rows=tuple(tuple(panels[at : at + 2]) for at in range(0, len(panels), 2)),
         heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt="P(stable) with its interval of each candidate in each environment; the tables have the numbers.",
+        alt=PICTURE,
         height=0.75 + 0.17 * max(len(rows) for _, rows in places),
-        legend=tuple(signs),
+        legend=(
+            *(sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()),
+            sign("", GREY, "95 % interval", line="-"),
+            sign("", GREY, "probabilities of 0.5 and 0.9", line=":"),
+            sign("", GREY, f"{MARK} extrapolated beyond the tests"),
+        ),
     )
 
 

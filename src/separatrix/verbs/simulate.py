@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
-from separatrix.ground.quantity import alone
 from separatrix.ground.units import NUMBER, printable
 from separatrix.present.blocks import (
     Facts,
@@ -27,12 +25,14 @@ from separatrix.present.blocks import (
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
-from separatrix.verbs.parts.quantity_text import fill, number_of, place_column, quantity, show
+from separatrix.verbs.parts.curve_blocks import pocket_friction
+from separatrix.verbs.parts.quantity_text import fill, place_column, show
 from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import SimulationAnswer
 
@@ -124,11 +124,11 @@ def given_factor(options: Options) -> float | None:
     return eta
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why the pocket has no friction, or there is no cage to move."""
+def friction_of_pocket(solution: Solution) -> None:
+    """Refuse a pocket of unknown friction."""
     from separatrix.study.candidates import require_friction
 
-    yield from refused(study, lambda solution: require_friction(solution.study), cage_motion)
+    require_friction(solution.study)
 
 
 def page(answer: Part) -> Page:
@@ -139,10 +139,8 @@ def page(answer: Part) -> Page:
         Note(f"{answer.outcome}: {answer.outcome_sentence}", "lead"),
         Heading("The run"),
         run_facts(answer),
-        Heading("Motion: means of the judged part"),
+        Heading("Motion and forces: means of the judged part"),
         motion_facts(answer),
-        Heading("Forces, rubbing and work"),
-        force_facts(answer),
         pockets(answer),
         Picture("simulation", lambda: _figure(answer), CAPTION),
         View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
@@ -153,54 +151,20 @@ def page(answer: Part) -> Page:
 
 def run_facts(answer: Part) -> Facts:
     """Return what a run started from, and by what part it was judged."""
-    cage = answer.values["study"]["cage"]
-    friction, damping = cage["ball_cage_friction"], None
-    of = f", {friction['candidate']} in {friction['environment']}" if friction["value"] is None else ""
+    cage, damping = answer.values["study"]["cage"], None
     if "given_restitution_factor" in answer:
         damping = show(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
         damping += fill(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
-    law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
     return facts(
         ("Operation", "; ".join(figure_heading(answer)[1:])),
         ("Initial disturbance", fill(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
-        ("Pocket friction", f"{show(answer.cage, 'ball_cage_friction')}{of}"),
+        ("Pocket friction", pocket_friction(answer) or show(answer.cage, "ball_cage_friction")),
         ("Ball", cage["ball"]["value"]),
         ("Race damping", damping),
+        ("Clearance", _clearance(answer)),
         ("Judged", fill(answer, "{judged_from} to {followed}; the run has {run_length}")),
-        ("Drift rate", fill(answer, "{drift_rate}" + law)),
         ("Energy balance", fill(answer, "closes to {energy_imbalance} of the work done")),
     )
-
-
-def motion_facts(answer: Part) -> Facts:
-    """Return how the cage moves in the judged part."""
-    whirl, slip = "none: the motion does not last", "the ball set is at rest"
-    if "whirl_frequency" in answer:
-        sense = DIRECTIONS[answer.whirl_direction] or "without direction"
-        whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
-    if "cage_slip" in answer:
-        slip = "{cage_slip} of the ball set's speed (positive: the cage lags)"
-    offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
-    orbit = "centre {orbit_speed}" + (", tilt {cone_speed}" if "cone_speed" in answer else "")
-    balls = number_of(answer, "orbit_speed", answer.cage.cage_speed)
-    return facts(
-        ("Offset", fill(answer, offset)),
-        ("Tilt", _tilt(answer)),
-        ("Axial place", fill(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
-        ("Whirl", fill(answer, whirl)),
-        ("Orbit", f"{fill(answer, orbit)}; the ball set turns at {balls}"),
-        ("Cage slip", fill(answer, slip)),
-        ("Clearance", _clearance(answer)),
-    )
-
-
-def _tilt(answer: Part) -> str:
-    if "largest_tilt" not in answer:
-        return ""
-    cone = "without a steady phase to the offset"
-    if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
-        cone = "{tilt_phase} ahead of the offset (0: a forward cone)"
-    return fill(answer, f"{{largest_tilt}} at most; {cone}")
 
 
 def _clearance(answer: Part) -> str:
@@ -215,56 +179,52 @@ def has_land(cage: Part) -> bool:
     return cage.guidance != "ball" and "land_clearance" in cage
 
 
-SIDES = {"front_share": "in front of the ball", "rear_share": "behind it"}
-SIDES |= {"axial_share": "at its axial sides"}
-
-
-def force_facts(answer: Part) -> Facts:
-    """Return the largest forces, and what feeds and brakes the motion."""
+def motion_facts(answer: Part) -> Facts:
+    """Return how the cage moves in the judged part, its largest forces, and what feeds and brakes it."""
+    whirl, slip = "none: the motion does not last", "the ball set is at rest"
+    if "whirl_frequency" in answer:
+        sense = DIRECTIONS[answer.whirl_direction] or "without direction"
+        whirl = f"{{whirl_frequency}} {sense}, seen from the balls; the centre moves at {{whirl_speed}}"
+    if "cage_slip" in answer:
+        slip = "{cage_slip} of the ball set's speed (positive: the cage lags)"
     pocket = "{largest_contact_force}"
     if answer.force_exceeds_races:
         pocket = "above what the races hold, {force_limit}: beyond it this model of a ball has no meaning "
         pocket += "(`[cage] ball = 'free'` has)"
-    shares = [f"{show(answer, name)} {where}" for name, where in SIDES.items() if answer.get(name)]
-    power = "pocket_rubbing_power"
-    heat = alone(sum(answer.get(power)), quantity(power), answer.unit(power))
+    offset = "{largest_offset} at most; mean {mean_offset}, standard deviation {offset_spread} (0: a circle)"
+    law = "; by the linear law {drift_rate_law}" if answer.drift_rate_law else ""
     return facts(
-        ("Pocket, largest", fill(answer, pocket)),
-        ("Land, largest", show(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
+        ("Offset", fill(answer, offset)),
+        ("Drift rate", fill(answer, "{drift_rate}" + law)),
+        ("Tilt", _tilt(answer)),
+        ("Axial place", fill(answer, "{axial_low} to {axial_high}") if "axial_low" in answer else None),
+        ("Whirl", fill(answer, whirl)),
+        ("Cage slip", fill(answer, slip)),
+        ("Pocket force, largest", fill(answer, pocket)),
+        ("Land force, largest", show(answer, "largest_land_force") if has_land(answer.cage) else "no land"),
         ("Impacts", f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"),
-        ("Impulse", ", ".join(shares)),
         *power_facts(answer),
-        ("Rubbing in the pockets", f"{heat} of heat, mean of the run"),
-        ("Work on the cage", _works(answer)),
     )
 
 
-def _works(answer: Part) -> str:
-    """Return the work of each source up to the end of the judged part, beyond which it is not added up."""
-    last = max((at for at, time in enumerate(answer.time) if time <= answer.followed), default=-1)
-    known = {name: work[last] for name, work in answer.work.values.items() if work[last]}
-    each = (f"{name.replace('_', ' ')} {number_of(answer.work, name, one)}" for name, one in known.items())
-    left = number_of(answer, "kinetic_energy", answer.kinetic_energy[last])
-    until = "" if last == -1 else fill(answer, "up to {followed}: ")
-    return f"{until}{', '.join(each) or 'none'}; kinetic energy then {left}"
+def _tilt(answer: Part) -> str | None:
+    if "largest_tilt" not in answer:
+        return None
+    cone = "without a steady phase to the offset"
+    if "tilt_phase" in answer and (answer.tilt_coherence or 0.0) >= STEADY:
+        cone = "{tilt_phase} ahead of the offset (0: a forward cone)"
+    return fill(answer, f"{{largest_tilt}} at most; {cone}")
 
 
-POCKET = {
-    "pocket_angle": "place",
-    "half_play": "half the clearance",
-    "pocket_impacts": "impacts",
-    "impact_rate": "impact rate",
-    "impacts_per_turn": "impacts per turn of the cage",
-    "pocket_rubbing_power": "heat of rubbing",
-}
-"""Numbers of each pocket, with what stands above them."""
+POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impacts_per_turn", "pocket_rubbing_power")
+"""Numbers of each pocket."""
 
 
 def pockets(answer: Part) -> Table:
     """Return a row for each pocket: its place, its clearance, its impacts and rubbing."""
     number = text_column("pocket", lambda place: str(place + 1))
     level = Level.REPORT | Level.SHEET
-    numbers = (place_column(answer, name, head=head) for name, head in POCKET.items() if name in answer)
+    numbers = (place_column(answer, name) for name in POCKET if name in answer)
     rows = tuple(range(len(answer.pocket_angle)))
     return Table("pockets", (number, *numbers), rows, "Each pocket over the whole run.", level)
 
@@ -302,5 +262,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    refusals=refusals,
+    refusals=lambda study: refused(study, friction_of_pocket, cage_motion),
 )

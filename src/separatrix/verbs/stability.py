@@ -9,14 +9,7 @@ from separatrix.present.blocks import Heading, Level, Note, Page, Picture, facts
 from separatrix.present.figure import Figure, Mark, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.chain_blocks import basis_facts
-from separatrix.verbs.parts.curve_blocks import (
-    curve_blocks,
-    curve_panel,
-    drift_words,
-    own_lead,
-    own_point,
-    pocket_friction,
-)
+from separatrix.verbs.parts.curve_blocks import curve_blocks, curve_panel, pocket_friction
 from separatrix.verbs.parts.quantity_text import fill
 from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.verb import NoOptions, Verb
@@ -48,47 +41,71 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
     )
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no cage to move."""
-    yield from refused(study, cage_motion)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `stability`."""
-    leads = [own_lead(answer), *friction_lead(answer), drift_words(answer)]
     below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
     caption = f"Critical friction against restitution factor: below the band {below}, above it unstable."
+    here = answer.get("here")
+    is_overdamped = here is not None and here.restitution_factor == 0.0
+    friction = ("Pocket friction", pocket_friction(answer) or "not stated")
     return page_of(
         answer,
-        Note(" ".join(filter(None, leads)), "lead"),
+        Note(" ".join([*own_words(answer), *friction_words(answer), *drift_words(answer)]), "lead"),
         *([Picture("stability-curve", lambda: curve_figure(answer), caption)] if answer.curve else []),
-        *own_point(answer),
+        *([Note(OVERDAMPED, "legend")] if is_overdamped else []),
         Heading("Stability curve"),
         *curve_blocks(answer),
         Heading("Basis of this answer", Level.LONG),
-        facts(
-            *basis_facts(answer),
-            ("Pocket friction", pocket_friction(answer) or "not stated"),
-            level=Level.LONG,
-        ),
+        facts(*basis_facts(answer), friction, level=Level.LONG),
     )
 
 
-def friction_lead(answer: Part) -> list[str]:
-    """Return on which side of the band the cage's own friction is, if both are known."""
+OVERDAMPED = (
+    "Impacts of this bearing are overdamped: its critical friction is found with its own race damping, the "
+    "curve's point at 0 with the largest damping that leaves no rebound."
+)
+
+
+def own_words(answer: Part) -> Iterator[str]:
+    """Yield the critical friction at the bearing's own restitution factor, and its band."""
+    here = answer.get("here")
+    if here is None:
+        yield "The critical friction at the bearing's own restitution factor was not finished."
+        return
+    at = fill(here, "At this bearing's restitution factor of {restitution_factor} ")
+    if "critical_friction" in here:
+        yield fill(here, at + "half of the runs whirl at a pocket friction of {critical_friction}.")
+    else:
+        yield f"{at}no critical friction was found: {here.reason}."
+    low, high = "at no friction", fill(answer, "at no friction up to {searched_friction}")
+    if "critical_friction_low" in here:
+        low = fill(here, "below {critical_friction_low}")
+    if "critical_friction_high" in here:
+        high = fill(here, "above {critical_friction_high}")
+    yield f"From every disturbance runs settle or roll {low}, and whirl {high}."
+
+
+def friction_words(answer: Part) -> Iterator[str]:
+    """Yield on which side of the band the cage's own friction is, if both are known."""
     here, friction = answer.get("here"), answer.cage.ball_cage_friction
     words = pocket_friction(answer)
     if not words or here is None or "critical_friction" not in here:
-        return []
+        return
     low, high = here.get("critical_friction_low"), here.get("critical_friction_high")
-    side, then = "within the band in which the disturbance decides", "it is undecided"
+    side = "within the band in which the disturbance decides: it is undecided"
     if low is not None and friction < low:
-        side, then = "below the band", "the cage is stable"
-        if answer.drifts:
-            then = "disturbances decay, but the cage drifts and is not stable"
+        side = "below the band: disturbances decay"
+        side += ", but the cage drifts and is not stable" if answer.drifts else ", the cage is stable"
     elif high is not None and friction > high:
-        side, then = "above the band", "the cage is unstable"
-    return [f"The cage's friction, {words}, is {side}: {then}."]
+        side = "above the band: the cage is unstable"
+    yield f"The cage's friction, {words}, is {side}."
+
+
+def drift_words(answer: Part) -> Iterator[str]:
+    """Yield that a cage without a land is stable nowhere, and how fast it drifts."""
+    if answer.drifts:
+        pace = fill(answer, ", by the linear law at {drift_rate_law}") if answer.get("drift_rate_law") else ""
+        yield f"The cage has no land and drifts at any friction{pace}: no verdict below the curve is STABLE."
 
 
 def curve_figure(answer: Part) -> Figure:
@@ -113,5 +130,5 @@ VERB = Verb(
     epilog="Beside the curve: its band, the linear limit, and the critical friction at the bearing's own "
     "restitution factor.",
     keeps_runs=True,
-    refusals=refusals,
+    refusals=lambda study: refused(study, cage_motion),
 )

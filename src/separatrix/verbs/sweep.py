@@ -5,43 +5,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import partial
+from itertools import pairwise, product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import (
-    Cell,
-    Column,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Picture,
-    Table,
-    facts,
-    text_column,
-)
-from separatrix.present.figure import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    VERDICT_COLOURS,
-    VERDICT_MARKERS,
-    VERMILION,
-    Across,
-    Axis,
-    Figure,
-    Mark,
-    Panel,
-    Trace,
-)
+from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
+    at,
     axis,
     cell,
     column,
@@ -68,8 +43,8 @@ JUDGED = (
 )
 """Columns of a table of cases: of the chain alone, and with verdicts or margins."""
 
-FEW, SOME = 12, 40
-"""Cases on a screen and in a report: of more, the worst."""
+SHOWN = 16
+"""Cases of the table: of more, the worst."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,8 +91,7 @@ def compute(study: Study, options: Options, runner: Runner) -> Sweep:
 
 def page(answer: Part) -> Page:
     """Return the page of `sweep`."""
-    refused = [one for one in answer.cases if is_refused(one)]
-    duty = answer.get("duty")
+    refused, duty = [one for one in answer.cases if is_refused(one)], answer.get("duty")
     counts = Counter(one.verdict for one in answer.cases if one.verdict)
     return page_of(
         answer,
@@ -131,7 +105,8 @@ def page(answer: Part) -> Page:
         ),
         *([Picture("envelope", lambda: envelope_figure(answer), ENVELOPE)] * has(answer, "cage_speed")),
         Heading("Cases"),
-        *case_tables(answer),
+        case_table(answer),
+        all_numbers("cases", (), ((one,) for one in answer.cases)),
     )
 
 
@@ -147,11 +122,9 @@ def has(answer: Part, name: str) -> bool:
 
 def case_words(answer: Part, case: Part) -> str:
     """Return the number of a case with its values."""
-    each = (
-        f"{quantity(one.name).label} {value_of(one, one.name, case.get(one.name)).text}"
-        for one in answer.parameters
+    return (
+        f"case {case.case}: {', '.join(at(one, one.name, case.get(one.name)) for one in answer.parameters)}"
     )
-    return f"case {case.case}: {', '.join(each)}"
 
 
 def worst_case(answer: Part) -> Part | None:
@@ -180,168 +153,117 @@ def worst_words(answer: Part) -> str:
     return f"{lead} It has the {WORST[name]} {number}{more}."
 
 
-# The tables of cases.
+# The cases.
 
 
-def case_tables(answer: Part) -> Iterator[Table]:
-    """Yield the worst cases, so many as a screen and a report have room for; a workbook has every number."""
+def case_table(answer: Part) -> Table:
+    """Return parameters and answers of the worst cases; the workbook has all, with reasons."""
     cases, worst = answer.cases, answer.get("worst")
-    name = worst.quantity if worst else ETA
-    sign = -1.0 if name == ETA else 1.0
-    ordered = sorted(cases, key=lambda one: sign * one.get(name) if name in one else float("inf"))
-    for most, level in ((FEW, Level.BRIEF), (SOME, Level.LONG)):
-        part = f"The worst {most} of {len(cases)} cases; sweep.csv and sweep.json have all."
-        few = (cases, "") if len(cases) <= most else (ordered[:most], part)
-        yield Table("worst cases", shown_columns(answer), tuple(few[0]), few[1], level)
-    yield all_numbers("cases", (), ((one,) for one in cases))
-
-
-def shown_columns(answer: Part) -> tuple[Column, ...]:
-    """Return parameters and answer of a case; a workbook and sweep.csv have why it was refused."""
+    caption, name = "", worst.quantity if worst else ETA
+    if len(cases) > SHOWN:
+        sign = -1.0 if name == ETA else 1.0
+        cases = sorted(cases, key=lambda one: sign * one.get(name) if name in one else float("inf"))[:SHOWN]
+        caption = f"The worst {SHOWN} of {len(answer.cases)} cases; sweep.json and the workbook have all."
 
     def of(one: Part) -> Column:
         known = quantity(one.name)
         return Column(known.head or known.label, lambda case: value_of(one, one.name, case.get(one.name)))
 
     names = JUDGED if answer.margins or answer.verdicts else SOLVED
-    words = text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")
-    has_words = answer.verdicts or any(map(is_refused, answer.cases))
-    number = Column("case", lambda case: Cell(str(case.case)))
-    known = (column(name) for name in names if has(answer, name))
-    return (number, *map(of, answer.parameters), *known, *([words] if has_words else []))
-
-
-def csv_text(answer: Part) -> str:
-    """Return the table of all cases for spreadsheets and other programs, in SI units."""
-    import csv
-    import io
-
-    from separatrix.ground.sheet import text_for_cell
-
-    cases = answer.cases
-    names = list(cases[0].values)
-    units = answer.units.get("cases") or {}
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream)
-    writer.writerow([f"{name} [{units[name]}]" if units.get(name) else name for name in names])
-    for case in cases:
-        row = (case.values[name] for name in names)
-        writer.writerow([text_for_cell(one) if isinstance(one, str) else one for one in row])
-    return stream.getvalue()
-
-
-def files(answer: Part) -> Iterator[tuple[str, bytes]]:
-    """Yield the table of all cases as CSV."""
-    yield "sweep.csv", csv_text(answer).encode()
+    columns = [text_column("case", lambda case: case.case), *map(of, answer.parameters)]
+    columns += [column(name) for name in names if has(answer, name)]
+    if answer.verdicts or any(map(is_refused, answer.cases)):
+        words = text_column("verdict", lambda case: "refused" if is_refused(case) else case.verdict or "-")
+        columns.append(words)
+    return Table("worst cases", tuple(columns), tuple(cases), caption)
 
 
 # The picture.
 
-ENVELOPE = "Stability and frequencies over the cases; orders are those of shaft, cage and balls."
-MOST_PANELS = 3
-"""Parameters that have a panel."""
-
-LOOKS = {
-    "restitution_factor": (ORANGE, "-", "o"),
-    "restitution_threshold": (BLUE, "-", "s"),
-    "linear_whirl_frequency": (BLACK, "-", "_"),
-    "inner_pass_frequency": (PURPLE, ":", "v"),
-    "outer_pass_frequency": (ORANGE, "-.", "^"),
-    "shaft_frequency": (BLUE, "--", "s"),
-    "cage_frequency": (GREEN, "--", "o"),
+ENVELOPE = (
+    "Stability over the cases and, over one input, frequencies; orders are those of shaft, cage and balls."
+)
+FREQUENCIES = "Frequencies on the housing"
+PANELS = {
+    "Restitution factor": (ETA, "restitution_threshold"),
+    "Probability that the cage is stable": ("probability_stable",),
+    "Safety factor": ("safety_factor",),
+    FREQUENCIES: (
+        *("linear_whirl_frequency", "inner_pass_frequency", "outer_pass_frequency"),
+        *("shaft_frequency", "cage_frequency", "orbit_frequency"),
+    ),
 }
-"""Lines of the picture, two factors and the frequencies: colour, line, and marker where it has no meaning."""
+"""Numbers of each panel."""
 
-
-class Way(NamedTuple):
-    """How cases are laid out: an axis, the name of their places there, and whether lines mean something."""
-
-    axis: Axis
-    name: str
-    is_line: bool
-
-
-def ways(answer: Part) -> list[Way]:
-    """Return the axes of the picture: the only parameter, several, or the cases of a duty cycle."""
-    values = {one.name: [case.get(one.name) for case in answer.cases] for one in answer.parameters}
-    units = {one.name: one.get("unit") or "-" for one in answer.parameters}
-    is_line = len(values) == 1 and all(a < b for each in values.values() for a, b in pairwise(each))
-    if not is_line and (len(values) == 1 or has(answer, "time_share")):
-        count = len(answer.cases)
-        names = tuple(map(str, range(count))) if count <= SOME else ()
-        return [Way(Axis(label="case [-]", low=-0.6, high=count - 0.4, names=names), "case", False)]
-    chosen = [*values.items()][:MOST_PANELS]
-    return [Way(parameter_axis(name, units[name], sorted({*known})), name, is_line) for name, known in chosen]
+BOUNDS = {"probability_stable": (0.5, 0.9), "safety_factor": (1.0,)}
+ENDS = {ETA: (-0.03, 1.05), "probability_stable": (-0.06, 1.06)}
+LINES = ("-", "--", "-.", ":", "-", "")
 
 
 def envelope_figure(answer: Part) -> Figure:
-    """Return restitution factor, its threshold, P(stable) and the frequencies over the parameters."""
-    columns = [[*_panels(answer, way)] for way in ways(answer)]
+    """Return what decides, and the frequencies, over the first parameter; a curve for values of the others.
+
+    Over the numbers of the cases where the first parameter makes no curve, as in a duty cycle.
+    """
+    first, *others = answer.parameters
+    curves: dict[str, list[Part]] = {}
+    for case in answer.cases:
+        key = ", ".join(at(one, one.name, case.get(one.name)) for one in others)
+        curves.setdefault(key, []).append(case)
+    ways = [[case.get(first.name) for case in each] for each in curves.values()]
+    name, is_line = first.name, all(a < b for way in ways for a, b in pairwise(way))
+    if len(curves) > len(CYCLE) or not is_line or has(answer, "time_share"):
+        name, curves, is_line = "case", {"": answer.cases}, False
+        x = Axis(label="case [-]", low=-0.6, high=len(answer.cases) - 0.4)
+    else:
+        x = parameter_axis(name, first.get("unit") or "-", sorted({one for way in ways for one in way}))
+    panels = []
+    for title, names in PANELS.items():
+        known = [one for one in names if has(answer, one)]
+        if not known or (title == FREQUENCIES and len(curves) > 1):
+            continue
+        low, high = ENDS.get(known[0], (None, None))
+        y = axis(known[0], "-", [], low=low, high=high, is_log=low is None)
+        y = axis(known[0], "Hz", [], label="frequency", is_log=True) if title == FREQUENCIES else y
+        found = (*_curves(answer, curves, known, name, is_line=is_line), *_upright(answer, name))
+        title += "; dashed: its threshold" * ("restitution_threshold" in known)
+        panels.append(Panel(title=title, x=x, y=y, marks=found))
     return Figure(
-        rows=tuple(zip(*columns, strict=True)),
+        rows=tuple(tuple(panels[i : i + 2]) for i in range(0, len(panels), 2)),
         heading=figure_heading(answer, varied=[one.name.rpartition(".")[2] for one in answer.parameters]),
-        alt="Stability and frequencies over the cases of the sweep; the table has the numbers.",
-        height=2.2,
+        alt=ENVELOPE,
+        height=2.4,
     )
 
 
-def _panels(answer: Part, way: Way) -> Iterator[Panel]:
-    upright = [*_upright(answer, way)]
-
-    def panel(title: str, y: Axis, found: Sequence[Mark]) -> Panel:
-        return Panel(title=title, x=way.axis, y=y, marks=(*found, *upright))
-
-    factors: list[Mark] = []
-    frequencies: list[Mark] = []
-    for name, (colour, line, marker) in LOOKS.items():
-        if has(answer, name):
-            among = frequencies if "frequency" in name else factors
-            look = {"colour": colour, "line": line} if way.is_line else {"colour": colour, "marker": marker}
-            among.append(_over(answer, answer.cases, way, name, size=3.0, **look))
-    if factors:
-        title = "Restitution factor" + " and its threshold" * len(factors[1:])
-        yield panel(title, axis(ETA, "-", [], low=-0.03, high=1.05), factors)
-    if has(answer, "probability_stable"):
-        chances = []
-        for word, colour in VERDICT_COLOURS.items():
-            those = [one for one in answer.cases if one.verdict == word]
-            look = {"colour": colour, "marker": VERDICT_MARKERS[word], "name": word}
-            chances += [_over(answer, those, way, "probability_stable", **look)] if those else []
-        y = axis("probability_stable", "-", [], low=-0.06, high=1.06)
-        yield panel("Probability that the cage is stable", y, chances)
-    safe = [one for one in answer.cases if "safety_factor" in one]
-    if safe:
-        found = _over(answer, safe, way, "safety_factor", marker="D", size=4.0, colour=BLUE)
-        bound = Across(at=1.0, axis="y", line=":")
-        yield panel("Safety factor", axis("safety_factor", "-", [], is_log=True), (found, bound))
-    whirling = [one for one in answer.cases if one.get("orbit_frequency")]
-    if whirling:
-        x, speed = [one.get(way.name) for one in whirling], [abs(one.orbit_frequency) for one in whirling]
-        more: dict[str, Any] = {"line": "", "marker": "^", "size": 5.0, "colour": VERMILION}
-        frequencies.append(Trace(x=x, y=speed, name=quantity("orbit_frequency").label, **more))
-    y = axis("shaft_frequency", "Hz", [], label="frequency", is_log=True)
-    yield panel("Frequencies on the housing", y, frequencies)
+def _curves(
+    answer: Part, curves: Mapping[str, Sequence[Part]], names: Sequence[str], x: str, *, is_line: bool
+) -> Iterator[Mark]:
+    """Yield some numbers of the cases with their intervals: a colour a curve, or of one curve a number."""
+    for (i, (key, cases)), (j, name) in product(enumerate(curves.items()), enumerate(names)):
+        rows = cases
+        if name == "orbit_frequency":  # its sign is the direction
+            rows = [Part({**one.values, name: abs(one.get(name) or 0.0) or None}, one.units) for one in cases]
+        label = quantity(name).label if names[1:] else ""
+        look: dict[str, Any] = {"colour": CYCLE[i if key else j], "name": "" if key and j else key or label}
+        look |= {"line": LINES[j]} if is_line else {}
+        look |= {} if is_line and LINES[j] else {"marker": MARKERS[j]}
+        yield marks(rows, x, name, hover=partial(_hover, answer, name), size=3.0, **look)
+    yield from (Across(at=one, axis="y", line=":", colour=GREY) for one in BOUNDS.get(names[0], ()))
 
 
-def _over(answer: Part, cases: Sequence[Part], way: Way, what: str, **look: Any) -> Trace:
-    """Return a number of the cases with its interval."""
-    label = quantity(what).label
-
-    def hover(case: Part) -> str:
-        return f"{case_words(answer, case)}: {label} {show(case, what)}"
-
-    return marks(cases, way.name, what, hover=hover, **({"name": label} | look))
+def _hover(answer: Part, what: str, case: Part) -> str:
+    return f"{case_words(answer, case)}: {quantity(what).label} {show(case, what)}"
 
 
-def _upright(answer: Part, way: Way) -> Iterator[Mark]:
+def _upright(answer: Part, x: str) -> Iterator[Mark]:
     """Yield the places of refused cases, and of the worst."""
     worst = worst_case(answer)
     for one in answer.cases:
         if is_refused(one):
-            yield Across(at=one.get(way.name), colour=GREY, line=":", name="refused")
+            yield Across(at=one.get(x), colour=GREY, line=":", name="refused")
         if worst is not None and one.case == worst.case:
-            name = f"worst, {case_words(answer, worst)}"
-            yield Across(at=one.get(way.name), colour=VERMILION, line="--", name=name)
+            yield Across(at=one.get(x), line="-.", name=f"worst, {case_words(answer, worst)}")
 
 
 VERB = Verb(
@@ -349,10 +271,9 @@ VERB = Verb(
     options=Options,
     compute=compute,
     page=page,
-    files=files,
     moves_a_cage=True,
     epilog="Every value of one --vary goes with every value of the others. A case that is refused is a row "
-    "with its reason. The table is sweep.csv, sweep.xlsx and sweep.nc in the folder of the answer: "
+    "with its reason. The table is sweep.xlsx and sweep.nc in the folder of the answer: "
     '--vary "film.thickness=0.2..2um:10:log" --vary bearing.contact_angle=15..25deg:11.',
     keeps_runs=True,
 )

@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 from itertools import cycle
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.ground.quantity import Quantity
-from separatrix.present.blocks import Cell, Column, Equation, Heading, Level, Note, Page, Picture, Table
-from separatrix.present.figure import BLUE, GREY, SEQUENCE, Across, Axis, Band, Figure, Mark, Panel, Trace
+from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table
+from separatrix.present.figure import (
+    BLUE,
+    SEQUENCE,
+    VERMILION,
+    Across,
+    Axis,
+    Band,
+    Figure,
+    Mark,
+    Panel,
+    Trace,
+)
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, by_race, column, fill, number_of, place_column, show
+from separatrix.verbs.parts.quantity_text import axis, by_race, fill, number_of, place_column, show
 from separatrix.verbs.parts.refused import refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from separatrix.study.study import Study
     from separatrix.verbs.chain_answers import TractionAnswer
 
 SLOPE = ("slope", "slope_error", "free_rolling_offset")
 CONTACT = ("load", "contact_angle", "spin_roll_ratio", "rolling_speed", *SLOPE)
-
-RATIO = Quantity(label="size of the pivoting to rolling ratio", digits=2)
 
 
 def compute(study: Study, _options: NoOptions) -> TractionAnswer:
@@ -52,15 +57,10 @@ def compute(study: Study, _options: NoOptions) -> TractionAnswer:
     )
 
 
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there are no traction curves."""
-    yield from refused(study, rolling)
-
-
 def page(answer: Part) -> Page:
     """Return the page of `traction`."""
-    inner, outer = (show(one, "slope") for one in (answer.inner, answer.outer))
-    lead = f"{inner} at the inner race, {outer} at the outer race."
+    inner, outer = answer.inner, answer.outer
+    lead = f"{show(inner, 'slope')} at the inner race, {show(outer, 'slope')} at the outer race."
     return page_of(
         answer,
         Note(f"Slopes $alpha$ of the traction curves of the most loaded ball: {lead}", "lead"),
@@ -69,60 +69,40 @@ def page(answer: Part) -> Page:
             r"\alpha = \left.\dfrac{\partial C_T}{\partial\,\delta\xi}\right|_{\delta\xi = 0}",
             "Slope $alpha$ of the traction coefficient $C_T$ against the creep increment $dxi$.",
         ),
-        by_race("traction", answer.inner, answer.outer, *CONTACT),
+        by_race("traction", inner, outer, *CONTACT),
         Picture("traction-curves", lambda: curves_figure(answer), CURVES),
-        Heading("Slope at other pivoting to rolling ratios, by strips"),
-        by_ratio(answer),
-        Heading("Shear in free rolling, by strips"),
-        Picture("traction-shear", lambda: shear_figure(answer), SHEAR),
         *([Heading("Range of the strips")] if answer.outside else []),
         *(Note(sentence) for sentence in answer.outside),
-        *(curve_table(part, race) for race, part in (("inner", answer.inner), ("outer", answer.outer))),
+        *(curve_table(part, race) for race, part in (("inner", inner), ("outer", outer))),
     )
 
 
 CURVES = (
     "Traction coefficient against creep increment for both races (the paper's Fig. 7): this bearing with its "
-    "slope at the origin, and by strips at other pivoting to rolling ratios of the same sign."
+    "slope at the origin, and by strips at other pivoting to rolling ratios of the same sign. Below: shear "
+    "along rolling in free rolling, in a strip half way to the edge of each contact (the paper's Fig. 6). "
+    "Surfaces enter at the right; the coloured area is what friction bears."
 )
-SHEAR = (
-    "Shear along rolling in three strips of each contact in free rolling (the paper's Fig. 6). Surfaces "
-    "enter at the right; the grey area is what friction bears."
-)
-
-
-def by_ratio(answer: Part) -> Table:
-    """Return the slopes at other ratios, whose signs are those of this bearing."""
-    columns = (
-        Column(
-            "ratio", lambda pair: Cell(abs(pair[0].spin_roll_ratio), RATIO, pair[0].unit("spin_roll_ratio"))
-        ),
-        column("slope", of=itemgetter(0), head="slope, inner race"),
-        column("slope", of=itemgetter(1), head="slope, outer race"),
-    )
-    rows = zip(answer.inner.by_spin_roll_ratio, answer.outer.by_spin_roll_ratio, strict=True)
-    return Table("other ratios", columns, tuple(rows))
 
 
 def curve_table(part: Part, race: str) -> Table:
     """Return the points of the curves of a race, for the workbook."""
     columns = [place_column(part, name) for name in ("creep_increment", "traction_coefficient")]
     for one in part.by_spin_roll_ratio:
-        head = f"traction coefficient at {show(one, 'spin_roll_ratio')}"
+        head = fill(one, "traction coefficient at {spin_roll_ratio}, slope {slope}")
         columns.append(place_column(one, "traction_coefficient", head=head))
     rows = tuple(range(len(part.creep_increment)))
     return Table(f"curves, {race} race", tuple(columns), rows, level=Level.SHEET)
 
 
 def curves_figure(answer: Part) -> Figure:
-    """Return the curves of both races: the bearing's own with its tangent, and those at other ratios."""
+    """Return the curves of both races, and below them the shear in a strip of each."""
     races = answer.inner, answer.outer
     high = 1.12 * max(abs(one) for part in races for one in part.traction_coefficient)
     y = axis("traction_coefficient", answer.inner.unit("traction_coefficient"), [], low=-high, high=high)
     titles = "a  Ball on inner race", "b  Ball on outer race"
     panels = tuple(curves_panel(part, title, y) for part, title in zip(races, titles, strict=True))
-    alt = "Traction coefficient against creep increment for both races; the table has their slopes."
-    return figure(answer, panels, alt=alt, height=2.9)
+    return figure(answer, panels, (shear_panel(answer),), alt=CURVES, height=2.6)
 
 
 def curves_panel(part: Part, title: str, y: Axis) -> Panel:
@@ -145,34 +125,28 @@ def curves_panel(part: Part, title: str, y: Axis) -> Panel:
     )
 
 
-def shear_figure(answer: Part) -> Figure:
-    """Return the shear in three strips of each contact: without slip, with slip, and what friction bears."""
-    rows = []
-    for race, letters in (("inner", "abc"), ("outer", "def")):
+def shear_panel(answer: Part) -> Panel:
+    """Return the shear in a strip of each contact, with what friction bears."""
+    marks, along, every = list[Mark](), list[float](), list[float]()
+    for race, colour, line in (("inner", BLUE, "-"), ("outer", VERMILION, "--")):
         field = getattr(answer, race).shear
-        last = len(field.across) - 1
-        strips = (last // 4, last // 2, last - last // 4)
-        high = 1.6 * max(one for strip in strips for one in field.bound[strip])
-        label = f"{race} race: shear"
-        y = axis("shear", field.unit("shear"), [high], low=-high, high=high, label=label)
-        rows.append(tuple(strip_panel(field, *each, y) for each in zip(strips, letters, strict=True)))
-    alt = "Six panels: shear along rolling in three strips of each contact, within what friction bears."
-    return figure(answer, *rows, alt=alt, height=2.1)
-
-
-def strip_panel(field: Part, strip: int, letter: str, y: Axis) -> Panel:
-    """Return one strip across a contact."""
-    x, bound = field.along[strip], field.bound[strip]
-    place, creep = (number_of(field, name, getattr(field, name)[strip]) for name in ("across", "creep_ratio"))
-    marks = (
-        Band(x=x, low=[-one for one in bound], high=bound, colour=GREY, opacity=0.15, name=BOUND),
-        Trace(x=x, y=field.shear_without_slip[strip], line="--", width=0.8, name="without slip"),
-        Trace(x=x, y=field.shear[strip], colour=BLUE, name="with slip"),
+        strip = len(field.across) - 1 - (len(field.across) - 1) // 4
+        x, bound = field.along[strip], field.bound[strip]
+        place, creep = (
+            number_of(field, name, getattr(field, name)[strip]) for name in ("across", "creep_ratio")
+        )
+        name = f"{race} race at y = {place}, $xi$ = {creep}"
+        marks.append(Band(x=x, low=[-one for one in bound], high=bound, colour=colour, opacity=0.12))
+        marks.append(Trace(x=x, y=field.shear[strip], colour=colour, line=line, name=name))
+        along += x
+        every += bound
+    field, high = answer.inner.shear, 1.2 * max(every)
+    return Panel(
+        title="c  Shear in free rolling, within $f_BT$ $p$",
+        x=axis("along", field.unit("along"), along),
+        y=axis("shear", field.unit("shear"), [high], low=-high, high=high),
+        marks=tuple(marks),
     )
-    along = axis("along", field.unit("along"), x)
-    return Panel(title=f"{letter}  y = {place}, $xi$ = {creep}", x=along, y=y, marks=marks)
 
 
-BOUND = "within $f_BT$ $p$"
-
-VERB = Verb(name="traction", compute=compute, page=page, refusals=refusals)
+VERB = Verb(name="traction", compute=compute, page=page, refusals=lambda study: refused(study, rolling))

@@ -73,13 +73,11 @@ class Verb(Tool):
     `compute` takes the study, the options and, of a verb that keeps runs, a `Runner`, and returns its record;
     `page` makes the page of its document. `needs` are sections of a study that may be left out but not here.
     `keeps_runs` is for an answer whose finished runs are kept in its folder, and that may be made on a
-    cluster. `files` yields name and content of what it writes besides. `moves_a_cage` is for one whose model
-    may be chosen. `refusals` yields, in a second, what the verb would refuse of a study or take long for, a
-    sentence each.
+    cluster. `moves_a_cage` is for one whose model may be chosen. `refusals` yields, in a second, what the
+    verb would refuse of a study or take long for, a sentence each.
     """
 
     needs: tuple[str, ...] = ()
     moves_a_cage: bool = False
     keeps_runs: bool = False
-    files: Callable[[Part], Iterable[tuple[str, bytes]]] = lambda answer: ()  # noqa: ARG005
     refusals: Callable[[Study], Iterable[str]] = lambda study: ()  # noqa: ARG005

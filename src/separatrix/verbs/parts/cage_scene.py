@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Hertz, Metre
@@ -13,8 +14,8 @@ from separatrix.present.view import RIM, Scene
 AROUND = np.linspace(0.0, 2 * np.pi, 721)
 """Directions in which boundaries are drawn: half a degree apart."""
 
-FINE, LAST = 6, 5
-"""Points drawn for a sample of the path, and turns at its end that are drawn darker."""
+FINE = 6
+"""Points drawn for a sample of the path."""
 
 BEYOND, NEVER = 2.0, 1e3
 """Half the play over the land's gap from which the pockets are left out of the picture; over the play, along
@@ -23,9 +24,8 @@ the radius of one ball, from which a boundary does not exist."""
 SHORTEST, STRONG, PRESENT = 8, 0.3, 0.05
 """Least samples of a spectrum; shares of its largest amplitude from which a whirl is strong, and is shown."""
 
-A_TURN, GAP = 6, 1.5
-"""Least frames in a turn of the fastest strong whirl: fewer may reverse its sense; steps over the usual one
-from which frames have a gap."""
+A_TURN = 6
+"""Least frames in a turn of the fastest strong whirl: fewer may reverse its sense."""
 
 MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 """Most frames, and most numbers in all: they keep a page under 1 MB."""
@@ -83,26 +83,17 @@ def land_heights(answer: Part) -> Array:
     return np.zeros(1) if cage.land_count == 1 else 0.5 * cage.land_spacing * np.array([-1.0, 1.0])
 
 
-def smooth_path(time: Array, position: Array, velocity: Array) -> Array:
+def smooth_path(answer: Part) -> Array:
     """Return the path through samples as the cubics that have their positions and velocities.
 
     Straight lines between the samples of a fast whirl would be drawn as a polygon.
     """
-    s = np.linspace(0.0, 1.0, FINE, endpoint=False)[:, np.newaxis]
-    step = np.diff(time)[:, np.newaxis, np.newaxis]
-    start, end = position[:-1, np.newaxis], position[1:, np.newaxis]
-    slope, next_slope = step * velocity[:-1, np.newaxis], step * velocity[1:, np.newaxis]
-    there = start + (end - start) * s**2 * (3 - 2 * s)
-    path = there + slope * s * (1 - s) ** 2 - next_slope * s**2 * (1 - s)
-    return np.concatenate([path.reshape(-1, 2), position[-1:]])
-
-
-def last_turns(path: Array) -> int:
-    """Return the first point of the `LAST` turns, by their length; 0 if the path is not much longer."""
-    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    around = 2 * np.pi * float(np.hypot(*path[-1]))
-    first = int(np.searchsorted(length, length[-1] - LAST * around))
-    return first if length[-1] > 2 * LAST * around and around > 0.0 else 0
+    time, position, velocity = (array(answer, name) for name in ("time", "position", "velocity"))
+    if time.size < 2:
+        return position
+    places = np.linspace(0, time.size - 1, FINE * (time.size - 1) + 1)
+    found = CubicHermiteSpline(time, position, velocity)(np.interp(places, np.arange(time.size), time))
+    return np.asarray(found)
 
 
 def whirl_spectrum(answer: Part) -> tuple[Array, Array]:
@@ -126,28 +117,20 @@ def spectrum_reach(answer: Part) -> Hertz:
     return float(1.3 * shown.max(initial=0.0)) or float(np.abs(frequency).max()) or 1.0
 
 
-def frame_moments(answer: Part, most: int) -> Array:
+def frame_moments(answer: Part, most: int) -> list[Array]:
     """Return the samples that become frames, rising, with the first and the last.
 
-    They are close enough to show each turn of the whirl; if the whole run would take too many, its beginning
-    and its end are shown.
+    They are close enough to show each turn of the whirl; if the whole run would take too many, two parts, its
+    beginning and its end, are shown.
     """
     time, (frequency, share) = array(answer, "time"), whirl_spectrum(answer)
     even: Any = np.unique(np.linspace(0, time.size - 1, min(most, time.size)).astype(int))
     turns = float(np.abs(frequency[share > STRONG]).max(initial=0.0) * time[-1])  # none of a cage at rest
     step = max(1, int(time.size / (A_TURN * turns))) if turns > 0.0 else time.size
     if int(np.diff(even).max(initial=1)) <= step:
-        return even  # type: ignore[no-any-return]
-    half = np.arange(most // 2) * step
-    return np.unique(np.concatenate([half, time.size - 1 - half]))
-
-
-def shown_parts(time: Array, moments: Array) -> tuple[tuple[float, float], ...]:
-    """Return beginning and end of each part of a run that some frames show [s]."""
-    steps = np.diff(moments)
-    usual = float(np.median(steps)) if steps[1:].size else float(moments[-1])
-    parts = np.split(time[moments], np.flatnonzero(steps > GAP * usual + 1) + 1)
-    return tuple((float(part[0]), float(part[-1])) for part in parts)
+        return [even]
+    half: Any = np.arange(most // 2) * step
+    return [half, time.size - 1 - half[::-1]]
 
 
 def turned_by(cage: Part, time: Array) -> Array:
@@ -166,7 +149,8 @@ def scene(answer: Part) -> Scene:
     two pockets, the pockets within the cage, and the cage in the picture.
     """
     most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (9 + 3 * len(answer.pocket_angle))))
-    moments, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
+    parts, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
+    moments: Any = np.concatenate(parts)
     plays, land, in_space = array(answer, "half_play"), land_boundary(answer), "lean" in answer
     radius, pitch = float(cage.pitch_radius), 2.0 * np.pi * cage.pitch_radius / max(3, plays.size)
     ball = 0.5 * (float(cage.ball_diameter) or 0.75 * pitch)
@@ -202,7 +186,7 @@ def scene(answer: Part) -> Scene:
         gap=0.0 if land is None else float(land.max()),
         in_space=in_space,
         time=time[moments],
-        parts=shown_parts(time, moments),
+        parts=tuple((float(time[one[0]]), float(time[one[-1]])) for one in parts),
         turned=turned_by(cage, time[moments]),
         centre=centre,
         lean=lean,
@@ -218,7 +202,6 @@ def scene(answer: Part) -> Scene:
 
 
 def _largest_since(values: Array, moments: Array) -> Array:
-    """Return the largest of some values between each moment and the one before it."""
-    before = np.concatenate([[moments[0]], moments[:-1] + 1])
-    pairs = [(min(a, b), b + 1) for a, b in zip(before, moments, strict=True)]
-    return np.array([values[a:b].max(axis=0) for a, b in pairs])
+    """Return the largest of some values between each moment and the one before it, from the first sample."""
+    starts = np.concatenate([[0], moments[:-1] + 1])
+    return np.asarray(np.maximum.reduceat(values[: moments[-1] + 1], starts))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Block, Cell, Column, Equation, Heading, Level, Table, facts, text_column
 from separatrix.verbs.parts.answer_page import bearing_facts
-from separatrix.verbs.parts.quantity_text import by_race, cell, fact, fill, named, show
+from separatrix.verbs.parts.quantity_text import cell, fact, fill, named, show
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:
@@ -33,11 +33,6 @@ def clearance_facts(found: Part) -> list[tuple[str, str]]:
 
 
 FACTORS = ("race_damping", "damping_ratio", "restitution_factor")
-DAMPING = ("load", "slope", "rolling_speed")
-DAMPING_LEGEND = (
-    "Contacts of the most loaded ball. The damping of its inner race is {inner_damping}, that of its outer "
-    "race {outer_damping}."
-)
 OVERDAMPED = " (overdamped)"
 
 
@@ -69,10 +64,8 @@ def restitution_blocks(chain: Part, level: Level = Level.LONG) -> list[Block]:
         Table(
             "restitution", (text_column("", named), factor(""), factor("_free_spin")), FACTORS, level=level
         ),
-        by_race(
-            "dampings", chain.inner, chain.outer, *DAMPING, level=level, caption=fill(chain, DAMPING_LEGEND)
-        ),
         facts(
+            ("Damping of each race", fill(chain, "{inner_damping} inner, {outer_damping} outer")),
             (named(stiffness), f"{show(chain, stiffness)} ({chain.stiffness_source})"),
             fact(chain, "cage_mass", named("cage_mass")),
             ("$eta$ of a Hertzian pocket", fill(chain, hertz)),

@@ -6,6 +6,8 @@ answers. A name means the same everywhere, so each stands here once.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from separatrix.ground.quantity import Quantity
 
 Q = Quantity
@@ -13,26 +15,20 @@ Q = Quantity
 QUANTITIES: dict[str, Quantity] = {
     # The ball set and its contacts.
     "azimuth": Q(label="azimuth of the ball", head="azimuth", digits=4),
-    "contact_angle_inner": Q(label="contact angle at the inner race", head="angle in", digits=4),
-    "contact_angle_outer": Q(label="contact angle at the outer race", head="angle out", digits=4),
-    "load_inner": Q(label="load on the inner race", head="load in", symbol="Q_i", digits=4),
-    "load_outer": Q(label="load on the outer race", head="load out", symbol="Q_o", digits=4),
     "orbital_speed": Q(label="orbital speed of the ball", head="orbit", unit="rad/s", digits=5),
     "pitch_angle": Q(label="pitch angle of the ball's spin", head="pitch", digits=4),
-    "spin_roll_ratio_inner": Q(label="spin/roll ratio at the inner race", head="spin/roll in", form=".4f"),
-    "spin_roll_ratio_outer": Q(label="spin/roll ratio at the outer race", head="spin/roll out", form=".4f"),
     "axial_displacement": Q(label="axial displacement of the inner ring", digits=4),
     "radial_displacement": Q(label="radial displacement of the inner ring", digits=4),
     "tilt": Q(label="tilt of the inner ring", digits=4),
     "moment": Q(label="moment of the balls", digits=4),
     "load": Q(label="load", symbol="Q", digits=4),
-    "contact_angle": Q(label="contact angle", digits=4),
+    "contact_angle": Q(label="contact angle", head="angle", digits=4),
     "semi_major": Q(label="semi-major axis a, across the groove", symbol="a", digits=4),
     "semi_minor": Q(label="semi-minor axis b, along rolling", symbol="b", digits=4),
-    "max_pressure": Q(label="maximum Hertz pressure", symbol="p_0", digits=4),
+    "max_pressure": Q(label="maximum Hertz pressure", head="pressure", symbol="p_0", digits=4),
     "approach": Q(label="mutual approach", digits=4),
     "rolling_speed": Q(label="rolling speed", digits=4),
-    "spin_roll_ratio": Q(label="pivoting to rolling ratio", digits=4),
+    "spin_roll_ratio": Q(label="pivoting to rolling ratio", head="spin/roll", digits=4),
     "pressure": Q(label="pressure", symbol="p"),
     "creep_spin": Q(label="creep by spin, s", digits=4),
     "creep_curvature": Q(label="creep by curvature, q", digits=4),
@@ -50,29 +46,22 @@ QUANTITIES: dict[str, Quantity] = {
     "ball_strain": Q(label="thermal strain of the balls", unit="%"),
     "ring_strain": Q(label="thermal strain of the rings", unit="%"),
     "hoop_strain": Q(label="strain of the cage by rotation", unit="%"),
-    "cage_land_growth": Q(label="growth of the cage's land"),
-    "ring_land_growth": Q(label="growth of the ring's land"),
     # Traction, restitution, mobility.
-    "slope": Q(label="slope of the traction curve", symbol="alpha", digits=4),
+    "slope": Q(label="slope of the traction curve", head="slope", symbol="alpha", digits=4),
     "slope_error": Q(label="error of the slope", digits=2),
     "ball_cage_stiffness": Q(label="stiffness of ball and pocket", symbol="k_BC", digits=4),
     "cage_mass": Q(label="cage mass", symbol="M_C", digits=4),
     "inner_damping": Q(label="damping of the inner race", digits=4),
     "outer_damping": Q(label="damping of the outer race", digits=4),
     "race_damping": Q(label="race damping", symbol="C_mu", digits=4),
-    "race_damping_free_spin": Q(label="race damping if the ball may spin", digits=4),
     "damping_ratio": Q(label="damping ratio", symbol="zeta", form=".3f"),
-    "damping_ratio_free_spin": Q(label="damping ratio if the ball may spin", form=".3f"),
     "restitution_factor": Q(label="restitution factor", symbol="eta", form=".3f"),
-    "restitution_factor_free_spin": Q(label="restitution factor if the ball may spin", form=".3f"),
     "restitution_factor_hertz": Q(label="restitution factor of a Hertzian pocket", form=".3f"),
-    "lead_amplitude": Q(label="lead of a free ball"),
-    "half_play": Q(label="half the pocket clearance, along the circumference", digits=4),
+    "half_play": Q(label="half the pocket clearance along the orbit", head="half clearance", digits=4),
     "orbital_share": Q(label="share of the speed variance in the harmonics used", unit="%", digits=4),
     "free_rolling_offset": Q(label="free-rolling offset of the creep", digits=4),
     "creep_increment": Q(label="creep increment", symbol="dxi", unit="%"),
     "traction_coefficient": Q(label="traction coefficient", symbol="C_T", digits=4),
-    "shear": Q(label="shear"),
     "along": Q(label="x along rolling"),
     "across": Q(label="y across the groove", digits=2),
     "film_thickness": Q(label="total thickness of the film"),
@@ -99,7 +88,6 @@ QUANTITIES: dict[str, Quantity] = {
     "law_error": Q(label="largest error of the law", unit="%", digits=2),
     "asymmetry": Q(label="difference of forward and backward", unit="%", digits=2),
     # Checked studies.
-    "speed_parameter": Q(label="speed parameter", digits=3),
     "mass": Q(label="mass", digits=4),
     "lean": Q(label="lean of a pocket's contact, towards the bearing axis"),
     "land_gap": Q(label="radial gap of the land", digits=4),
@@ -116,12 +104,8 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "kicks": Q(label="initial disturbances", unit="m/s", form=".3g"),
     "middle_kick": Q(label="reference disturbance", unit="m/s", form=".3g"),
-    "searched_friction": Q(label="highest friction that was searched"),
     "band_few": Q(label="share of runs that whirl at the lower end of the band", unit="%"),
-    "band_most": Q(label="share of runs that whirl at the upper end of the band", unit="%"),
     "runs": Q(label="runs", form=".0f"),
-    "duration": Q(label="length of a run"),
-    "drift_rate_law": Q(label="drift rate by the linear law"),
     "most_runs": Q(label="most runs of a point", digits=7),
     "agreeing_runs": Q(label="runs that agree", digits=7),
     "wrong_side_probability": Q(label="risk of the wrong side", unit="%", digits=2),
@@ -129,12 +113,7 @@ QUANTITIES: dict[str, Quantity] = {
     "probability_whirl": Q(
         label="share of the runs that whirl", digits=2, ends=("probability_low", "probability_high")
     ),
-    "whirling": Q(label="runs that whirl", digits=7),
     "time_share": Q(label="share of the time", head="time", unit="%"),
-    "max_pressure_inner": Q(label="pressure at the inner race", head="pressure in", digits=4),
-    "max_pressure_outer": Q(label="pressure at the outer race", head="pressure out", digits=4),
-    "slope_inner": Q(label="traction slope at the inner race", head="slope in"),
-    "slope_outer": Q(label="traction slope at the outer race", head="slope out"),
     "shaft_frequency": Q(label="shaft, 1x", unit="Hz"),
     "cage_frequency": Q(label="cage and ball set, 1x", unit="Hz"),
     "outer_pass_frequency": Q(label="balls past the outer ring", unit="Hz"),
@@ -147,35 +126,17 @@ QUANTITIES: dict[str, Quantity] = {
     "undecided": Q(label="UNDECIDED", unit="%"),
     "refused": Q(label="without an answer", unit="%"),
     # Runs of the cage.
-    "time": Q(label="time"),
     "judged_from": Q(label="start of the judged part", digits=4),
     "followed": Q(label="end of the judged part", digits=4),
     "run_length": Q(label="length of the run", digits=4),
-    "left_time": Q(label="time at which a ball reaches the edge of its pocket's wall"),
-    "position": Q(label="place of the centre"),
-    "axial_place": Q(label="axial place"),
-    "contact_force": Q(label="force of a pocket"),
-    "land_force": Q(label="force of the land"),
-    "kinetic_energy": Q(label="kinetic energy"),
-    "stored_energy": Q(label="energy of the pockets' springs"),
-    "work": Q(label="work since the start"),
     "given_restitution_factor": Q(label="restitution factor in place of the study's", symbol="eta", digits=4),
-    "offset_spread": Q(label="standard deviation of the offset"),
     "tilt_phase": Q(label="phase of the tilt before the offset", form=".0f"),
-    "axial_low": Q(label="least axial place"),
-    "axial_high": Q(label="largest axial place"),
-    "whirl_speed": Q(label="speed of the whirling centre"),
-    "orbit_speed": Q(label="orbit of the centre", unit="rad/s", digits=4),
-    "cone_speed": Q(label="orbit of the tilt", unit="rad/s", digits=4),
     "cage_slip": Q(label="slip of the cage", unit="%"),
     "axial_half_play": Q(label="pocket clearance along the axis each way", digits=4),
     "pocket_angle": Q(label="place of the pocket", head="place", digits=4),
     "pocket_impacts": Q(label="impacts", form=".0f"),
     "impacts_per_turn": Q(label="impacts per turn of the cage", form=".2f"),
     "pocket_rubbing_power": Q(label="heat of rubbing", head="heat of rubbing"),
-    "front_share": Q(label="share of the impulse in front of the ball", unit="%"),
-    "rear_share": Q(label="share of the impulse behind the ball", unit="%"),
-    "axial_share": Q(label="share of the impulse at the axial sides", unit="%"),
     #
     # Rankings and their verdicts.
     "friction": Q(label="pocket friction", head="friction", symbol="f_BC", form=".3f"),
@@ -192,13 +153,10 @@ QUANTITIES: dict[str, Quantity] = {
         form=".3f",
         meaning="friction at which half the runs whirl from the worst disturbance, with its own races",
     ),
-    "estimated_critical_friction": Q(label="critical friction by the closed law", form=".2f"),
     "safety_factor": Q(
         label="safety factor", head="S", symbol="S", form=".2f", meaning="critical friction over friction"
     ),
-    "wide_land_clearance": Q(label="land clearance at which the pockets stop the cage"),
     "wide_land_critical_friction": Q(label="critical friction on that wider land", form=".3f"),
-    "critical_kick": Q(label="disturbance of the critical friction"),
     "margin": Q(label="margin", form="+.2f", meaning="threshold less the bearing's own eta"),
     "probability_stable": Q(
         label="P(stable)",
@@ -212,13 +170,9 @@ QUANTITIES: dict[str, Quantity] = {
         form=".2f",
         ends=("uncertain_probability_low", "uncertain_probability_high"),
     ),
-    "solid_lubrication_limit": Q(label="the paper's limit of solid lubrication"),
     "friction_scatter": Q(label="assumed scatter of friction", unit="%"),
-    "friction_error": Q(label="standard error of the mean friction", digits=2),
-    "friction_deviation": Q(label="standard deviation of friction", digits=2),
+    "friction_deviation": Q(label="standard deviation of friction", head="s.d.", digits=2),
     "kick": Q(label="initial disturbance", unit="m/s", form=".3g"),
-    "worst_kick": Q(label="worst initial disturbance"),
-    "longest_run": Q(label="longest run"),
     "largest_offset": Q(label="largest offset of the cage centre", head="largest offset"),
     "mean_offset": Q(label="mean offset of the cage centre", head="mean offset", meaning="median at the end"),
     "orbit_evenness": Q(label="spread of the offset over its mean", digits=2),
@@ -235,9 +189,6 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "largest_contact_force": Q(label="largest force at a pocket", head="pocket force"),
     "largest_land_force": Q(label="largest force on the land", head="land force"),
-    "force_limit": Q(label="force beyond which the ball slides"),
-    "rubbing_force": Q(label="force of rubbing on the land"),
-    "rubbing_speed": Q(label="speed of rubbing on the land"),
     "rubbing_power": Q(label="power of rubbing on the land", head="rubbing", digits=2),
     "whirl_frequency": Q(
         label="whirl frequency", head="whirl", meaning="median of the runs that end so, seen from the balls"
@@ -247,11 +198,6 @@ QUANTITIES: dict[str, Quantity] = {
         form=".2f",
         meaning="speed at which the centre orbits the axis over that of the ball set",
     ),
-    "end_energy": Q(label="energy at the end"),
-    "drive_energy": Q(label="energy that frame and loads can give"),
-    "pocket_power": Q(label="power that pocket friction feeds into the cage"),
-    "land_power": Q(label="power that land friction feeds into the cage"),
-    "impact_rate": Q(label="impacts at pockets"),
     "pocket_impact_shares": Q(label="share of a pocket in all impacts", unit="%", digits=2),
     "land_impact_share": Q(label="share of the land in all impacts", unit="%", digits=2),
     "energy_imbalance": Q(label="energy imbalance", digits=2),
@@ -259,10 +205,8 @@ QUANTITIES: dict[str, Quantity] = {
     "land_clearance": Q(label="land clearance as it runs", digits=4),
     "slip_speed": Q(label="sliding speed of ball on pocket"),
     "impact_force": Q(label="force of an impact at that speed"),
-    "contact_radius": Q(label="contact radius"),
     #
     # Uncertain studies.
-    "stopped_risk": Q(label="risk of another verdict of a case that is ended early"),
     "mean": Q(label="mean", digits=4),
     "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),
     "skill": Q(label="part of the deviance explained", head="skill", unit="%", form=".0f"),
@@ -283,10 +227,18 @@ QUANTITIES: dict[str, Quantity] = {
     "cycles": Q(label="whole cycles", form=".0f"),
     "normal_force": Q(label="normal force", digits=4),
     "cycle_time": Q(label="time of a cycle", digits=4),
-    "wear_depth": Q(label="wear depth"),
     "run_in_end": Q(label="end of running-in", head="running-in ends", digits=4),
     "steady_end": Q(label="end of the steady part", head="steady until", digits=4),
     "between_samples": Q(label="scatter between samples", unit="%", digits=2),
     "between_tests": Q(label="scatter between tests of one sample", unit="%", digits=2),
     "default_scatter": Q(label="assumed scatter", unit="%"),
 }
+
+for _name in ("load", "contact_angle", "spin_roll_ratio", "max_pressure", "slope"):
+    for _race, _end in (("inner", "in"), ("outer", "out")):
+        _of = QUANTITIES[_name]
+        _label, _head = f"{_of.label} at the {_race} race", f"{_of.head or _of.label} {_end}"
+        QUANTITIES[f"{_name}_{_race}"] = replace(_of, symbol="", label=_label, head=_head)
+for _name in ("race_damping", "damping_ratio", "restitution_factor"):
+    _label = f"{QUANTITIES[_name].label} if the ball may spin"
+    QUANTITIES[f"{_name}_free_spin"] = replace(QUANTITIES[_name], label=_label, symbol="")

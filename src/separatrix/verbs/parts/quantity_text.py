@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -125,17 +126,14 @@ def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]
     return Table(name, columns, known, level=Level.SHEET)
 
 
-def by_race(
-    name: str, inner: Part, outer: Part, *names: str, level: Level = Level.ALWAYS, caption: str = ""
-) -> Table:
+def by_race(name: str, inner: Part, outer: Part, *names: str) -> Table:
     """Return a table with quantities as rows, for the inner and the outer race."""
-
-    def race(part: Part) -> Callable[[Any], Cell]:
-        return lambda row: cell(part, row)
-
-    rows = text_column("", lambda row: begun(quantity(row).label))
-    columns = rows, Column("inner race", race(inner)), Column("outer race", race(outer))
-    return Table(name, columns, names, caption, level)
+    columns = (
+        text_column("", lambda row: begun(quantity(row).label)),
+        Column("inner race", partial(cell, inner)),
+        Column("outer race", partial(cell, outer)),
+    )
+    return Table(name, columns, names)
 
 
 def show(part: Part, name: str) -> str:
@@ -213,3 +211,8 @@ def is_proportional(values: Sequence[float]) -> bool:
 def value_of(parameter: Part, name: str, value: float | None) -> Cell:
     """Return a value of a parameter of this name, in its unit."""
     return Cell(value, quantity(name), parameter.get("unit") or "-")
+
+
+def at(parameter: Part, name: str, value: float | None) -> str:
+    """Return a parameter and its value in words."""
+    return f"{quantity(name).label} {value_of(parameter, name, value).text}"
