@@ -16,7 +16,7 @@ from concurrent.futures import Future
 from types import FrameType
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
-import typer
+import click
 
 from separatrix.front import INTERRUPTED
 from separatrix.ground.errors import InputError, harmless, json_text, one_line
@@ -134,11 +134,11 @@ def is_importing(frame: FrameType | None) -> bool:
 
 @contextlib.contextmanager
 def interruptible(ended: str) -> Iterator[None]:
-    """Let an interrupt end a command with one line, `ended`: typer would swallow the interrupt."""
+    """Let an interrupt end a command with one line, `ended`: click would swallow the interrupt."""
     try:
         yield
     except KeyboardInterrupt:
-        raise typer.Exit(interrupted(ended)) from None
+        raise click.exceptions.Exit(interrupted(ended)) from None
 
 
 def write(stream: TextIO | None, text: str) -> None:
