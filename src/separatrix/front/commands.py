@@ -115,9 +115,19 @@ def option_value(kind: str, text: Any, option: str) -> Any:
     return text
 
 
+def flag_of(name: str, note: Option) -> str:
+    """Return the name of an option on the command line."""
+    return note.flag or f"--{name.replace('_', '-')}"
+
+
+def asked_of(verb: Verb) -> Shown:
+    """Return the options of a verb; where it moves a cage, the model too."""
+    return verb.shown_options() | beside(*("model",) * verb.moves_a_cage)
+
+
 def _parameter(name: str, hint: Any, note: Option, default: Any) -> click.Parameter:
     """Return an option as the command line takes it."""
-    kind, flag = kind_of(hint), note.flag or f"--{name.replace('_', '-')}"
+    kind, flag = kind_of(hint), flag_of(name, note)
     is_many, own = kind.endswith("s"), note.metavar if note.is_argument else flag
     how: dict[str, Any] = {
         "help": note.help,
@@ -152,10 +162,9 @@ def options_of(asked: Tool, given: Given) -> Any:
 
 def verb_command(verb: Verb, about: str) -> click.Command:
     """Return the command of a verb."""
-    before = beside("study") | verb.shown_options()
-    kinds = ("model",) * verb.moves_a_cage + ("full",) * verb.has_full
-    after = beside(*kinds, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs)
-    return command(verb.name, partial(run, verb), before | after, about, verb.epilog)
+    after = *("full",) * verb.has_full, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs
+    takes = beside("study") | asked_of(verb) | beside(*after)
+    return command(verb.name, partial(run, verb), takes, about, verb.epilog)
 
 
 def run(verb: Verb, given: Given) -> int:
