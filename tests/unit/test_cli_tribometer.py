@@ -134,7 +134,7 @@ WRONG = {  # what follows the verb, and the words of the line
     "running-in in cycles": ("a.csv --run-in '5 cycles'", "needs a column of cycles"),
     "no jobs": ("a.csv --jobs 0", "--jobs must lie between 1"),
     "no files": ("", "Missing argument 'FILES...'"),
-    "no such option": ("a.csv --material X", "No such option: --material"),
+    "no such option": ("a.csv --material X", "No such option '--material'"),
 }
 
 

@@ -11,8 +11,8 @@ another name and then renames it, and a cached kernel has one signature only: pr
 same time write the same file, so that they can share a folder.
 
 Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and what numba
-does not document: the option `_nrt`, and that a kernel is compiled by its method `_compile_for_args` and loaded by
-`_load_overload` of its cache.
+does not document: the option `_nrt`, and that a kernel is compiled by its method `_compile_for_args` and loaded
+by `_load_overload` of its cache.
 """
 
 from __future__ import annotations
