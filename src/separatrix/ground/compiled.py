@@ -11,8 +11,8 @@ another name and then renames it, and a cached kernel has one signature only: pr
 same time write the same file, so that they can share a folder.
 
 Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and what numba
-does not document: the option `_nrt`, and that a kernel is compiled by its method `_compile_for_args` and loaded
-by `_load_overload` of its cache.
+does not document: the option `_nrt`, and the methods `_compile_for_args` and `_load_overload`, by which a
+kernel is compiled and loaded.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from typing import Any, ParamSpec, TypeVar, cast
 import llvmlite.binding
 import numba
 import numpy as np
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 
 from separatrix.ground import compiling  # noqa: F401 - it listens from now on
 
@@ -150,7 +150,7 @@ def _loaded(cache: Any, signature: object, target: object) -> object:
     numba would first fill its tables of types and functions, which only compiling needs, and which take
     longer to fill than all else that a short verb does.
     """
-    rtsys.initialize(target)  # type: ignore[no-untyped-call]
+    rtsys.initialize(target)
     with cache._guard_against_spurious_io_errors():
         return cast(object, cache._load_overload(signature, target))
 

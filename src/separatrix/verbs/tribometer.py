@@ -353,7 +353,8 @@ def _figure(test: Part) -> Figure:
     low, high, drift = test.friction_low, test.friction_high, test.drift_rate * (ends[1] - ends[0]) / 2
     size, symbol = _along(test, "steady_end").scale
     name = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}[test.run_in_axis]
-    last, look = max(course.along[-1], test.steady_end), {"line": "", "marker": "o", "size": 1.2}
+    last = max(course.along[-1], test.steady_end)
+    look: dict[str, Any] = {"line": "", "marker": "o", "size": 1.2, "name": "means of spans"}
     panel = Panel(
         title="Friction along the test",
         x=Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last),
@@ -362,7 +363,7 @@ def _figure(test: Part) -> Figure:
             *(Across(at=one, colour=GREY, line="--", name="ends of the steady part") for one in ends),
             Band(x=course.along, low=course.low, high=course.high, colour=SKY, name="range of rows"),
             Trace(x=course.along, y=course.mean, colour=BLUE, width=0.6),
-            Trace(x=course.span_along, y=course.span_mean, colour=BLUE, name="means of spans", **look),
+            Trace(x=course.span_along, y=course.span_mean, colour=BLUE, **look),
             Band(x=ends, low=(low, low), high=(high, high), colour=VERMILION, opacity=0.2),
             Trace(x=ends, y=(mean, mean), colour=VERMILION, name="steady mean, 95 % interval"),
             Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),

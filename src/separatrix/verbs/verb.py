@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_origin, get_type_hints
@@ -28,7 +28,7 @@ class Option(NamedTuple):
     flag: str = ""
 
 
-Shown = Mapping[str, tuple[Any, Option, Any]]
+Shown = dict[str, tuple[Any, Option, Any]]
 """Type, `Option` and default of each option, by name; `dataclasses.MISSING` of one without a default."""
 
 
