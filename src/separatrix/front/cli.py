@@ -55,28 +55,18 @@ separatrix rank cryogenic-turbopump
 class NewOptions:
     """What `new` takes."""
 
-    path: Annotated[Path, Option("The file to make; it must not exist yet.", "PATH", True)]
-    excel: Annotated[bool, Option("A workbook, .xlsx, in place of a text file.")] = False
+    path: Annotated[Path, Option("The file to make: .toml, or .xlsx for a workbook.", "PATH", True)]
 
 
 def _new(given: Given) -> int:
-    from separatrix.ground.sheet import WORKBOOK_ENDINGS
-
-    path, excel = given["path"], given["excel"]
-    ending = path.suffix.casefold()
-    if path.is_dir():
-        cure = f'Name a file: "{path / ("my-bearing.xlsx" if excel else "my-bearing.toml")}".'
-        raise InputError(str(path), "is a folder", cure=cure)
-    if excel and ending != ".xlsx":
-        better = path.with_suffix(".xlsx") if ending in WORKBOOK_ENDINGS else f"{path}.xlsx"
-        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{better}".')
-    if ending in WORKBOOK_ENDINGS and not excel:
-        cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
-        raise InputError(str(path), "is the name of a workbook", cure=cure)
+    path = given["path"]
+    if path.suffix not in (".toml", ".xlsx") or path.is_dir():
+        cure = 'Name a file like "my-bearing.toml", or "my-bearing.xlsx" for a workbook.'
+        raise InputError(str(path), "must name a file that ends in .toml or .xlsx", cure=cure)
     refuse_existing(path)
     from separatrix.study.template import template, template_workbook
 
-    write_new(path, template_workbook() if excel else template().encode())
+    write_new(path, template().encode() if path.suffix == ".toml" else template_workbook())
     if given["json"]:
         answer_json({"path": str(path)})
     elif not given["quiet"]:
@@ -197,9 +187,6 @@ class Written:
     out: Annotated[
         str | None, Option("Friction file to write, such as friction.toml [default: none].", "FILE")
     ] = None
-    plots: Annotated[
-        str | None, Option("Folder of a picture for each test [default: beside the friction file].", "DIR")
-    ] = None
 
 
 def _reduce(tool: Tool, given: Given) -> int:
@@ -207,13 +194,13 @@ def _reduce(tool: Tool, given: Given) -> int:
     from separatrix.ground.document import part_of
     from separatrix.verbs.answer_files import save_pictures
 
-    to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
-    if to is not None:
-        _refuse_out(to)
-        pages = pages or to.with_name(f"{to.stem}-plots")
+    to = named(given["out"], "--out", "a file")
+    pages = None if to is None else to.with_name(f"{to.stem}-plots")
     with interruptible("no friction file was written."), contextlib.ExitStack() as stack:
-        for place in filter(None, (to and to.parent, pages)):
-            stack.enter_context(writable_folder(place))
+        if to is not None and pages is not None:
+            _refuse_out(to)
+            for place in (to.parent, pages):
+                stack.enter_context(writable_folder(place))
         found = _reduced(tool, given, to)
         page = tool.page(part_of(found))
         if pages is not None:

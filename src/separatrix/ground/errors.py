@@ -33,6 +33,11 @@ class InputError(SeparatrixError, ValueError):
         super().__init__(path, rule, got, cure)
         self.path, self.rule, self.got, self.cure = path, rule, got, cure
         self.problems: tuple[InputError, ...] = ()
+        self.line = 0
+        """Of the file that was asked for; 0 if it is not known, or in another file."""
+
+        self.key: tuple[str | int, ...] = ()
+        """Section and key in that file; empty for the file as a whole."""
 
     def __str__(self) -> str:
         if self.problems:

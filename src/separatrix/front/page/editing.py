@@ -33,8 +33,6 @@ from separatrix.verbs.verb import kind_of
 CHANGED = "Another tab changed this study; its text is shown now. Make your change again."
 MEND = "Mend it in the text first."
 
-_KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
-
 
 class Fault(NamedTuple):
     """One thing that is wrong: its line (0 if unknown), its key (empty texts for the file as a whole), words.
@@ -113,17 +111,13 @@ def check(study: Path, root: Path) -> Checked:
 
 
 def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
-    """Return the faults of a file, which the messages call by a name in place of its label.
-
-    A fault in a file that it extends has no line of its own here.
-    """
+    """Return the faults of a file, which the messages call by a name in place of its label."""
     faults = []
     for one in error.problems or (error,):
-        at, line = _KEY.search(one.path), re.match(rf"{re.escape(label)}, line (\d+)", one.path)
-        section, key = (at["section"], at["key"] or "") if at else ("", "")
-        message, short = str(one).replace(label, name), str(one.at("")).strip()
-        message = message.removeprefix(f"{name}, line {line[1]}: ") if line else message
-        faults.append(Fault(int(line[1]) if line else 0, section, key, message, short))
+        section, key = (*map(str, one.key[:2]), "", "")[:2]
+        section, key = (section, key) if section in ORDER else ("", section)
+        message = str(one).removeprefix(f"{label}, line {one.line}: ").replace(label, name)
+        faults.append(Fault(one.line, section, key, message, str(one.at("")).strip()))
     return tuple(faults)
 
 
