@@ -3,7 +3,6 @@
 import contextlib
 import http.client
 import os
-import re
 import socket
 import subprocess
 import sys
@@ -163,23 +162,12 @@ def test_a_study_cannot_name_a_file_outside(client):
 
 
 @pytest.mark.parametrize(
-    "table",
-    [
-        "../secret.csv",
-        "linked/secret.csv",
-        "leads-out.csv",
-        ".hidden.csv",
-        "/etc/passwd",
-        "hostile.toml",
-        "sub/a.csv",
-    ],
+    "table", ["../secret.csv", "linked/secret.csv", "leads-out.csv", ".hidden.csv", "/etc/passwd", "none.csv"]
 )
-def test_cases_are_read_from_tables_beside_the_study_only(client, folder, table):
-    """Neither dots, nor links, nor absolute names, nor other folders or kinds; none of them is listed."""
-    text = client.ask("/study/%3Cb%3Ebold.toml")[2]
-    assert re.findall('<option value="([^"]+csv)"', text) == ["cases.csv"]
+def test_cases_are_read_from_tables_of_the_folder_only(client, table):
+    """Neither dots, nor links, nor absolute names lead out of it."""
     status, _, text = client.ask("/run/%3Cb%3Ebold.toml", "POST", f"verb=sweep&cases={quote(table, safe='')}")
-    assert (status, "must be a CSV file beside the study" in text) == (422, True)
+    assert (status, "in this folder" in text) == (422, True)
 
 
 def test_scripts_in_texts_are_text(client):

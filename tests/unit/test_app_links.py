@@ -73,7 +73,7 @@ def linked(page, outside, how):
         "/files/small.toml",
         "/file/small/rank.json",
         "/zip/small.toml",
-        "/figure/rank/stability-curve.json/small.toml",
+        "/figure/rank/stability-curve/small.toml",
     ],
 )
 def test_answers_outside_are_not_shown(page, outside, how, place):

@@ -16,7 +16,7 @@ PATIENCE = 600.0
 def ended(queue, number):
     """Wait for the end of a job; return it."""
     until = time.monotonic() + PATIENCE
-    while (job := queue.job(number)).is_active:
+    while (job := next(one for one in queue.all() if one.number == number)).is_active:
         assert time.monotonic() < until, job
         time.sleep(0.02)
     return job

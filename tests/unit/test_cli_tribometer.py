@@ -127,14 +127,12 @@ WRONG = {  # what follows the verb, and the words of the line
     "a name too long": (f"a.csv --out {'x' * 300}/f.toml", "cannot be written; got File name too long"),
     "a log of a name too long": ("x" * 300, "cannot be read: file name too long"),
     "out in a file": ("a.csv b.csv --map map.toml --out a.csv/f.toml", "cannot be written"),
-    "plots is a file": ("a.csv --plots b.csv", "b.csv cannot be written"),
-    "plots is empty": ("a.csv --plots ' '", "--plots needs the name of a folder"),
     "running-in in newtons": ("a.csv --run-in '5 N'", "--run-in must be a time"),
     "running-in beyond": ("a.csv --run-in '5 h'", "a.csv: the end of running-in must lie before"),
     "running-in in cycles": ("a.csv --run-in '5 cycles'", "needs a column of cycles"),
     "no jobs": ("a.csv --jobs 0", "--jobs must lie between 1"),
     "no files": ("", "Missing argument 'FILES...'"),
-    "no such option": ("a.csv --material X", "No such option: --material"),
+    "no such option": ("a.csv --material X", "No such option '--material'"),
 }
 
 

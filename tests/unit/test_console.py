@@ -158,23 +158,6 @@ def test_life_is_shown_where_there_is_no_terminal(monkeypatch, capsys):
     assert threading.active_count() == before
 
 
-def test_what_a_verb_takes_is_told_by_its_first_tenth(capsys, monkeypatch):
-    """Once, to two digits, in a unit that is easy to read; nothing for a few seconds."""
-    clock = [0.0]
-    monkeypatch.setattr(console.time, "monotonic", lambda: clock[0])
-    for seconds in (2.0, 40.0, 1800.0, 9000.0):
-        life = console.Life("rank case")
-        clock[0] += 2.0  # the chain, before the work is known
-        for step in range(101):
-            life(step, 100)
-            clock[0] += seconds / 100.0
-    assert capsys.readouterr().err.splitlines() == [
-        "separatrix: rank case takes about 42 s.",
-        "separatrix: rank case takes about 30 min.",
-        "separatrix: rank case takes about 2.5 h.",
-    ]
-
-
 def test_nothing_is_estimated_before_a_tenth_nor_of_unknown_work(monkeypatch):
     """And the time in which kernels are compiled is not work."""
     clock = [0.0]

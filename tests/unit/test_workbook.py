@@ -117,20 +117,14 @@ def test_a_study_typed_into_a_workbook_is_the_same(name, with_sheet, tmp_path):
 
 
 def test_the_template_is_what_the_verb_new_writes(tmp_path, capsys):
-    """`new --excel` writes the workbook, once; `check` reads it; its name must be that of a workbook."""
+    """`new PATH.xlsx` writes the workbook, once; `check` reads it; no other kind of workbook is written."""
     path = tmp_path / "mine.xlsx"
-    assert main(["new", "--excel", str(path)]) == 0
+    assert main(["new", str(path)]) == 0
     assert path.read_bytes() == template_workbook()
     assert main(["check", "--full", str(path)]) == 0
     assert "mine.xlsx, sheet cage, cell B2" in capsys.readouterr().out
-    for options in (
-        ["--excel", str(path)],
-        ["--excel", str(tmp_path / "a.toml")],
-        [str(tmp_path / "b.xlsx")],
-        [str(tmp_path / "b.xls")],
-        ["--excel", str(tmp_path / "b.xlsm")],
-    ):
-        assert main(["new", *options]) == 2
+    for name in ("mine.xlsx", "b.xls", "b.xlsm"):
+        assert main(["new", str(tmp_path / name)]) == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.xlsx"]
     assert read_study(path) == read_from(tmp_path, "mine.toml", template())
 
@@ -147,7 +141,7 @@ def test_a_name_that_is_taken_is_refused_before_anything_is_built(tmp_path, monk
         "separatrix.study.template.template_workbook", lambda: built.append("workbook") or b""
     )
     path = tmp_path / name
-    assert main(["new", *(["--excel"] if path.suffix == ".xlsx" else []), str(path)]) == 2
+    assert main(["new", str(path)]) == 2
     line = f"separatrix: {path} exists already. It was not touched; name a new file.\n"
     assert capsys.readouterr().err == line
     assert built == []

@@ -102,7 +102,7 @@ STUDIES = [
     ("two sheets of a name", {**STUDY, "Cage ": [HEAD, ["mass", 30.0, None, "g"]]}, 'sheet Cage  is a second sheet of that name; got "cage"'),
     ("row too far down", {**STUDY, "cage": [*STUDY["cage"], *[[None]] * 2000, ["gravity", 1.0, None, "g0"]]}, "sheet cage, cell A2004 is beyond row 2000 or column KN"),
     ("column too far right", {**STUDY, "cage": [*STUDY["cage"], [*[None] * 300, "note"]]}, "sheet cage, cell KO4 is beyond row 2000"),
-    ("nothing in it", {"Sheet1": [["a", 1.0]]}, "has no sheet of a study with a value. `separatrix new --excel"),
+    ("nothing in it", {"Sheet1": [["a", 1.0]]}, "has no sheet of a study with a value. `separatrix new PATH.xlsx"),
     ("candidate: friction", candidate(3, 5, 7.0), "sheet candidates, cell E3: [ranking] candidates[1].friction.\"air, 440C\".mean"),
     ("candidate: no name", candidate(3, 1, None), "sheet candidates, row 3: [ranking] candidates[1] lacks: name"),
     ("candidate: text", candidate(3, 5, "x"), 'sheet candidates, cell E3 must be a number; got "x". Leave the cell empty if it was not measured.'),

@@ -374,7 +374,10 @@ def balance_ring(
             matrix[i, n] = left[dofs[i], 5]
         if not eliminate(matrix):
             break
-        stride = min(1.0, 0.2 * span / max(np.abs(matrix[:, n]).max(), 1e-300))
+        longest = 1e-300
+        for i in range(n):
+            longest = max(longest, abs(matrix[i, n]))
+        stride = min(1.0, 0.2 * span / longest)
         for i in range(n):
             q[dofs[i], 0] += stride * matrix[i, n]
     _keep(here, good)

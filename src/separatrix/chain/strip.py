@@ -19,7 +19,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import toeplitz
+import scipy
 
 from separatrix.ground.errors import ConvergenceError
 from separatrix.ground.units import Array, Ratio
@@ -91,7 +91,7 @@ def solve_strip(creep: Ratio | Array, lam: Ratio = 0.0, *, nodes: int = 200) -> 
         The stick zone did not settle.
     """
     t, bound = strip_influence(nodes, lam), node_pressure(nodes)
-    matrix = toeplitz(t[nodes - 1 :], t[nodes - 1 :: -1])
+    matrix = scipy.linalg.toeplitz(t[nodes - 1 :], t[nodes - 1 :: -1])
     strain, slip = np.broadcast_to(4.0 * np.asarray(creep) / nodes, (nodes,)), np.zeros(nodes)
     limit = BLOCK_SWEEPS + LEAST_INDEX_SWEEPS * nodes
     for sweep in range(1, limit + 1):

@@ -366,18 +366,11 @@ def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) 
     return _of_tool(LIST, LIST.compute(options))
 
 
-def material(
-    name: str,
-    *,
-    kind: str | None = None,
-    temperature: str | None = None,
-    libraries: Sequence[str | Path] = (),
-) -> ToolAnswer[Any]:
-    """Records of a name, whole; at a temperature, such as ``"77 K"``, with what serves there."""
+def material(name: str, *, kind: str | None = None, libraries: Sequence[str | Path] = ()) -> ToolAnswer[Any]:
+    """Records of a name, whole."""
     from separatrix.verbs.materials import SHOW
 
-    files = tuple(str(one) for one in libraries)
-    options = SHOW.options(name=name, kind=kind, temperature=temperature, library=files)
+    options = SHOW.options(name=name, kind=kind, library=tuple(str(one) for one in libraries))
     return _of_tool(SHOW, SHOW.compute(options))
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import webbrowser
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+import click
 
 from separatrix.front.commands import (
     ANSWERED,
-    Jobs,
-    Json,
-    Quiet,
+    Given,
+    beside,
     command,
     computed_with_progress,
     deliver,
@@ -27,20 +27,14 @@ from separatrix.front.commands import (
     threads,
     tool_command,
     verb_command,
-    whole_number,
     with_progress,
 )
-from separatrix.front.console import (
-    answer,
-    answer_json,
-    complain,
-    interrupted,
-    interruptible,
-)
+from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible
 from separatrix.ground.errors import InputError, SeparatrixError, harmless
 from separatrix.ground.files import refuse_existing, staged, writable_folder, write_new
 from separatrix.ground.units import printable, shown
 from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
+from separatrix.verbs.verb import Option, shown_options
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
@@ -55,64 +49,53 @@ STUDY is the path of a study file, or the name of a shipped study. Begin with:
 
 separatrix rank cryogenic-turbopump
 """
-PAGE = "Open the page: edit, run and look at the studies of a folder in a browser."
-PAGE_EPILOG = (
-    "Only this computer can open the page, by the printed link. If you stop the page during a job, start the "
-    'job again to resume it. Needs the extra app: pip install "separatrix[app]".'
-)
-FOLDER_HELP = "Where the studies are [default: here]."
-NEEDED = ("starlette", "uvicorn", "plotly")
-MOST_PORT = 65535
-
-REPORT = "Everything on one study as a document: HTML, and PDF with --pdf."
-REPORT_EPILOG = (
-    "Of a folder: from the answers in it. Of a study: bearing, traction, "
-    "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
-    "same inputs that are there already are taken. The HTML needs no other file and no network."
-)
-ASKED_HELP = "A study, or a folder of answers."
-REPORT_OUT = "Folder of the report [default: that of the answers; none with --json]."
-PDF_HELP = "Also write report.pdf; needs the extra pdf."
 
 
-def _new(
-    path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to make; it must not exist yet.")],
-    excel: Annotated[
-        bool, typer.Option("--excel", help="A workbook, .xlsx, in place of a text file.")
-    ] = False,
-    json: Json = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
-) -> int:
-    from separatrix.ground.sheet import WORKBOOK_ENDINGS
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewOptions:
+    """What `new` takes."""
 
-    ending = path.suffix.casefold()
-    if path.is_dir():
-        cure = f'Name a file: "{path / ("my-bearing.xlsx" if excel else "my-bearing.toml")}".'
-        raise InputError(str(path), "is a folder", cure=cure)
-    if excel and ending != ".xlsx":
-        better = path.with_suffix(".xlsx") if ending in WORKBOOK_ENDINGS else f"{path}.xlsx"
-        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{better}".')
-    if ending in WORKBOOK_ENDINGS and not excel:
-        cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
-        raise InputError(str(path), "is the name of a workbook", cure=cure)
+    path: Annotated[Path, Option("The file to make: .toml, or .xlsx for a workbook.", "PATH", True)]
+
+
+def _new(given: Given) -> int:
+    path = given["path"]
+    if path.suffix not in (".toml", ".xlsx") or path.is_dir():
+        cure = 'Name a file like "my-bearing.toml", or "my-bearing.xlsx" for a workbook.'
+        raise InputError(str(path), "must name a file that ends in .toml or .xlsx", cure=cure)
     refuse_existing(path)
     from separatrix.study.template import template, template_workbook
 
-    write_new(path, template_workbook() if excel else template().encode())
-    if json:
+    write_new(path, template().encode() if path.suffix == ".toml" else template_workbook())
+    if given["json"]:
         answer_json({"path": str(path)})
-    elif not quiet:
+    elif not given["quiet"]:
         answer(f"{path} is written. Fill it in, then: separatrix check {path}\n")
     return ANSWERED
 
 
-def _page(
-    place: Annotated[Path, typer.Argument(metavar="FOLDER", help=FOLDER_HELP, show_default=False)] = Path(
-        "."
-    ),
-    port: Annotated[int | None, whole_number("Port to listen on [default: any that is free].")] = None,
-    open_it: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
-) -> int:
+# The local page.
+
+
+PAGE_EPILOG = (
+    "Only this computer can open the page, by the printed link. If you stop the page during a job, start the "
+    'job again to resume it. Needs the extra app: pip install "separatrix[app]".'
+)
+NEEDED = ("starlette", "uvicorn", "plotly")
+MOST_PORT = 65535
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PageOptions:
+    """What `app` takes."""
+
+    place: Annotated[Path, Option("Where the studies are [default: here].", "FOLDER", True)] = Path()
+    port: Annotated[int | None, Option("Port to listen on [default: any that is free].", "N")] = None
+    open: Annotated[bool, Option("Open it in the browser, too.")] = False
+
+
+def _page(given: Given) -> int:
+    place, port = given["place"], given["port"]
     if not place.is_dir():
         raise InputError(str(place), "is not a folder", cure="Name the folder of your studies.")
     if port is not None and not 1 <= port <= MOST_PORT:
@@ -124,7 +107,7 @@ def _page(
 
     server = Server(place.resolve(), port=port or 0)
     answer(f"The page of {place.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
-    if open_it:
+    if given["open"]:
         webbrowser.open(server.link)
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
         server.serve_until_ended()
@@ -134,16 +117,27 @@ def _page(
 # The report.
 
 
-def _report(
-    asked: Annotated[str, typer.Argument(metavar="STUDY|FOLDER", help=ASKED_HELP)],
-    pdf: Annotated[bool, typer.Option("--pdf", help=PDF_HELP)] = False,
-    json: Json = False,
-    out: Annotated[str | None, typer.Option(metavar="DIR", help=REPORT_OUT)] = None,
-    quiet: Quiet = False,
-    jobs: Jobs = None,
-) -> int:
+REPORT_EPILOG = (
+    "Of a folder: from the answers in it. Of a study: bearing, traction, "
+    "restitution and rank (without [ranking]: stability) are computed into its folder first; answers to the "
+    "same inputs that are there already are taken. The HTML needs no other file and no network."
+)
+REPORT_OUT = "Folder of the report [default: that of the answers; none with --json]."
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReportOptions:
+    """What `report` takes."""
+
+    asked: Annotated[str, Option("A study, or a folder of answers.", "STUDY|FOLDER", True)]
+    pdf: Annotated[bool, Option("Also write report.pdf; needs the extra pdf.")] = False
+    out: Annotated[str | None, Option(REPORT_OUT, "DIR")] = None
+
+
+def _report(given: Given) -> int:
     """Write the report of a study or of a folder, and return the exit status."""
-    to, count = folder(out), threads(jobs)
+    asked, json, quiet, pdf = (given[name] for name in ("asked", "json", "quiet", "pdf"))
+    to, count = folder(given["out"]), threads(given["jobs"])
     if pdf:
         from separatrix.present.pdf import typesetter
 
@@ -186,26 +180,27 @@ def _report(
 # The friction of logs.
 
 
-FRICTION_HELP = "Friction file to write, such as friction.toml [default: none]."
-PLOTS_HELP = "Folder of a picture for each test [default: beside the friction file]."
-WRITTEN: dict[str, tuple[Any, Any]] = {
-    "out": (Annotated[str | None, typer.Option(metavar="FILE", help=FRICTION_HELP)], None),
-    "plots": (Annotated[str | None, typer.Option(metavar="DIR", help=PLOTS_HELP)], None),
-}
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Written:
+    """What `tribometer` writes."""
+
+    out: Annotated[
+        str | None, Option("Friction file to write, such as friction.toml [default: none].", "FILE")
+    ] = None
 
 
-def _reduce(tool: Tool, given: Mapping[str, Any]) -> int:
+def _reduce(tool: Tool, given: Given) -> int:
     """Reduce logs; write a friction file and pictures of the tests."""
     from separatrix.ground.document import part_of
     from separatrix.verbs.answer_files import save_pictures
 
-    to, pages = named(given["out"], "--out", "a file"), named(given["plots"], "--plots", "a folder")
-    if to is not None:
-        _refuse_out(to)
-        pages = pages or to.with_name(f"{to.stem}-plots")
+    to = named(given["out"], "--out", "a file")
+    pages = None if to is None else to.with_name(f"{to.stem}-plots")
     with interruptible("no friction file was written."), contextlib.ExitStack() as stack:
-        for place in filter(None, (to and to.parent, pages)):
-            stack.enter_context(writable_folder(place))
+        if to is not None and pages is not None:
+            _refuse_out(to)
+            for place in (to.parent, pages):
+                stack.enter_context(writable_folder(place))
         found = _reduced(tool, given, to)
         page = tool.page(part_of(found))
         if pages is not None:
@@ -216,7 +211,7 @@ def _reduce(tool: Tool, given: Mapping[str, Any]) -> int:
     return ANSWERED
 
 
-def _reduced(tool: Tool, given: Mapping[str, Any], to: Path | None) -> Document:
+def _reduced(tool: Tool, given: Given, to: Path | None) -> Document:
     """Compute the document of logs, and write their friction file; a draft of a map if one is needed."""
     from separatrix.friction.logs import UnmappedError
     from separatrix.verbs.tribometer import document, reduced
@@ -247,100 +242,86 @@ def _refuse_out(out: Path) -> None:
     refuse_existing(out)
 
 
-PLAIN: dict[str, Any] = {
-    "add_completion": False,
-    "rich_markup_mode": None,
-    "pretty_exceptions_enable": False,
-}
-"""How typer shows commands: as text."""
+# The commands by name.
 
 
-def _command(name: str) -> Any:
-    """Return a command; only its own module is loaded."""
-    app = typer.Typer(**PLAIN)
-    if name == "materials":
-        from separatrix.verbs.materials import LIST, SHOW
-
-        app.callback(help=OTHERS[name])(lambda: None)
-        for one in (LIST, SHOW):
-            app.command(one.name.split()[-1], help=one.help, epilog=one.epilog)(tool_command(one))
-        return typer.main.get_command(app)
-    if name in VERBS:
-        verb = verb_named(name)
-        made, epilog = verb_command(verb), verb.epilog
-    elif name in TOOLS:
-        tool = tool_named(name)
-        made, epilog = tool_command(tool), tool.epilog
-        if name == "tribometer":
-            made = command(_reduce, tool, "full", "json", "quiet", "jobs", more=WRITTEN)
-    else:
-        made, epilog = OWN[name]
-    app.command(name, help=COMMANDS[name], epilog=epilog)(made)
-    return typer.main.get_command(app)
-
-
-OWN: dict[str, tuple[Callable[..., int], str | None]] = {
-    "new": (_new, None),
-    "report": (_report, REPORT_EPILOG),
-    "app": (_page, PAGE_EPILOG),
-}
-"""Commands without a verb -> function and epilog."""
-
-OTHERS = {
+COMMANDS = {
     "new": "Write a commented study file to fill in.",
-    "report": REPORT,
-    "app": PAGE,
+    **VERBS,
+    **TOOLS,
+    "report": "Everything on one study as a document: HTML, and PDF with --pdf.",
+    "app": "Open the page: edit, run and look at the studies of a folder in a browser.",
     "materials": "The library of materials.",
 }
-COMMANDS = {"new": OTHERS["new"], **VERBS, **TOOLS, **OTHERS}
 """Command -> its line of help, in the order of the chain."""
 
 
-class _Commands(typer.core.TyperGroup):
+def _command(name: str) -> click.Command:
+    """Return a command; only its own module is loaded."""
+    about = COMMANDS[name]
+    if name in VERBS:
+        return verb_command(verb_named(name), about)
+    match name:
+        case "new":
+            return command(name, _new, shown_options(NewOptions) | beside("json", "quiet"), about)
+        case "report":
+            takes = shown_options(ReportOptions) | beside("json", "quiet", "jobs")
+            return command(name, _report, takes, about, REPORT_EPILOG)
+        case "app":
+            return command(name, _page, shown_options(PageOptions), about, PAGE_EPILOG)
+        case "tribometer":
+            tool = tool_named(name)
+            takes = tool.shown_options() | shown_options(Written) | beside("full", "json", "quiet", "jobs")
+            return command(name, partial(_reduce, tool), takes, about, tool.epilog)
+        case "materials":
+            from separatrix.verbs.materials import LIST, SHOW
+
+            both = [tool_command(one, one.help) for one in (LIST, SHOW)]
+            return click.Group(name, {str(one.name): one for one in both}, help=about, no_args_is_help=False)
+    return tool_command(tool_named(name), about)
+
+
+class _Commands(click.Group):
     """The commands by name, each made when it is asked for: the list of them loads none."""
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(**given)
-        self.commands = dict.fromkeys(COMMANDS)  # type: ignore[assignment] # names alone, to suggest one
-
-    def list_commands(self, _ctx: Any) -> list[str]:
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         """Return their names."""
         return [*COMMANDS]
 
-    def get_command(self, _ctx: Any, cmd_name: str) -> Any:
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
         """Return one of them, None of another name."""
         return _command(cmd_name) if cmd_name in COMMANDS else None
 
-    def format_commands(self, _ctx: Any, formatter: Any) -> None:
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """Write their lines of help."""
         with formatter.section("Commands"):
             formatter.write_dl([*COMMANDS.items()])
 
 
-def _start(
-    context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Show the version and stop.")] = False,
-) -> None:
+@click.pass_context
+def _start(context: click.Context, /, *, version: bool) -> None:
     if version:
         from separatrix import __version__
 
         answer(f"separatrix {__version__}\n")
-        raise typer.Exit
+        context.exit()
     if context.invoked_subcommand is None:
+        choices = ", ".join(COMMANDS)
         raise InputError(
-            "The command", f"is missing; choose one of {', '.join(COMMANDS)}", cure='Try "separatrix --help".'
+            "The command", f"is missing; choose one of {choices}", cure='Try "separatrix --help".'
         )
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
     """Run the command line; return its exit status, that of `separatrix.front.main`."""
-    app = typer.Typer(cls=_Commands, **PLAIN)
-    app.callback(invoke_without_command=True, help=HELP)(_start)
+    version = click.Option(["--version"], is_flag=True, help="Show the version and stop.")
+    names: Any = dict.fromkeys(COMMANDS)  # to suggest one
+    app = _Commands(commands=names, callback=_start, params=[version], help=HELP, invoke_without_command=True)
     try:
-        status = typer.main.get_command(app).main(arguments, prog_name="separatrix", standalone_mode=False)
-    except typer.Abort:  # an interrupt before the work
+        status = app.main(arguments, prog_name="separatrix", standalone_mode=False)
+    except click.Abort:  # an interrupt before the work
         return interrupted("no file was written.")
-    except typer.TyperException as error:
+    except click.ClickException as error:
         text = error.format_message().rstrip(". ")
         complain(f'{text}{"" if text.endswith("?") else "."} Try "separatrix --help".')
         return WRONG_INPUT

@@ -1,17 +1,15 @@
-"""The command of each verb and tool, made from its options: read, compute, print, write."""
+"""Commands made from descriptions of options: that of a verb, and that of a tool."""
 
 from __future__ import annotations
 
 import contextlib
-import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING
+from dataclasses import MISSING, dataclass
 from functools import cache, partial
 from pathlib import Path
-from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
-import typer
+import click
 
 from separatrix.front.console import (
     answer,
@@ -26,7 +24,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.files import writable_folder
 from separatrix.ground.units import shown
 from separatrix.verbs import asked_study, computed, processors
-from separatrix.verbs.verb import Option
+from separatrix.verbs.verb import Option, Shown, kind_of, shown_options
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
@@ -36,46 +34,44 @@ if TYPE_CHECKING:
     from separatrix.verbs.verb import Tool, Verb
 
 Result = TypeVar("Result")
+Given = Mapping[str, Any]
 
 ANSWERED = 0
 MOST_JOBS = 1024
 
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, in SI units.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no notes: the answer alone.")]
-Full = Annotated[bool, typer.Option("--full", help="The whole answer, not only what fits a screen.")]
-OUT_HELP = "Folder for figures and data [default: named after the study; none with --json, or of check]."
-CLUSTER_HELP = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
-MODEL_HELP = "The best estimate or the paper's method [default: that of the study]."
-STUDY_HELP = "A study file or workbook, or the name of a shipped study."
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Beside:
+    """What commands take beside the options of their verbs."""
+
+    study: Annotated[str, Option("A study file or workbook, or the name of a shipped study.", "STUDY", True)]
+    model: Annotated[
+        str | None,
+        Option("The best estimate or the paper's method [default: that of the study].", "full|paper"),
+    ] = None
+    full: Annotated[bool, Option("The whole answer, not only what fits a screen.")] = False
+    json: Annotated[bool, Option("One JSON document on standard output, in SI units.")] = False
+    out: Annotated[
+        str | None,
+        Option(
+            "Folder for figures and data [default: named after the study; none with --json, or of check].",
+            "DIR",
+        ),
+    ] = None
+    quiet: Annotated[bool, Option("No progress, no notes: the answer alone.")] = False
+    jobs: Annotated[int | None, Option("Threads [default: one for each processor].", "N")] = None
+    cluster: Annotated[
+        str | None,
+        Option(
+            "Make the runs on the Dask scheduler at this address, or in N processes here: local:N.", "ADDRESS"
+        ),
+    ] = None
 
 
-def whole(option: typer.CallbackParam, value: str | None) -> int | None:
-    """Return the whole number that an option gives; None if it is left out without a default."""
-    try:
-        return None if value is None else int(value)
-    except ValueError:
-        cure = "Write it in digits, or leave it out."
-        raise InputError(option.opts[0], "must be a whole number", shown(value), cure) from None
-
-
-def whole_number(text: str) -> Any:
-    """Return an option that takes a whole number: typer leaves it as text, `whole` reads it."""
-    return typer.Option(metavar="N", parser=str, callback=whole, help=text)
-
-
-Jobs = Annotated[int | None, whole_number("Threads [default: one for each processor].")]
-
-BESIDE: dict[str, tuple[Any, Any]] = {
-    "study": (Annotated[str, typer.Argument(metavar="STUDY", help=STUDY_HELP)], inspect.Parameter.empty),
-    "model": (Annotated[str | None, typer.Option(metavar="full|paper", help=MODEL_HELP)], None),
-    "full": (Full, False),
-    "json": (Json, False),
-    "out": (Annotated[str | None, typer.Option(metavar="DIR", help=OUT_HELP)], None),
-    "quiet": (Quiet, False),
-    "jobs": (Jobs, None),
-    "cluster": (Annotated[str | None, typer.Option(metavar="ADDRESS", help=CLUSTER_HELP)], None),
-}
-"""What commands take beside the options of their verbs: type with its help, and default."""
+def beside(*names: str) -> Shown:
+    """Return some of what commands take beside the options of their verbs."""
+    known = shown_options(Beside)
+    return {name: known[name] for name in names}
 
 
 def threads(jobs: int | None) -> int:
@@ -98,87 +94,80 @@ def named(text: str | None, option: str, what: str, cure: str = "") -> Path | No
     return None if text is None else Path(text)
 
 
-# Options of a verb as those of its command.
+def whole_number(text: str | None, option: str) -> int | None:
+    """Return the whole number that an option gives; None if it gives none."""
+    try:
+        return None if text is None else int(text)
+    except ValueError:
+        cure = "Write it in digits, or leave it out."
+        raise InputError(option, "must be a whole number", shown(text), cure) from None
+
+
+def option_value(kind: str, text: Any, option: str) -> Any:
+    """Return the value of an option of a kind from its text; flags and texts are taken as they are."""
+    match kind:
+        case "number":
+            return whole_number(text, option)
+        case "file":
+            return named(text, option, "a file")
+        case "files":
+            return tuple(named(one, option, "a file") for one in text)
+    return text
+
+
+def flag_of(name: str, note: Option) -> str:
+    """Return the name of an option on the command line."""
+    return note.flag or f"--{name.replace('_', '-')}"
+
+
+def asked_of(verb: Verb) -> Shown:
+    """Return the options of a verb; where it moves a cage, the model too."""
+    return verb.shown_options() | beside(*("model",) * verb.moves_a_cage)
+
+
+def _parameter(name: str, hint: Any, note: Option, default: Any) -> click.Parameter:
+    """Return an option as the command line takes it."""
+    kind, flag = kind_of(hint), flag_of(name, note)
+    is_many, own = kind.endswith("s"), note.metavar if note.is_argument else flag
+    how: dict[str, Any] = {
+        "help": note.help,
+        "metavar": note.metavar or None,
+        "callback": lambda _, __, given: option_value(kind, given, own),
+    }
+    if default is not MISSING and not is_many:
+        how["default"] = default
+    if note.is_argument:
+        return click.Argument([name], nargs=-1 if is_many else 1, required=default is MISSING, **how)
+    if kind == "flag":
+        return click.Option([flag, name], is_flag=True, **how)
+    return click.Option([flag, name], type=str, multiple=is_many, show_default=True, **how)
 
 
 def command(
-    run: Callable[[Any, Mapping[str, Any]], int],
-    asked: Tool,
-    *beside: str,
-    more: Mapping[str, tuple[Any, Any]] | None = None,
-) -> Callable[..., int]:
-    """Return the function that runs a verb or tool with its options, those `beside` them, and `more`."""
-
-    def found(**given: Any) -> int:
-        return run(asked, given)
-
-    own = {name: _typed(name, *one) for name, one in asked.shown_options().items()}
-    before = {"study": BESIDE["study"]} if "study" in beside else {}
-    after = dict(more or {}) | {name: BESIDE[name] for name in beside if name != "study"}
-    kinds = (before | own | after).items()
-    found.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-        [
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind, default=default)
-            for name, (kind, default) in kinds
-        ]
-    )
-    return found
+    name: str, run: Callable[[Given], int], takes: Shown, about: str, epilog: str | None = None
+) -> click.Command:
+    """Return a command that calls `run` with the values of what it takes, and returns the exit status."""
+    parameters = [_parameter(option, *one) for option, one in takes.items()]
+    callback: Callable[..., int] = lambda **given: run(given)  # noqa: E731
+    return click.Command(name, callback=callback, params=parameters, help=about, epilog=epilog)
 
 
-def _typed(name: str, kind: Any, note: Option, default: Any) -> tuple[Any, Any]:
-    """Return the type of an option with its help as typer takes it, and its default."""
-    base, is_many = _base(kind)
-    default = inspect.Parameter.empty if default is MISSING else default
-    text: Any = bool if base is bool else str
-    if is_many:
-        text, default = list[str] if note.is_argument else list[str] | None, default or None
-    elif default is None:
-        text = text | None
-    if base is int:
-        return Annotated[int | None if default is None else int, whole_number(note.help)], default
-    flag = note.flag or f"--{name.replace('_', '-')}"
-    if note.is_argument:
-        return Annotated[
-            text, typer.Argument(metavar=note.metavar, help=note.help, show_default=False)
-        ], default
-    look: dict[str, Any] = {"help": note.help} | ({"metavar": note.metavar} if note.metavar else {})
-    return Annotated[text, typer.Option(flag, **look)], default
-
-
-def _base(kind: Any) -> tuple[Any, bool]:
-    """Return the type of a value without None, and whether there are several."""
-    if get_origin(kind) in (Union, UnionType):
-        kinds = [one for one in get_args(kind) if one is not NoneType]
-        kind = next((one for one in kinds if one in (str, Path)), kinds[0])
-    if get_origin(kind) is tuple:
-        return get_args(kind)[0], True
-    return kind, False
-
-
-def options_of(asked: Tool, given: Mapping[str, Any]) -> Any:
+def options_of(asked: Tool, given: Given) -> Any:
     """Return the options of a verb or tool from the values of its command."""
-    values = {}
-    for name, (kind, note, _) in asked.shown_options().items():
-        base, is_many = _base(kind)
-        value = given[name]
-        if base is Path:
-            flag = note.flag or f"--{name.replace('_', '-')}"
-            each = [named(one, flag, "a file") for one in (value or () if is_many else (value,))]
-            value = each if is_many else each[0]
-        values[name] = tuple(value or ()) if is_many else value
-    return asked.options(**values)
+    return asked.options(**{name: given[name] for name in asked.shown_options()})
 
 
 # The command of a verb.
 
 
-def verb_command(verb: Verb) -> Callable[..., int]:
-    """Return the function behind the command of a verb."""
-    beside = ["study", *("model",) * verb.moves_a_cage, *("full",) * verb.has_full]
-    return command(run, verb, *beside, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs)
+def verb_command(verb: Verb, about: str) -> click.Command:
+    """Return the command of a verb."""
+    after = *("full",) * verb.has_full, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs
+    takes = beside("study") | asked_of(verb) | beside(*after)
+    return command(verb.name, partial(run, verb), takes, about, verb.epilog)
 
 
-def run(verb: Verb, given: Mapping[str, Any]) -> int:
+def run(verb: Verb, given: Given) -> int:
     """Answer one question and return the exit status."""
     from separatrix.verbs.answer_files import document, page_of_document, save_answer
 
@@ -230,7 +219,7 @@ def computed_with_progress(
     return found
 
 
-def deliver(made: Document, page: Callable[[], Page], given: Mapping[str, Any]) -> None:
+def deliver(made: Document, page: Callable[[], Page], given: Given) -> None:
     """Print a document, or its page; with `--quiet` without its notes."""
     from separatrix.present.blocks import Level
     from separatrix.present.text import text
@@ -242,7 +231,7 @@ def deliver(made: Document, page: Callable[[], Page], given: Mapping[str, Any]) 
     answer(text(shown, Level.FULL if given.get("full") else Level.BRIEF))
 
 
-def print_place(what: str, folder: Path, given: Mapping[str, Any]) -> None:
+def print_place(what: str, folder: Path, given: Given) -> None:
     """Print where files are."""
     if not given["json"] and not given["quiet"]:
         answer(f"\n{what} are in {folder}/\n")
@@ -251,16 +240,21 @@ def print_place(what: str, folder: Path, given: Mapping[str, Any]) -> None:
 # The command of a tool.
 
 
-def tool_command(tool: Tool) -> Callable[..., int]:
-    """Return the function behind the command of a tool."""
-    out = ("out",) * bool(tool.folder)
-    quiet = ("quiet",) * bool(tool.takes_time or tool.folder)
-    return command(
-        run_tool, tool, *("full",) * tool.has_full, "json", *out, *quiet, *("jobs",) * tool.takes_time
-    )
+def tool_command(tool: Tool, about: str) -> click.Command:
+    """Return the command of a tool."""
+    is_long = tool.takes_time or tool.folder
+    names = {
+        "full": tool.has_full,
+        "json": True,
+        "out": tool.folder,
+        "quiet": is_long,
+        "jobs": tool.takes_time,
+    }
+    takes = tool.shown_options() | beside(*(name for name, is_taken in names.items() if is_taken))
+    return command(tool.name.split()[-1], partial(run_tool, tool), takes, about, tool.epilog)
 
 
-def run_tool(tool: Tool, given: Mapping[str, Any]) -> int:
+def run_tool(tool: Tool, given: Given) -> int:
     """Answer a tool's question and return the exit status."""
     from separatrix.ground.document import part_of
     from separatrix.verbs.answer_files import save_answer
@@ -280,7 +274,7 @@ def run_tool(tool: Tool, given: Mapping[str, Any]) -> int:
     return ANSWERED
 
 
-def with_progress(tool: Tool, compute: Callable[..., Result], given: Mapping[str, Any]) -> Result:
+def with_progress(tool: Tool, compute: Callable[..., Result], given: Given) -> Result:
     """Return what takes threads and progress, with a bar."""
     count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:

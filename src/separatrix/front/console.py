@@ -16,7 +16,7 @@ from concurrent.futures import Future
 from types import FrameType
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
-import typer
+import click
 
 from separatrix.front import INTERRUPTED
 from separatrix.ground.errors import InputError, harmless, json_text, one_line
@@ -28,9 +28,6 @@ Answer = TypeVar("Answer")
 
 LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
-
-WORTH_PRINTING: Second = 5.0
-"""A shorter work does not tell its time."""
 
 FIRST_PART = 0.1
 """Share of the work after which the time of all is estimated."""
@@ -134,11 +131,11 @@ def is_importing(frame: FrameType | None) -> bool:
 
 @contextlib.contextmanager
 def interruptible(ended: str) -> Iterator[None]:
-    """Let an interrupt end a command with one line, `ended`: typer would swallow the interrupt."""
+    """Let an interrupt end a command with one line, `ended`: click would swallow the interrupt."""
     try:
         yield
     except KeyboardInterrupt:
-        raise typer.Exit(interrupted(ended)) from None
+        raise click.exceptions.Exit(interrupted(ended)) from None
 
 
 def write(stream: TextIO | None, text: str) -> None:
@@ -200,16 +197,12 @@ class Life(Pace):
     def __init__(self, title: str, *, quiet: bool = False) -> None:
         super().__init__()
         self.title, self.started = title, time.monotonic()
-        self.announced = self.compiled = quiet  # which prints nothing, as `--quiet` requires
+        self.compiled = quiet  # which prints nothing, as `--quiet` requires
         self.shows: Callable[[], object] = lambda: None
 
     def __call__(self, done: float, total: float) -> None:
-        """Take in how far the work is; its first part tells what all of it takes."""
+        """Take in how far the work is."""
         super().__call__(done, total)
-        passed = time.monotonic() - self.started
-        if not self.announced and self.left is not None and passed > WORTH_PRINTING and self.share < 1.0:
-            self.announced = True
-            complain(f"{self.title} takes about {in_words(passed + self.left)}.")
         self.shows()
 
     def compiling(self) -> None:

@@ -11,7 +11,8 @@ another name and then renames it, and a cached kernel has one signature only: pr
 same time write the same file, so that they can share a folder.
 
 Of numba this uses `njit`, its events, the setting CACHE_DIR (the variable NUMBA_CACHE_DIR), and what numba
-does not document: the option `_nrt`, and that a kernel is compiled by its method `_compile_for_args`.
+does not document: the option `_nrt`, and the methods `_compile_for_args` and `_load_overload`, by which a
+kernel is compiled and loaded.
 """
 
 from __future__ import annotations
@@ -24,13 +25,15 @@ import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from types import FunctionType
-from typing import ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 import llvmlite.binding
 import numba
 import numpy as np
+from numba.core.runtime.nrt import rtsys
 
 from separatrix.ground import compiling  # noqa: F401 - it listens from now on
 
@@ -135,7 +138,21 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     finally:
         CONFIG["CACHE_DIR"] = usual
     vars(compiled)["_compile_for_args"] = _with_room(compiled._compile_for_args)  # type: ignore[attr-defined]
+    if _FOLDER is not None:
+        cache = compiled._cache  # type: ignore[attr-defined]
+        cache.load_overload = partial(_loaded, cache)
     return compiled
+
+
+def _loaded(cache: Any, signature: object, target: object) -> object:
+    """Return the cached code of a kernel, None if there is none.
+
+    numba would first fill its tables of types and functions, which only compiling needs, and which take
+    longer to fill than all else that a short verb does.
+    """
+    rtsys.initialize(target)
+    with cache._guard_against_spurious_io_errors():
+        return cast(object, cache._load_overload(signature, target))
 
 
 def _with_room(function: Callable[P, R]) -> Callable[P, R]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 
 
 class SeparatrixError(Exception):
@@ -32,6 +33,11 @@ class InputError(SeparatrixError, ValueError):
         super().__init__(path, rule, got, cure)
         self.path, self.rule, self.got, self.cure = path, rule, got, cure
         self.problems: tuple[InputError, ...] = ()
+        self.line = 0
+        """Of the file that was asked for; 0 if it is not known, or in another file."""
+
+        self.key: tuple[str | int, ...] = ()
+        """Section and key in that file; empty for the file as a whole."""
 
     def __str__(self) -> str:
         if self.problems:
@@ -108,10 +114,18 @@ def one_line(text: str) -> str:
 _encoded = json.JSONEncoder(allow_nan=False).encode
 
 
+@cache
+def _row_encoded(line: str) -> Callable[[object], str]:
+    """Return what encodes a dictionary with a line a key."""
+    return json.JSONEncoder(allow_nan=False, separators=(f",{line}", ": ")).encode
+
+
 def json_text(value: object, line: str = "\n") -> str:
     """Return plain data as JSON: a line a key and a row of a table, all numbers of an array on one."""
     inside = f"{line} "
     if isinstance(value, dict) and value:
+        if not any(isinstance(one, dict | list) for one in value.values()):  # a row of a table: at once
+            return f"{{{inside}{_row_encoded(inside)(value)[1:-1]}{line}}}"
         rows = (f"{_encoded(key)}: {json_text(one, inside)}" for key, one in value.items())
         return f"{{{inside}{f',{inside}'.join(rows)}{line}}}"
     if isinstance(value, list) and any(isinstance(one, dict) for one in value):

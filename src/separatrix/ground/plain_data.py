@@ -92,7 +92,8 @@ def units_of(item: Item) -> Any:
         return [item.unit, *item.axes] if item.axes else item.unit
     found: dict[str, Any] = {}
     for one in [item.fields] if isinstance(item, Group) else item.records or ():
-        _add(found, {key: known for key, inside in one.items() if (known := units_of(inside))})
+        new = {key: of for key, of in one.items() if key not in found or not isinstance(of, Leaf)}
+        _add(found, {key: known for key, of in new.items() if (known := units_of(of))})
     if isinstance(item, Group):
         return found if item.prefix is None else found | {"": item.prefix}
     return found if item.rows == Rows() else found | {"": list(item.rows)}

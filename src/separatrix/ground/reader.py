@@ -89,6 +89,9 @@ class Document(NamedTuple):
     label: str
     data: Mapping[str, Any]
     places: Mapping[KeyPath, str]
+    lines: Mapping[KeyPath, int] = {}
+    """Line of each key in the file itself, not of those that it extends."""
+
     folders: Mapping[KeyPath, Path] = {}
     """Where the files are that a value names, by the top of its path."""
 
@@ -117,6 +120,11 @@ class Document(NamedTuple):
     def place(self, path: KeyPath) -> str:
         """Place of the longest part of a path that has one."""
         return _longest(self.places, path, self.label)
+
+    def line(self, path: KeyPath) -> int:
+        """Line of the longest part of a path that has a place; 0 where that is in another file."""
+        parts = (path[:length] for length in range(len(path), 0, -1))
+        return self.lines.get(next((one for one in parts if one in self.places), ()), 0)
 
     def written(self, path: KeyPath) -> Any:
         """Value of a path as it is written; that of a part of it where it ends there."""
@@ -169,7 +177,7 @@ def read_text(schema: type[Schema], text: str, label: str) -> Loaded[Schema]:
 
 def _document_of_text(schema: type, text: str, label: str) -> Document:
     data, lines = toml.parsed(text, label, _kind(schema))
-    return Document(label, data, {path: f"{label}, line {line}" for path, line in lines.items()})
+    return Document(label, data, {path: f"{label}, line {line}" for path, line in lines.items()}, lines)
 
 
 def read_document(schema: type[Schema], document: Document, helper: Helper | None = None) -> Loaded[Schema]:
@@ -286,10 +294,13 @@ class Reading:
         """Note a mistake in the value of a path."""
         for one in error.problems or (error,):
             if isinstance(error, Elsewhere):
+                one.line, one.key = self.document.line(path), path
                 self.faults.append((path, one))
             elif len(self.faults) < MOST_FAULTS:
                 place, name = self.document.place(path), self.document.name(path)
-                self.faults.append((path, one.at(f"{place}: {name}{one.path}" if path else place)))
+                found = one.at(f"{place}: {name}{one.path}" if path else place)
+                found.line, found.key = self.document.line(path), path
+                self.faults.append((path, found))
             elif len(self.faults) == MOST_FAULTS:
                 rule = f"was not read to its end: it has more than {MOST_FAULTS} mistakes"
                 self.faults.append(((), InputError(self.document.label, rule)))

@@ -81,7 +81,7 @@ def parsed(text: str, label: str, kind: Kind = STUDY) -> tuple[dict[str, object]
     """Content of TOML text, and the line of each key."""
     begins, too_deep = _statements(text)
     if too_deep:
-        raise InputError(f"{label}, line {too_deep}", f"nests brackets more than {DEEPEST} deep")
+        raise _in_line(label, too_deep, f"nests brackets more than {DEEPEST} deep")
     try:
         data = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -150,13 +150,12 @@ def read_text(path: Path, kind: Kind = STUDY) -> str:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        where, cure = f"{label}, line {line}", "Save the file as UTF-8."
-        raise InputError(where, "is not UTF-8 text", cure=cure) from None
+        raise _in_line(label, line, "is not UTF-8 text", cure="Save the file as UTF-8.") from None
     for number, content in enumerate(text.split("\n"), 1):
         if "\0" in content:
-            raise InputError(f"{label}, line {number}", "contains a NUL character: this is not a text file")
+            raise _in_line(label, number, "contains a NUL character: this is not a text file")
         if len(content) > LONGEST_LINE:
-            raise InputError(f"{label}, line {number}", f"is longer than {LONGEST_LINE} characters")
+            raise _in_line(label, number, f"is longer than {LONGEST_LINE} characters")
     return text
 
 
@@ -167,14 +166,21 @@ def _invalid_toml(error: Exception, text: str, label: str) -> InputError:
         rule = "is not valid TOML: it ends inside a quotation or a bracket"
         return InputError(label, rule if "end of document" in message else "is not valid TOML")
     number = int(found[1])
-    line, where = text.split("\n")[number - 1].strip(), f"{label}, line {number}"
+    line = text.split("\n")[number - 1].strip()
     if "overwrite" in message or "twice" in message:
         key = _KEY_LINE.match(line)
         name = printable(".".join(_plain(key[1]))) if key else shown(line)
-        return InputError(where, f"has {name} a second time")
+        return _in_line(label, number, f"has {name} a second time")
     reason = message[: found.start()]
     rule = f"is not valid TOML: {reason[:1].lower()}{reason[1:]}"[:120]
-    return InputError(where, rule, printable(line), _cure(line))
+    return _in_line(label, number, rule, printable(line), _cure(line))
+
+
+def _in_line(label: str, line: int, rule: str, got: str = "", cure: str = "") -> InputError:
+    """Return what is wrong in a line of a file."""
+    error = InputError(f"{label}, line {line}", rule, got, cure)
+    error.line = line
+    return error
 
 
 def _cure(line: str) -> str:

@@ -312,7 +312,7 @@ class _Making:
         if self.problems:
             raise together(self.problems)
         if not self.data:
-            cure = "`separatrix new --excel PATH.xlsx` writes one to fill in."
+            cure = "`separatrix new PATH.xlsx` writes one to fill in."
             raise InputError(self.label, f"has no sheet of {self.schema.FILE.noun} with a value", cure=cure)
         listed = ", ".join(self.formulas[:5]) + (", ..." if len(self.formulas) > 5 else "")
         count = len(self.formulas)

@@ -264,7 +264,7 @@ def quantity_of(value: object, unit: str) -> tuple[str | None, str]:
 
 
 def template_workbook() -> bytes:
-    """The workbook that ``separatrix new --excel`` writes; valid as it is."""
+    """The workbook that ``separatrix new PATH.xlsx`` writes; valid as it is."""
     book = new_workbook()
     sheet = add_sheet(book, "instructions")
     headings(sheet, ("How to fill this in",))

@@ -12,7 +12,7 @@ from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Quantity, alone
 from separatrix.ground.toml import nearest
-from separatrix.ground.units import Kelvin, parse, shown
+from separatrix.ground.units import shown
 from separatrix.present.blocks import (
     Block,
     Cell,
@@ -58,7 +58,6 @@ class ShowOptions:
 
     name: Annotated[str, Option("A material, film, fluid or friction table.", "NAME", True)]
     kind: Kind = None
-    temperature: Annotated[str | None, Option('For instance "77 K": the data that serve there.', "T")] = None
     library: Libraries = ()
 
 
@@ -91,15 +90,12 @@ def read_library(libraries: Sequence[str | Path]) -> Library:
 
 
 def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
-    """Return the records of a kind, in any spelling and in the plural too; without one all of them."""
+    """Return the records of a kind; without one all of them."""
     from separatrix.study.library import KINDS
 
-    kinds: tuple[str, ...] = KINDS
-    if kind is not None:
-        spelled = kind.strip().casefold().replace("_", " ")
-        kinds = tuple(known for known in KINDS if spelled in (known, f"{known}s"))
-        if not kinds:
-            raise InputError("--kind", "is not a kind of record", shown(kind), nearest(kind, KINDS))
+    if kind not in (None, *KINDS):
+        raise InputError("--kind", "is not a kind of record", shown(kind), nearest(str(kind), KINDS))
+    kinds = KINDS if kind is None else (kind,)
     return [one for each in kinds for one in library.records(each).values()]
 
 
@@ -122,33 +118,16 @@ def list_records(options: ListOptions) -> Document:
 
 
 def show_records(options: ShowOptions) -> Document:
-    """Records of a name, whole; at a temperature with what serves there."""
-    at = None if options.temperature is None else parse(options.temperature, "K", "--temperature")
-    if at is not None and not 1e-3 <= at <= 5000.0:
-        raise InputError("--temperature", "must lie between 0.001 K and 5000 K", shown(options.temperature))
+    """Records of a name, whole."""
     library = read_library(options.library)
     found = records_named(library, records_of(library, options.kind), options.name)
-    return _document("show", records=[_served(library, one, at) for one in found])
+    return _document("show", records=[one.plain() for one in found])
 
 
 def _document(which: str, **content: object) -> Document:
     from separatrix import __version__
 
     return {"separatrix_version": __version__, "verb": f"materials {which}", **content}
-
-
-def _served(library: Library, record: AnyRecord, at: Kelvin | None) -> Document:
-    """Return a record; at a temperature with the place of the datum of each property that serves there."""
-    from separatrix.study.library import contradictions
-
-    whole = record.plain()
-    if at is None or record.kind == "friction table":
-        return whole
-    if record.kind == "fluid":
-        return whole | {"taken": {}, "taken_at": at, "cautions": [*contradictions(whole, at)]}
-    material = library.material(record.kind, record.name, at)
-    taken = dict((material.record or {}).get("taken", {}))
-    return whole | {"taken": taken, "taken_at": at, "cautions": list(material.cautions)}
 
 
 SEVERAL = "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E."
@@ -192,11 +171,9 @@ def _sure(record: Part) -> str:
 COLUMNS = (
     text_column("name", lambda one: one.name),
     text_column("also", lambda one: ", ".join(one.get("aliases") or ())),
-    text_column("phase", lambda one: one.get("phase")),
     _first("E", "elastic_modulus", Quantity(label="", form=".3g")),
     _first("nu", "poisson_ratio", RATIO),
     _first("boils at", "boiling_temperature"),
-    _first("critical", "critical_temperature"),
     text_column("E at", lambda one: "".join(_span(at.temperature, "K") for at in _data(one)[:1])),
     text_column("confidence", _sure),
     text_column("library", lambda one: one.library.file),
@@ -232,9 +209,6 @@ def _whole(record: Part) -> Iterator[Block]:
     else:
         yield Heading("Data", depth=3)
         yield facts(*_properties(record))
-        if "taken_at" in record and record.taken.values:
-            yield Note(f"*: serves at {alone(record.taken_at, LISTED, 'K')}.", "legend")
-    yield from (Note(one, "caveat") for one in record.get("cautions") or ())
 
 
 def _named(key: str) -> str:
@@ -248,13 +222,11 @@ def _frictions(record: Part) -> Table:
 
 
 def _properties(record: Part) -> Iterator[tuple[str, str]]:
-    """Yield every datum with its range, conditions, confidence and source; those that serve with a mark."""
-    taken = record.values.get("taken") or {}
+    """Yield every datum with its range, conditions, confidence and source."""
     for key in record.data.values:
-        for place, datum in enumerate(_data(record, key)):
-            mark = " *" if place == taken.get(key) else ""
-            words = f"{', '.join(filter(None, _stated(key, datum)))}; {datum.confidence}: {datum.source}"
-            yield WORDS.get(key, key.replace("_", " ")) + mark, words
+        for datum in _data(record, key):
+            words = ", ".join(filter(None, _stated(key, datum)))
+            yield WORDS.get(key, key.replace("_", " ")), f"{words}; {datum.confidence}: {datum.source}"
 
 
 def _stated(key: str, datum: Part) -> Iterator[str | None]:

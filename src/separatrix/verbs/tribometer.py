@@ -38,13 +38,12 @@ from separatrix.present.figure import (
     Panel,
     Trace,
 )
-from separatrix.verbs.parts.quantity_text import axis, column, itself, known_columns, quantity, show
+from separatrix.verbs.parts.quantity_text import column, itself, known_columns, quantity, show
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
     from separatrix.friction.friction_fit import MaterialFit
     from separatrix.friction.log_series import Progress, ReducedLogs
-    from separatrix.friction.logs.log import RawLog
     from separatrix.friction.reduction import Reduction
 
 
@@ -73,10 +72,7 @@ RATES = ("drift_rate", "drift_error")
 FRICTION = Quantity(label="friction", digits=4)
 """Of a test: elsewhere the name is that of the friction in a pocket, of which fewer digits matter."""
 
-EXPONENT, DRIFT = Quantity(label="exponent", form=".3f"), Quantity(label="drift", form=".2e")
-
-BESIDE = ("normal_force", "temperature", "slip_speed", "wear_depth")
-"""What is drawn below friction if the log has it; three of them at most."""
+EXPONENT = Quantity(label="exponent", form=".3f")
 
 LEGEND = "friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
 NUMBERS = (
@@ -132,7 +128,7 @@ def document(found: ReducedLogs, written: str | None = None) -> Document:
         "verb": "tribometer",
         "friction_file": written,
         "notes": list(found.notes),
-        "files": [_file(log) for log in found.logs],
+        "files": [{name: plain(getattr(log, name)) for name in OF_A_LOG} for log in found.logs],
         "tests": [plain(one, "test") for one in nodes],
         "fits": [_fit(*key, one) for key, one in fit.groups.items()] if fit else [],
         "components": None if fit is None else plain(fit.components(), "components"),
@@ -152,12 +148,6 @@ def _test(one: Reduction) -> Any:
 
 
 OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "metadata", "notes")
-
-
-def _file(log: RawLog) -> Document:
-    from separatrix.ground.plain_data import plain
-
-    return {name: plain(getattr(log, name)) for name in OF_A_LOG}
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
@@ -198,7 +188,7 @@ def page(answer: Part) -> Page:
             *(Note(f"End of running-in: {one}.", "legend", Level.LONG) for one in methods),
             *(_fits(answer) if answer.fits else ()),
             Heading("What was read"),
-            *_read(answer, tests),
+            *_read(answer),
             *(Note(one, "caveat") for one in answer.notes),
             Note(kept if "friction_file" in answer else "Nothing written; use `--out friction.toml`."),
             Heading("Course of each test", Level.REPORT),
@@ -236,10 +226,9 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
         friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
         yield f"{friction} (standard error {error}, scatter of a new sample {scatter})."
     if not answer.fits and len(tests) == 1:
-        yield f"{tests[0].source}: steady friction {_summary(tests[0])}."
+        yield f"{tests[0].source}: {_summary(tests[0])}."
     elif not answer.fits:
-        known = [one.friction for one in tests]
-        low, high = (alone(one, FRICTION, "-") for one in (min(known), max(known)))
+        low, high = (alone(of(one.friction for one in tests), FRICTION, "-") for of in (min, max))
         yield f"Steady friction of the tests lies between {low} and {high}."
 
 
@@ -249,7 +238,7 @@ def _place(fit: Part) -> str:
 
 def _summary(test: Part) -> str:
     start, end = (_along(test, name).text for name in ("run_in_end", "steady_end"))
-    return f"{_friction(test).text} from {start} to {end} of the test"
+    return f"steady friction {_friction(test).text} from {start} to {end} of the test"
 
 
 def _friction(one: Part) -> Cell:
@@ -265,7 +254,7 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
     columns = (
         TEST,
         *(_word(name, of) for name in PAIR),
-        *(column(name, of=of, head=_plain(name)) for name in ("slip_speed", "pressure")),
+        *(column(name, of=of, head=_plain(name)) for name in ("temperature", "slip_speed", "pressure")),
         Column("friction", _friction),
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
         text_column("notes", numbers),
@@ -283,15 +272,9 @@ TEST = text_column("test", lambda one: one.source)
 
 def _numbers(tests: Sequence[Part]) -> Table:
     """Return what the friction of each test was made from, and what else its log shows."""
-    names = ("standard_error", "degrees_of_freedom", "standard_deviation", "effective_count")
-    columns = (
-        TEST,
-        *map(column, names),
-        Column("steady until", lambda one: _along(one, "steady_end")),
-        *map(column, ("steady_rows", "rows", "cycles")),
-        Column("drift", lambda one: Cell(one.drift_rate, DRIFT, one.unit("drift_rate"))),
-        Column("its standard error", lambda one: Cell(one.drift_error, DRIFT, one.unit("drift_error"))),
-    )
+    names = ("standard_error", "degrees_of_freedom", "standard_deviation", "effective_count", "drift_rate")
+    until = Column("steady until", lambda one: _along(one, "steady_end"))
+    columns = TEST, *map(column, names), until, *map(column, ("steady_rows", "rows", "cycles"))
     return Table("numbers", columns, tuple(tests), NUMBERS, Level.LONG)
 
 
@@ -327,25 +310,20 @@ def _slopes(fit: Part) -> Iterator[str]:
         yield f"friction goes as {_plain(name)} to the power {power}{span}"
 
 
-def _read(answer: Part, tests: Sequence[Part]) -> Iterator[Block]:
+def _read(answer: Part) -> Iterator[Block]:
     """Yield how the logs were understood: those that were read alike together."""
-    pairs = zip(answer.files, tests, strict=True)
-    alike = grouped(((one.format, str(one.values["columns"])), (one, test)) for one, test in pairs)
-    for number, (first, *more) in enumerate(alike.values(), 1):
-        file, test = first
+    alike = grouped(((one.format, str(one.values["columns"])), one) for one in answer.files)
+    for number, (file, *more) in enumerate(alike.values(), 1):
         also = f" and {len(more)} more" if more else ""
         missing = f", {file.missing} of them without a value" if file.missing else ""
         idle = [one for one in file.columns if one.meaning is None and one.why == "not needed"]
         yield facts(
             ("Log", f"{file.source}{also}: {file.format}, {file.rows} rows{missing}"),
-            ("Conditions", "; ".join(_conditions(test)) or "none known"),
             ("Columns not used", ", ".join(f'"{one.header}"' for one in idle if one.header)),
         )
         taken = tuple(one for one in file.columns if one.meaning or one.why != "not needed")
         yield Table(f"columns {number}", READ, taken)
         yield from (Note(f"{one[:1].upper()}{one[1:]}.", "legend") for one in file.notes)
-    sums = text_column("log", lambda one: one.source), text_column("SHA-256", lambda one: one.checksum)
-    yield Table("logs", (*sums, column("rows")), tuple(answer.files), "Logs and their checksums.", Level.LONG)
 
 
 READ = (
@@ -354,17 +332,6 @@ READ = (
     text_column("unit", lambda one: one.get("unit") or ABSENT),
     text_column("because of", lambda one: one.why),
 )
-
-
-def _conditions(test: Part) -> Iterator[str]:
-    """Yield material, counterface, medium and loads of a test, as far as they are known."""
-    known = test.conditions
-    pair = " on ".join(known.get(name) for name in ("material", "counterface") if name in known)
-    yield from filter(None, (pair, known.get("medium")))
-    yield from (f"{name} {known.get(name)}" for name in ("sample", "test") if name in known)
-    for name in ("temperature", "slip_speed", "pressure", "normal_force", "cycle_time"):
-        if name in known:
-            yield f"{_plain(name)} {show(known, name)}"
 
 
 def _plain(name: str) -> str:
@@ -381,40 +348,19 @@ def file_name(source: str) -> str:
 
 
 def _figure(test: Part) -> Figure:
-    beside = [name for name in BESIDE if name in test.course][:3]
-    panels = tuple(_beside(test, name, letter) for name, letter in zip(beside, "bcd", strict=False))
-    return Figure(
-        rows=((_course_panel(test),), *([panels] if panels else [])),
-        heading=(test.source[:120], f"Friction {_summary(test)}"),
-        alt="Friction along the test with its steady part, and its conditions; the tables have the numbers.",
-        height=2.0,
-    )
-
-
-def _axis_along(test: Part) -> Axis:
-    """Return the abscissa of a test."""
-    course, (size, symbol) = test.course, _along(test, "steady_end").scale
-    name = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}[test.run_in_axis]
-    last = max(course.along[-1], test.steady_end)
-    return Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last)
-
-
-def _ends(test: Part) -> list[Across]:
-    ends = test.run_in_end, test.steady_end
-    return [Across(at=one, colour=GREY, line="--", name="ends of the steady part") for one in ends]
-
-
-def _course_panel(test: Part) -> Panel:
-    """Return friction along the test, the ends of its steady part, the means of spans and of all of it."""
+    """Return friction along a test, the ends of its steady part, the means of spans and of all of it."""
     course, mean, ends = test.course, test.friction, (test.run_in_end, test.steady_end)
     low, high, drift = test.friction_low, test.friction_high, test.drift_rate * (ends[1] - ends[0]) / 2
+    size, symbol = _along(test, "steady_end").scale
+    name = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}[test.run_in_axis]
+    last = max(course.along[-1], test.steady_end)
     look: dict[str, Any] = {"line": "", "marker": "o", "size": 1.2, "name": "means of spans"}
-    return Panel(
-        title="a  Friction along the test",
-        x=_axis_along(test),
+    panel = Panel(
+        title="Friction along the test",
+        x=Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last),
         y=Axis(label="friction [-]"),
         marks=(
-            *_ends(test),
+            *(Across(at=one, colour=GREY, line="--", name="ends of the steady part") for one in ends),
             Band(x=course.along, low=course.low, high=course.high, colour=SKY, name="range of rows"),
             Trace(x=course.along, y=course.mean, colour=BLUE, width=0.6),
             Trace(x=course.span_along, y=course.span_mean, colour=BLUE, **look),
@@ -423,17 +369,8 @@ def _course_panel(test: Part) -> Panel:
             Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),
         ),
     )
-
-
-def _beside(test: Part, name: str, letter: str) -> Panel:
-    """Return a condition along the test, with the ends of the steady part."""
-    course, words = test.course, _plain(name)
-    return Panel(
-        title=f"{letter}  {words.capitalize()}",
-        x=_axis_along(test),
-        y=axis(name, course.unit(name), course.get(name), label=words),
-        marks=(Trace(x=course.along, y=course.get(name), colour=BLUE, width=0.8), *_ends(test)),
-    )
+    alt = "Friction along the test with its steady part; the tables have the numbers."
+    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), alt=alt, height=2.0)
 
 
 VERB = Tool(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_origin, get_type_hints
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,6 +26,29 @@ class Option(NamedTuple):
     metavar: str = ""
     is_argument: bool = False
     flag: str = ""
+
+
+Shown = dict[str, tuple[Any, Option, Any]]
+"""Type, `Option` and default of each option, by name; `dataclasses.MISSING` of one without a default."""
+
+
+def shown_options(options: type) -> Shown:
+    """Return what a door shows of each field of a class of options."""
+    hints = get_type_hints(options, include_extras=True)
+    found = {}
+    for field in fields(options):
+        hint = hints[field.name]
+        note = next(one for one in hint.__metadata__ if isinstance(one, Option))
+        found[field.name] = hint.__origin__, note, field.default
+    return found
+
+
+def kind_of(hint: Any) -> str:
+    """Return what an option of a type takes: a flag, number, file or text, or several, as in `texts`."""
+    kinds = {get_origin(hint) or hint, *get_args(hint)}
+    known = {bool: "flag", int: "number", Path: "file"}
+    one = next((kind for type_, kind in known.items() if type_ in kinds), "text")
+    return f"{one}s" if tuple in kinds else one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,15 +79,9 @@ class Tool:
     folder: str = ""
     writes_data: bool = True
 
-    def shown_options(self) -> Mapping[str, tuple[Any, Option, Any]]:
-        """Type, help and default of each option, by name; `dataclasses.MISSING` of one without a default."""
-        hints = get_type_hints(self.options, include_extras=True)
-        found = {}
-        for field in fields(self.options):
-            hint = hints[field.name]
-            note = next(one for one in hint.__metadata__ if isinstance(one, Option))
-            found[field.name] = hint.__origin__, note, field.default
-        return found
+    def shown_options(self) -> Shown:
+        """Return what a door shows of each option."""
+        return shown_options(self.options)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

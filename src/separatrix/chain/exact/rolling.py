@@ -18,8 +18,8 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from separatrix.chain.exact.grid import Grid, cell_counts, elliptic_grid, elliptic_pressure, pressed_grid
 from separatrix.chain.exact.influence import Body, pair_images
@@ -361,7 +361,7 @@ def creep_of_force(
     inner, outer = 0.0, math.copysign(scale, here)
     while abs(outer) <= LARGEST_CREEP:
         if excess(outer) * here <= 0.0:
-            creep = float(brentq(excess, inner, outer, xtol=BALANCED * scale))
+            creep = float(scipy.optimize.brentq(excess, inner, outer, xtol=BALANCED * scale))
             return creep, at(creep)
         inner, outer = outer, 3.0 * outer
     raise ConvergenceError("No creep gives the stated force.", len(known), abs(here))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-import threading
 import zipfile
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,7 +18,7 @@ from separatrix.ground.document import part_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import reading_only_in
 from separatrix.ground.units import shown
-from separatrix.present import blocks, draw, html
+from separatrix.present import blocks, html
 from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
 from separatrix.verbs import tool_named, verb_named
@@ -33,8 +32,6 @@ from separatrix.verdict.ledger import NAME as LEDGER
 Named = TypeVar("Named", blocks.Picture, blocks.View)
 
 FRESH = {"cache-control": "no-cache"}
-ONE_AT_A_TIME = threading.Lock()
-"""Drawings: matplotlib's style is one for all threads."""
 
 _SCRIPT = re.compile(r'<script( type="module")?>(.*?)</script>', re.DOTALL)
 _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy".*?>', re.DOTALL)
@@ -62,13 +59,10 @@ def routes(page: Page) -> APIRouter:
             **body_of(page, verb, name),
         )
 
-    @router.get("/figure/{verb}/{of}.{kind}/{name:path}")
-    def figure(verb: str, of: str, kind: str, name: str) -> Response:
-        with ONE_AT_A_TIME, refusing_damage(name):
-            spec = block(verb, name, of, blocks.Picture).figure()
-            if kind == "png":
-                return Response(draw.png(spec), media_type="image/png", headers=FRESH)
-            return JSONResponse(plotly(spec), headers=FRESH)
+    @router.get("/figure/{verb}/{of}/{name:path}")
+    def figure(verb: str, of: str, name: str) -> Response:
+        with refusing_damage(name):
+            return JSONResponse(plotly(block(verb, name, of, blocks.Picture).figure()), headers=FRESH)
 
     @router.get("/view/{verb}/{of}/{name:path}", response_class=HTMLResponse)
     def view(verb: str, of: str, name: str, script: str = "") -> Response:
@@ -151,11 +145,10 @@ def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:
     """Return title and body of an answer's page; of one that cannot be shown a line that names its file."""
 
     def picture(one: blocks.Picture) -> str:
-        place = f"/figure/{verb}/{quote(one.name)}"
+        place = f"/figure/{verb}/{quote(one.name)}/{quote(name)}"
         return (
-            f'<figure class="plot" data-source="{place}.json/{quote(name)}"><div class="canvas" role="group" '
-            f'aria-label="{escape(one.caption)}"></div><figcaption>{html.inline(one.caption)} '
-            f'<a href="{place}.png/{quote(name)}" download="{one.name}.png">PNG</a></figcaption></figure>'
+            f'<figure class="plot" data-source="{place}"><div class="canvas" role="group" '
+            f'aria-label="{escape(one.caption)}"></div><figcaption>{html.inline(one.caption)}</figcaption></figure>'
         )
 
     def view(one: blocks.View) -> str:
@@ -164,7 +157,7 @@ def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:
 
     try:
         found = page_of(page, verb, name)
-        with ONE_AT_A_TIME, refusing_damage(page.folder.name(file_of(page, verb, name))):
+        with refusing_damage(page.folder.name(file_of(page, verb, name))):
             body = html.body(found, blocks.Level.REPORT, picture, view)
     except InputError as error:
         return {"title": "", "subtitle": "", "body": "", "refused": str(error)}

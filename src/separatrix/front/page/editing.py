@@ -8,8 +8,8 @@ import tomllib
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import suppress
-from pathlib import Path
-from typing import Any, NamedTuple, get_args, get_origin
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple
 
 import tomlkit
 from fastapi import APIRouter
@@ -17,6 +17,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, Table
 
+from separatrix.front.commands import asked_of, flag_of, option_value
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
@@ -24,15 +25,13 @@ from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
 from separatrix.study.reading import read_study
-from separatrix.study.study import ORDER, CageModel, Study, shipped_studies
+from separatrix.study.study import ORDER, Study, shipped_studies
 from separatrix.study.template import StudyKey, remark_of, study_keys, template
 from separatrix.verbs import VERBS, verb_named
+from separatrix.verbs.verb import kind_of
 
 CHANGED = "Another tab changed this study; its text is shown now. Make your change again."
 MEND = "Mend it in the text first."
-
-_KEY = re.compile(r"\[(?P<section>[a-z]+)\](?: (?P<key>[a-z_]+))?")
-_LINE = re.compile(r"line (\d+)")
 
 
 class Fault(NamedTuple):
@@ -115,11 +114,10 @@ def faults_in(error: InputError, name: str, label: str) -> tuple[Fault, ...]:
     """Return the faults of a file, which the messages call by a name in place of its label."""
     faults = []
     for one in error.problems or (error,):
-        at, line = _KEY.search(one.path), _LINE.search(one.path)
-        section, key = (at["section"], at["key"] or "") if at else ("", "")
-        message, short = str(one).replace(label, name), str(one.at("")).strip()
-        message = message.removeprefix(f"{name}, line {line[1]}: ") if line else message
-        faults.append(Fault(int(line[1]) if line else 0, section, key, message, short))
+        section, key = (*map(str, one.key[:2]), "", "")[:2]
+        section, key = (section, key) if section in ORDER else ("", section)
+        message = str(one).removeprefix(f"{label}, line {one.line}: ").replace(label, name)
+        faults.append(Fault(one.line, section, key, message, str(one.at("")).strip()))
     return tuple(faults)
 
 
@@ -271,9 +269,8 @@ def routes(page: Page) -> APIRouter:
             title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
             helps=VERBS,
+            asked_of=asked_of,
             kind_of=kind_of,
-            models=[one.value for one in CageModel],
-            tables=page.folder.tables(name),
             answers=page.answered(name),
         )
 
@@ -318,11 +315,6 @@ def routes(page: Page) -> APIRouter:
 
     router.get("/jobs")(page.running)
 
-    @router.post("/jobs/forget")
-    def forget() -> Response:
-        page.jobs.forget_ended()
-        return page.running()
-
     @router.post("/jobs/{number:int}/cancel")
     def cancel(number: int) -> Response:
         page.jobs.cancel(number)
@@ -336,32 +328,19 @@ def routes(page: Page) -> APIRouter:
     return router
 
 
-def kind_of(hint: Any) -> str:
-    """Return the kind of field for a type: flag, lines, file, number or text."""
-    kinds = {get_origin(hint) or hint, *get_args(hint)}
-    known = {bool: "flag", tuple: "lines", Path: "file", int: "number"}
-    return next((kind for one, kind in known.items() if one in kinds), "text")
-
-
 def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[str, object]:
     """Return the options of a verb, and the model, as a form gives them; empty ones have their defaults."""
-    known = verb_named(verb)
-    kinds = {name: kind_of(hint) for name, (hint, *_) in known.shown_options().items()}
-    kinds |= {"model": "text"} if known.moves_a_cage else {}
     question: dict[str, object] = {}
-    for name, text in ((name, sent.get(name, "").strip()) for name in kinds):
-        match text and kinds[name]:
-            case "flag":
+    for name, (hint, note, _) in asked_of(verb_named(verb)).items():
+        match kind_of(hint), sent.get(name, "").strip():
+            case _, "":
+                pass
+            case "flag", _:
                 question[name] = True
-            case "lines":
+            case "texts", text:
                 question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
-            case "file":
-                question[name] = page.folder.table(study, text)
-            case "number" if re.fullmatch("-?[0-9]{1,9}", text):
-                question[name] = int(text)
-            case "number":
-                flag = f"--{name.replace('_', '-')}"
-                raise InputError(flag, "must be a whole number", got=shown(text))
-            case "text":
-                question[name] = text
+            case "file", text:
+                question[name] = page.folder.inside(str(PurePosixPath(study).parent / text))
+            case kind, text:
+                question[name] = option_value(kind, text, flag_of(name, note))
     return question

@@ -117,17 +117,6 @@ class Folder:
             raise InputError(shown(name), "is not a log of this folder")
         return self.root / LOGS / name
 
-    def tables(self, name: str) -> list[str]:
-        """Return the names of the CSV files beside a study: what `sweep` may take its cases from."""
-        found = sorted(self.study(name).parent.iterdir())
-        return [path.name for path in found if path.suffix.lower() == ".csv" and self._is_own(path)]
-
-    def table(self, name: str, table: str) -> Path:
-        """Return the path of a CSV file beside a study; refused if it is not one of `tables`."""
-        if table not in self.tables(name):
-            raise InputError("--cases", "must be a CSV file beside the study", got=shown(table))
-        return self.study(name).with_name(table)
-
     def name(self, path: Path) -> str:
         """Return the name of a file in the folder."""
         return path.relative_to(self.root).as_posix()

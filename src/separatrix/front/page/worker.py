@@ -105,11 +105,6 @@ class Jobs:
         with self._lock:
             return [*reversed(self._jobs.values())]
 
-    def job(self, number: int) -> Job | None:
-        """Return a job by its number; None if there is none."""
-        with self._lock:
-            return self._jobs.get(number)
-
     def cancel(self, number: int) -> None:
         """End a job: one that runs keeps what it finished."""
         with self._lock:
@@ -123,15 +118,11 @@ class Jobs:
 
     def resume(self, number: int) -> None:
         """Ask a question again: it goes on with the runs that are kept."""
-        job = self.job(number)
+        with self._lock:
+            job = self._jobs.get(number)
         if job is None:
             raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
         self.ask(job.verb, job.name, job.question)
-
-    def forget_ended(self) -> None:
-        """Drop the jobs that have ended from the list; their answers stay."""
-        with self._lock:
-            self._jobs = {number: job for number, job in self._jobs.items() if job.is_active}
 
     def close(self) -> None:
         """End the process; the job in hand writes what it finished."""
