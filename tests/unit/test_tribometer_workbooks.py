@@ -28,14 +28,12 @@ def changed(row, column, value):
     return {"a": HEAD + rows}
 
 
-def test_a_sheet_comes_with_its_units_and_metadata(tmp_path):
-    """Rows above the names are metadata: name, value, unit; numbers are those written, to the last bit."""
+def test_a_sheet_comes_with_its_units(tmp_path):
+    """Rows above the names do not count; numbers are those written, to the last bit."""
     above = [["Sample:", "Armalon 3"], ["Load", 10.0, "N"], []]
     (found,) = logs(tmp_path, {"run 1": above + HEAD + NUMBERS})
     assert found.source == "log.xlsx, run 1"
     assert [(c.header, c.unit) for c in found.columns] == [("Time", "s"), ("COF", "-"), ("Wear", "um")]
-    assert found.metadata == {"Sample": "Armalon 3", "Load": "10.0 N"}
-    assert found.conditions.normal_force == 10.0
     assert [found.time.tolist(), found.friction.tolist()] == [[row[i] for row in NUMBERS] for i in (0, 1)]
 
 

@@ -151,7 +151,7 @@ def _test(one: Reduction) -> Any:
     return Group(shape(one.test) | ends | {"course": Group(shape(course(one)))})
 
 
-OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "metadata", "notes")
+OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "notes")
 
 
 def _file(log: RawLog) -> Document:

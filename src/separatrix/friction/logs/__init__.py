@@ -75,7 +75,7 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
         return _logs(content, given)
     fitting = [one for one in shipped_maps() if all(text in content.beginning for text in one.signature)]
     known = given.over(fitting[0]) if fitting else given
-    why: InputError | None = None
+    why: UnfitError | None = None
     if known.is_complete:
         try:
             return _logs(content, replace(known, is_shipped=True))
@@ -89,10 +89,14 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
     name = fitting[0].name if fitting else "plain text"
     columns = replace(columns, columns={**columns.columns, **stated}, name=name)
-    return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
+    try:
+        return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
+    except UnfitError as error:
+        draft.form.insert(0, draft.ask("# It does not read the log yet", error.question))
+        raise _unmapped(content, draft, draft.text(content.name), why) from None
 
 
-def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> UnmappedError:
+def _unmapped(content: Content, draft: Draft, text: str, why: UnfitError | None) -> UnmappedError:
     first, count = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions)
     like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
     rule = f"{like}has {count} open questions, the first: {first}"
@@ -183,7 +187,7 @@ def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
     joint = replace(before, rows=rows, lines=lines)
     decimal = "," if "," in "".join(rows) and block.separator != "," else "."
     try:
-        arrays = in_si(joint, replace(columns, columns=abscissae), None, decimal).arrays
+        arrays = in_si(joint, replace(columns, columns=abscissae), decimal).arrays
     except InputError:
         return False
     clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""

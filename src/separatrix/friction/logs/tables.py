@@ -12,9 +12,6 @@ import codecs
 import datetime
 import hashlib
 import re
-import warnings
-import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,7 +21,7 @@ from separatrix.friction.logs.column_map import ColumnMap, TextFormat
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
-from separatrix.ground.sheet import SAVE_AGAIN, refuse_unsafe
+from separatrix.ground.sheet import by_sheet
 from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
 
@@ -127,30 +124,11 @@ _LITERAL = re.compile(r'"[^"]*"|\\.')
 """Part of a number format that is shown as it is: a % in it does not make a percentage."""
 
 _BLANKS = str.maketrans("\t\r\n\x01\x02\x03\x04", "       ")
-# what openpyxl raises for a workbook that is damaged or makes no sense
-_DAMAGED = (
-    *(ValueError, TypeError, LookupError, AttributeError, ArithmeticError, SyntaxError, OSError, EOFError),
-    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError, AssertionError),
-)
 
 
 def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     """Return the lines of each sheet with a number in it, by its name."""
-    import openpyxl
-    from openpyxl.utils.exceptions import InvalidFileException
-
-    refuse_unsafe(path, label)
-    try:
-        with warnings.catch_warnings(), path.open("rb") as file:
-            warnings.simplefilter("ignore")
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
-            formulas = openpyxl.load_workbook(file, read_only=True, keep_links=False)
-            found = {one.title: _lines(one, formulas[one.title], label) for one in book.worksheets}
-    except InputError:
-        raise
-    except (*_DAMAGED, InvalidFileException) as error:
-        rule = f"is not a readable workbook: {printable(str(error), 100)}"
-        raise InputError(label, rule, cure=SAVE_AGAIN) from None
+    found = by_sheet(path, label, lambda _, saved, formulas: _lines(saved, formulas, label))
     found = {title: lines for title, lines in found.items() if any(re.search(r"\d", one) for one in lines)}
     if not found:
         cure = "Put the names of the columns in one row, and the numbers (not as text) below."
@@ -164,8 +142,6 @@ def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
 
     rows: dict[int, dict[int, str]] = {}
     empty: set[tuple[int, int]] = set()  # cells that are there, without a value
-    for one in (sheet, formulas):  # else each row is filled up to the last column that the sheet declares
-        one.reset_dimensions()
     count = 0
     for number, row in enumerate(sheet.iter_rows(), 1):
         cells = [(i, one) for i, one in enumerate(row[:MOST_COLUMNS]) if not isinstance(one, EmptyCell)]
