@@ -19,7 +19,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.friction.friction_file import FrictionTest
-from separatrix.friction.friction_fit import FrictionFit, MaterialFit, fit_friction, linear_model
+from separatrix.friction.friction_fit import FrictionFit, MaterialFit, fit_friction
 from separatrix.verdict.judgement import wilson_interval
 
 ENVIRONMENT = {"counterface": "440C", "medium": "liquid nitrogen"}
