@@ -99,17 +99,11 @@ def test_a_study_typed_into_a_workbook_is_the_same(name, tmp_path):
 def test_the_verb_new_writes_a_workbook_to_fill_in(tmp_path, capsys):
     """Once, under the name of a workbook; it has every key of the text file, and is the same study."""
     path = tmp_path / "mine.xlsx"
-    assert main(["new", "--excel", str(path)]) == 0
+    assert main(["new", str(path)]) == 0
     assert main(["check", "--full", str(path)]) == 0
     assert "mine.xlsx, sheet cage, cell B2" in capsys.readouterr().out
-    for options in (
-        ["--excel", "mine.xlsx"],
-        ["--excel", "a.toml"],
-        ["b.xlsx"],
-        ["b.xls"],
-        ["--excel", "b.xlsm"],
-    ):
-        assert main(["new", *options[:-1], str(tmp_path / options[-1])]) == 2
+    for name in ("mine.xlsx", "b.xls", "b.xlsm"):
+        assert main(["new", str(tmp_path / name)]) == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.xlsx"]
     assert read_study(path) == read_from(tmp_path, "mine.toml", template())
     book = openpyxl.load_workbook(path)
@@ -240,7 +234,7 @@ STUDIES = {
     "column twice": ({**WRONG, "cage": [["key", "value", "value"], ["mass", "25 g"]]}, 'has two columns of one heading; got "value"'),
     "sheet misspelt": ({**WRONG, "cagge": WRONG["cage"]}, "sheet cagge is not a section of a study. Did you mean cage?"),
     "two sheets of a name": ({**WRONG, "Cage ": [HEAD, ["mass", 30.0, None, "g"]]}, "sheet Cage , cell A2: mass is given a second time"),
-    "nothing in it": ({"Sheet1": [["a", 1.0]]}, "has no sheet of a study with a value. `separatrix new --excel"),
+    "nothing in it": ({"Sheet1": [["a", 1.0]]}, "has no sheet of a study with a value. `separatrix new PATH.xlsx`"),
 }  # fmt: skip
 
 LAUGHS = '<?xml version="1.0"?><!DOCTYPE sst [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;">]><sst>&b;</sst>'

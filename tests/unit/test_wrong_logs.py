@@ -89,7 +89,7 @@ WRONG_MAPS = {
     "a column number of zero": ({"columns": {"time": 0}}, "must be the number of a column, counted from 1; got 0"),
     "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time.unit must be a unit such as s, ms"),
     "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
-    "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be one of "tab", ";", ",", "|", "blanks"'),
+    "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be "tab" or ";" or "," or "|" or "blanks"; got ":"'),
     "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs header_line"),
     "a column without a name": ({"columns": {"time": 0.5}}, "[columns] time.name must be the name or the number of a column; got 0.5. Write friction ="),
     "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has an open question: no column "Zeit", which the column map names as time'),

@@ -75,11 +75,11 @@ REPORT_OUT = "Folder of the report [default: that of the answers; none with --js
 PDF_HELP = "Also write report.pdf; needs the extra pdf."
 
 
+NEW_HELP = "The file to make, a workbook if it ends in .xlsx; it must not exist yet."
+
+
 def _new(
-    path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to make; it must not exist yet.")],
-    excel: Annotated[
-        bool, typer.Option("--excel", help="A workbook, .xlsx, in place of a text file.")
-    ] = False,
+    path: Annotated[Path, typer.Argument(metavar="PATH", help=NEW_HELP)],
     json: Json = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
 ) -> int:
@@ -87,18 +87,15 @@ def _new(
 
     ending = path.suffix.casefold()
     if path.is_dir():
-        cure = f'Name a file: "{path / ("my-bearing.xlsx" if excel else "my-bearing.toml")}".'
+        cure = f'Name a file: "{path / "my-bearing.toml"}".'
         raise InputError(str(path), "is a folder", cure=cure)
-    if excel and ending != ".xlsx":
-        better = path.with_suffix(".xlsx") if ending in WORKBOOK_ENDINGS else f"{path}.xlsx"
-        raise InputError(str(path), "must end in .xlsx with --excel", cure=f'Name it "{better}".')
-    if ending in WORKBOOK_ENDINGS and not excel:
-        cure = f"Name it {path.stem}.toml, or {path.stem}.xlsx with --excel."
-        raise InputError(str(path), "is the name of a workbook", cure=cure)
+    if ending in WORKBOOK_ENDINGS and ending != ".xlsx":
+        cure = f"Name it {path.stem}.xlsx, or {path.stem}.toml."
+        raise InputError(str(path), "is a kind of workbook that is not read", cure=cure)
     refuse_existing(path)
     from separatrix.study.template import template, template_workbook
 
-    write_new(path, template_workbook() if excel else template().encode())
+    write_new(path, template_workbook() if ending == ".xlsx" else template().encode())
     if json:
         answer_json({"path": str(path)})
     elif not quiet:

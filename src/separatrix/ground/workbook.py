@@ -55,7 +55,7 @@ def read_sheets(schema: Any, path: Path) -> Document:
     if made.problems:
         raise together(made.problems)
     if not made.data:
-        cure = "`separatrix new --excel PATH.xlsx` writes one to fill in."
+        cure = "`separatrix new PATH.xlsx` writes one to fill in."
         raise InputError(made.label, f"has no sheet of {schema.FILE.noun} with a value", cure=cure)
     listed = ", ".join(made.formulas[:5]) + (", ..." if len(made.formulas) > 5 else "")
     note = f"{made.label}: the saved values of formulas are used, nothing is recomputed: {listed}."

@@ -241,7 +241,7 @@ def template() -> str:
 
 
 def template_workbook() -> bytes:
-    """The workbook that ``separatrix new --excel`` writes; valid as it is."""
+    """The workbook that ``separatrix new PATH.xlsx`` writes; valid as it is."""
     book = new_workbook()
     lines = [[line.strip()] for line in (USE + IN_CELLS).splitlines()]
     add_table(book, "instructions", ("How to fill this in",), lines, widths=(110,))

@@ -19,20 +19,7 @@ from separatrix.ground.toml import read_text as text_of
 from separatrix.ground.units import printable, shown
 
 LAST = between(1, 1_000_000_000)  # numbers of columns and lines
-SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
-DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
-
-
-def _one_of(known: Mapping[str, str]) -> Any:
-    """Reader of a text that stands for a character."""
-
-    def read(raw: object, *_: object) -> str:
-        if not isinstance(raw, str) or raw not in known:
-            names = ", ".join(f'"{name}"' for name in known if name.isprintable() and name.strip())
-            raise InputError("", f"must be one of {names}", shown(raw))
-        return known[raw]
-
-    return read
+SEPARATORS = {"tab": "\t", ";": ";", ",": ",", "|": "|", "blanks": " "}
 
 
 def _column_name(raw: object, *_: object) -> tuple[str, ...] | int:
@@ -79,8 +66,8 @@ class Column:
 class TextFormat:
     """How the table is written; what is not given the file shows."""
 
-    separator: Literal["\t", ";", ",", "|", " "] | None = key(default=None, read=_one_of(SEPARATORS))
-    decimal: Literal[".", ","] | None = key(default=None, read=_one_of(DECIMALS))
+    separator: Literal["tab", ";", ",", "|", "blanks"] | None = key(default=None)
+    decimal: Literal[".", ","] | None = key(default=None)
     encoding: (
         Literal["utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk"]
         | None

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from separatrix.friction.logs import names as naming
 from separatrix.friction.logs import tables
-from separatrix.friction.logs.column_map import Column, ColumnMap, TextFormat, given_in
+from separatrix.friction.logs.column_map import SEPARATORS, Column, ColumnMap, TextFormat, given_in
 from separatrix.friction.logs.log import TIMES, UnfitError, stated_units
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import as_toml
@@ -27,6 +27,7 @@ USUAL = {
 }
 """Units that a draft offers where the file states none, to be checked; of others N."""
 
+WORDS = {sign: word for word, sign in SEPARATORS.items()}
 MOST_ROWS = 20_000  # of which a column is looked at in all
 SAMPLE = 50  # rows of a column that are looked at
 _CLOCK = re.compile(r"\d{1,4}:\d{1,2}:\d{1,2}(?:[.,:]\d+)?\s*(?:[AaPp]\.?[Mm]\.?)?")
@@ -142,8 +143,9 @@ def _first_block(
     heads = _heads(part, separator, given) if separator else None
     if heads is None:
         return None
+    others = [WORDS[one] for one in others]
     asked = {"separator": f"or {' or '.join(map(as_toml, others))}?"} if others else {}
-    form = form if part.sheet else TextFormat(**given_in(form) | {"separator": separator})
+    form = form if part.sheet else TextFormat(**given_in(form) | {"separator": WORDS[separator]})
     names = heads.names if heads.line is not None and form.header_line is None else []
     block = next(tables.blocks_of_part(part, form, [(name,) for name in names if name.strip()]), None)
     if block is None and names and heads.line is not None:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from separatrix.friction.logs.column_map import ColumnMap, TextFormat
+from separatrix.friction.logs.column_map import SEPARATORS, ColumnMap, TextFormat
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
@@ -392,7 +392,7 @@ def blocks_of(content: Content, columns: ColumnMap) -> list[Block]:
 def separator_in(part: Part, form: TextFormat) -> tuple[str, list[str]]:
     """The separator that is stated, or that a text shows, with others that it may be; empty for none."""
     if part.sheet or form.separator:
-        return ("\t" if part.sheet else form.separator or ""), []
+        return ("\t" if part.sheet else SEPARATORS[form.separator or "tab"]), []
     return separator_of(part.lines, MISSING | {one.casefold() for one in form.missing})
 
 
