@@ -58,10 +58,11 @@ def typed(key, value):
             name = part if re.fullmatch(r"\w+", part) else f'"{part}"'
             yield from typed(f"{key}.{name}" if key else name, item)
     elif isinstance(value, list) and isinstance(value[0], dict):
-        for number, item in enumerate(value, 1):
-            yield from typed(f"{key}.{number}", item)
+        for item in value:
+            yield f"[[{key}]]", None, None, None
+            yield from typed("", item)
     elif isinstance(value, list):
-        yield key, "; ".join(map(str, value)), None, None
+        yield key, "; ".join(map(str, value)) + ";", None, None
     else:
         found = re.fullmatch(r"([-0-9.]+) (\S+)(?: \+- (\d+ %))?", value) if isinstance(value, str) else None
         is_exact = found and Fraction(float(found[1])) == Fraction(found[1])
@@ -211,7 +212,7 @@ def mass(*cells):
 
 
 STUDIES = {
-    "list without unit": (study("stability", 2, "kicks", "0.1"), 'cell B2: [stability] kicks[1] needs a unit of speed; got 0.1. Write "0.1 m/s".'),
+    "list without unit": (study("stability", 2, "kicks", "0.1;"), 'cell B2: [stability] kicks[1] needs a unit of speed; got 0.1. Write "0.1 m/s".'),
     "unit twice": (mass("25 g", None, "g"), 'cell B2: [cage] mass needs a unit of mass (kg, g, mg, t, ...); got "25 g g"'),
     "error": (mass(Fault("#REF!"), None, "g"), "cell B2 shows an error instead of a value; got #REF!"),
     "date": (mass(Shown(46_000.0, 1), None, "g"), "cell B2 has a date or a time of day"),
@@ -221,19 +222,19 @@ STUDIES = {
     "width that is no width": (mass(25.0, "some", "g"), "cell B2: [cage] mass, after +-, must be one number and one unit of mass"),
     "width beside a list": (study("stability", 2, "kicks", "0.1; 2", 0.1, "m/s"), "cell C2 is a width beside a list. Clear one of them."),
     "value without key": (study("cage", 4, None, 3.0), "cell B4 is a value without a key"),
-    "key twice": (study("cage", 4, "mass", 30.0, None, "g"), "cell A4: mass is given a second time, or as a whole and by its parts. It is in B2"),
+    "key twice": (study("cage", 4, "mass", 30.0, None, "g"), "cell B4 has mass a second time."),
     "key of odd signs": (study("cage", 4, "mass (kg)", 1.0), 'cell A4 must be the name of a key; got "mass (kg)"'),
-    "name and parts": (study("bearing", 10, "ball_material.density", 7.0, None, "kg/m3"), "cell A10: ball_material.density is given a second time, or as a whole"),
-    "parts and name": (study("bearing", 8, "ring_material.density", 7.0, None, "kg/m3"), "cell A9: ring_material is given a second time, or as a whole"),
-    "item without key": ({**WRONG, "ranking": [HEAD, ["candidates.1", 0.1]]}, "cell A2: candidates.1 is given"),
-    "item too far": ({**WRONG, "ranking": [HEAD, ["candidates.2.name", "a"]]}, "cell A2: candidates.2.name must count items from 1, without a gap"),
+    "name and parts": (study("bearing", 10, "ball_material.density", 7.0, None, "kg/m3"), "cell B10 has ball_material.density a second time."),
+    "parts and name": (study("bearing", 8, "ring_material.density", 7.0, None, "kg/m3"), "cell B9 has ring_material a second time."),
+    "items without their heading": ({**WRONG, "ranking": [HEAD, ["candidates.name", "a"]]}, "cell B2: [ranking] candidates must be a list in [brackets]"),
+    "brackets that do not close": (study("cage", 4, "gravity", "{ between = [1, 2"), "cell B4 is not valid TOML: it ends inside"),
     "key of a section on the first sheet": ({**WRONG, "study": [HEAD, ["mass", 3.0, None, "g"]]}, "cell B2: mass is not a key of a study. It belongs in [cage]."),
     "extends itself": ({**WRONG, "study": [HEAD, ["extends", "case.xlsx"]]}, "cell B2: extends leads back to a file"),
     "missing key": (study("cage", 2, "gravity", 1.0, None, "g0"), "sheet cage: [cage] mass is missing"),
     "no headings": ({**WRONG, "cage": [["mass", 25.0, None, "g"]]}, "sheet cage has no headings key and value"),
     "column twice": ({**WRONG, "cage": [["key", "value", "value"], ["mass", "25 g"]]}, 'has two columns of one heading; got "value"'),
     "sheet misspelt": ({**WRONG, "cagge": WRONG["cage"]}, "sheet cagge is not a section of a study. Did you mean cage?"),
-    "two sheets of a name": ({**WRONG, "Cage ": [HEAD, ["mass", 30.0, None, "g"]]}, "sheet Cage , cell A2: mass is given a second time"),
+    "two sheets of a name": ({**WRONG, "Cage ": [HEAD, ["mass", 30.0, None, "g"]]}, 'sheet Cage  has "[cage]" a second time.'),
     "nothing in it": ({"Sheet1": [["a", 1.0]]}, "has no sheet of a study with a value. `separatrix new PATH.xlsx`"),
 }  # fmt: skip
 

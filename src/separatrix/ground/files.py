@@ -93,7 +93,8 @@ def _remove_left_behind(folder: Path) -> None:
 def staged(folder: Path) -> Iterator[Path]:
     """Yield a folder inside `folder` to write into; at the end its files take their places, all or none.
 
-    Such folders of processes that were killed a day ago are removed first. A folder that cannot be written is refused.
+    Those of processes that were killed a day ago are removed first. A folder that cannot be written is
+    refused.
     """
     try:
         _remove_left_behind(folder)
