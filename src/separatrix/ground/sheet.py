@@ -231,17 +231,8 @@ def workbook_bytes(book: Workbook) -> bytes:
 
 
 WORKBOOK_ENDINGS = (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods")
-WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 
 
 def is_workbook(path: Path) -> bool:
-    """Whether a file is a workbook, by its name or its first bytes."""
-    if not path.is_file():  # a pipe may never end
-        return False
-    if path.suffix.casefold() in WORKBOOK_ENDINGS:
-        return True
-    try:
-        with path.open("rb") as file:
-            return file.read(4) in WORKBOOK_MAGICS
-    except OSError:
-        return False
+    """Whether a file is a workbook by its name; of those only .xlsx is read."""
+    return path.suffix.casefold() in WORKBOOK_ENDINGS

@@ -313,18 +313,13 @@ def _values(
 ) -> Array:
     """Numbers or seconds of a column; refused with the row of what is neither."""
     own = {one.casefold() for one in marks}
-    missing = naming.MISSING | own | {f"{tables.ERROR}{one}" for one in own}
+    missing = naming.MISSING | own
     values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
     if not wrong:
         return values
     cell, where = cells[wrong[0]], block.at(wrong[0], i)
-    if cell == tables.UNCOMPUTED:
-        cure = "Open the workbook in a spreadsheet program and save it."
-        raise InputError(where, "holds a formula without a saved value", cure=cure)
-    bare = cell.lstrip(tables.ERROR).rstrip(tables.PERCENT)
+    bare = cell.rstrip(tables.PERCENT)
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
-    if cell.startswith(tables.ERROR):
-        raise InputError(where, "holds an error", bare, cure)
     got = f'"{printable(bare)}"'
     if form:
         raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")
