@@ -71,6 +71,16 @@ def absent(record: type) -> Node:
     return {name: _item(None, kind) for name, kind in _kinds(record).items()}
 
 
+def field_units(record: type) -> dict[str, str]:
+    """Return the unit of each field of a record class that has one."""
+    return {name: kind.unit for name, kind in _kinds(record).items() if kind.unit is not None}
+
+
+def field_axes(record: type) -> dict[str, tuple[str, ...]]:
+    """Return the names of the dimensions of each field of a record class that states them."""
+    return {name: kind.axes for name, kind in _kinds(record).items() if kind.axes}
+
+
 def units_of(item: Item) -> Any:
     """Return units and axes of an item as plain data, from which `node_of` makes it again from its values.
 
