@@ -19,14 +19,12 @@ TIME = np.arange(ROWS) * 0.5
 FRICTION = np.round(0.14 + 0.01 * np.sin(TIME), 5)
 
 
-def table(head, row, *, above=(), comma=False):
-    """Lines above, names, and a row for each time t, friction f, time of day h and number i."""
+def table(head, row):
+    """Names, and a row for each time t, friction f, force and time of day h."""
     rows = []
     for i, (t, f) in enumerate(zip(TIME, FRICTION, strict=True)):
-        clock = f"{10 + i // 3600:02d}:{i // 60 % 60:02d}:{i % 60:02d}"
-        one = row.format(t=t, f=f, i=i, h=clock, force=12.5 * f, milli=12500 * f, angle=i % 12 * 30)
-        rows.append(one.replace(".", ",") if comma else one)
-    return "\n".join([*above, *head, *rows, ""])
+        rows.append(row.format(t=t, f=f, h=f"10:{i // 60:02d}:{i % 60:02d}", force=12.5 * f))
+    return "\n".join([*head, *rows, ""])
 
 
 SECOND = {

@@ -385,13 +385,14 @@ def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units
         np.testing.assert_array_equal(log.time, as_written(TIME))
 
 
-def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
-    """Without a line between, or with one that names the test."""
+def test_a_header_repeated_where_time_begins_anew_is_refused_and_with_a_line_between_begins_a_test(tmp_path):
+    """Without a line between it is one table, in which time must not run backwards."""
     one, two = (raw_logs.plain_csv({"time [s]": TIME, "COF": f}) for f in (FRICTION, FRICTION + 0.1))
-    for between in (b"", b"\n", b"test B\n"):
-        first, second = read_all(tmp_path, one + between + two)
-        np.testing.assert_array_equal(first.friction, as_written(FRICTION))
-        np.testing.assert_array_equal(second.time, as_written(TIME))
+    with pytest.raises(InputError, match=r"time must not run backwards.* Split the file there"):
+        read_all(tmp_path, one + two)
+    first, second = read_all(tmp_path, one + b"test B\n" + two)
+    np.testing.assert_array_equal(first.friction, as_written(FRICTION))
+    np.testing.assert_array_equal(second.time, as_written(TIME))
 
 
 def test_no_name_and_unit_have_two_meanings():

@@ -12,8 +12,6 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
-
 from separatrix.friction.logs.column_map import (
     ColumnMap,
     column_map_of,
@@ -21,8 +19,7 @@ from separatrix.friction.logs.column_map import (
     shipped_maps,
 )
 from separatrix.friction.logs.draft import Draft, draft_of
-from separatrix.friction.logs.log import RawLog, UnfitError, in_si, raw_log
-from separatrix.friction.logs.names import ABSCISSAE, time_form
+from separatrix.friction.logs.log import RawLog, UnfitError, raw_log
 from separatrix.friction.logs.tables import Block, Content, blocks_of, cells_of, content_of, matching
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable, shown
@@ -166,33 +163,20 @@ def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence
 
 
 def _tests(content: Content, columns: ColumnMap) -> list[Block]:
-    """Tables of two rows or more; one under repeated names goes on with the test before it, if time does."""
+    """Tables of two rows or more; one under the names of that before it, with nothing between, goes on."""
     tests: list[Block] = []
     for block in blocks_of(content, columns):
-        if tests and _goes_on(tests[-1], block, columns):
-            tests[-1].rows += block.rows
-            tests[-1].lines = [*tests[-1].lines, *block.lines]
+        before = tests[-1] if tests else None
+        if before and _table_of(before) == _table_of(block) and not any(map(str.strip, block.above)):
+            before.rows += block.rows
+            before.lines = [*before.lines, *block.lines]
         elif len(block.lines) > 1:
             tests.append(block)
     return tests
 
 
-def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
-    """Whether a table under repeated names goes on where the one before it ends: a page of one test."""
-    parts = [(one.source, one.name, one.heads, one.below) for one in (before, block)]
-    if parts[0] != parts[1] or any(line.strip() for line in block.above):
-        return False
-    abscissae = {name: one for name, one in columns.columns.items() if name in ABSCISSAE}
-    rows, lines = before.rows[-1:] + block.rows[:1], [before.lines[-1], block.lines[0]]
-    joint = replace(before, rows=rows, lines=lines)
-    decimal = "," if "," in "".join(rows) and block.separator != "," else "."
-    try:
-        arrays = in_si(joint, replace(columns, columns=abscissae), decimal).arrays
-    except InputError:
-        return False
-    clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""
-    most = 43_200.0 if clock else np.inf
-    return all(0.0 <= np.diff(one)[0] < most for one in arrays.values() if np.isfinite(one).all())
+def _table_of(block: Block) -> tuple[object, ...]:
+    return block.source, block.name, block.heads, block.below
 
 
 def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:

@@ -274,17 +274,16 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
     return (known[stated[0]] or naming.Scale(), stated[0]) if stated else (naming.Scale(), "")
 
 
-def in_si(block: tables.Block, columns: ColumnMap, decimal: str | None = None) -> Read:
+def in_si(block: tables.Block, columns: ColumnMap) -> Read:
     """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
     notes = list(block.notes)
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
     cells = dict(zip(scales, tables.cells_of(block, list(scales)), strict=True))
     timed = {i: form for i in places.get("time", ()) if (form := naming.time_form(scales[i][1]))}
-    if decimal is None:
-        numeric = [cells[i] for i in sorted(scales) if i not in timed]
-        decimal = columns.format.decimal if block.word == "line" else "."
-        decimal = decimal or decimal_of(numeric, block.separator, block.source)
+    numeric = [cells[i] for i in sorted(scales) if i not in timed]
+    stated = columns.format.decimal if block.word == "line" else "."
+    decimal = stated or decimal_of(numeric, block.separator, block.source)
     absent = [float(one) for one in columns.format.missing if FLOAT.fullmatch(one)]
     arrays: Arrays = {}
     for meaning, some in places.items():
