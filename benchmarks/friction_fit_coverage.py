@@ -19,8 +19,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from separatrix.friction.friction_file import FrictionTest
-from separatrix.friction.friction_fit import FrictionFit, MaterialFit, fit_friction, linear_model
-from separatrix.friction.scatter import variance_components
+from separatrix.friction.friction_fit import FrictionFit, MaterialFit, fit_friction
 from separatrix.verdict.judgement import wilson_interval
 
 ENVIRONMENT = {"counterface": "440C", "medium": "liquid nitrogen"}
@@ -104,26 +103,16 @@ def report(name: str, sets: int) -> None:
     """Simulate one plan and print its shares."""
     plan, slopes, between, within = PLANS[name]
     counts: dict[str, int] = {}
-    squares = []
     start = time.perf_counter()
     for seed in range(sets):
         tests = drawn(plan(), slopes, between, within, seed)
         fit = fit_friction(tests)
         for key, hit in hits(fit, slopes, sqrt(between**2 + within**2), seed).items():
             counts[key] = counts.get(key, 0) + hit
-        found = variance_components([linear_model(tests, fit.of("A", NAME).covariates)])
-        if found is not None:
-            squares.append([found.between_samples**2, (found.between_tests or 0.0) ** 2])
     print(f"{name}: {sets} sets in {time.perf_counter() - start:.0f} s")
     for key, hit in counts.items():
         low, high = wilson_interval(hit, sets)
         print(f"  {key:11} covered {100 * hit / sets:5.1f} % ({100 * low:.1f} to {100 * high:.1f})")
-    if name != "single":
-        for word, column, true in zip(
-            ("samples", "tests"), np.array(squares).T, (between, within), strict=True
-        ):
-            ratio, error = column.mean() / true**2, column.std() / sqrt(sets) / true**2
-            print(f"  variance between {word:8} over the truth {ratio:.3f} +- {error:.3f}")
 
 
 def main() -> None:

@@ -171,9 +171,6 @@ TRIBOMETER = (
     Line("scatter_source", meaning="where the scatter comes from"),
     Line("slopes", meaning="change of the logarithm of friction with that of a condition, by its name"),
     Line("tested", meaning="range of each condition in the tests, by its name"),
-    Line("components", meaning="scatter between samples and between tests; null where nothing was repeated"),
-    Line("between_samples", "-", meaning="standard deviation between samples, as a share"),
-    Line("between_tests", "-", meaning="standard deviation between tests of one sample, as a share"),
     Line("default_scatter", "-", meaning="assumed for an unrepeated test, as a share of the mean"),
     Line("friction_file", meaning="path of the friction file, null if none was written"),
 )

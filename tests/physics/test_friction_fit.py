@@ -13,7 +13,7 @@ from separatrix.chain.pocket_friction import contact_radius, impact_force, slidi
 from separatrix.friction.friction_file import FrictionTest
 from separatrix.friction.friction_fit import TestedFriction, fit_friction
 from separatrix.friction.friction_law import StatedFriction
-from separatrix.friction.scatter import LinearModel, conditional, variance_components
+from separatrix.friction.scatter import LinearModel, conditional
 from separatrix.study.reading import read_study
 from separatrix.verdict.ranking_records import may_be_lower
 from separatrix.verdict.ranking_records import measured as measured_mean
@@ -37,45 +37,6 @@ def at_speed(friction, speed, **changes):
     return measured(friction, slip_speed=(speed, speed), **changes)
 
 
-def one_way(rng, samples, repeats, between, within):
-    """A balanced one-way model: a mean, samples, repeats of each."""
-    sample = np.repeat(np.arange(samples), repeats)
-    y = -2.3 + between * rng.standard_normal(samples)[sample] + within * rng.standard_normal(len(sample))
-    return LinearModel(y=y, design=np.ones((len(y), 1)), error=np.zeros(len(y)), sample=sample)
-
-
-def analysis_of_variance(model, repeats):
-    """Variances between and within samples from the mean squares: the closed form of a balanced plan."""
-    groups = model.y.reshape(-1, repeats)
-    means = groups.mean(axis=1)
-    within = ((groups - means[:, None]) ** 2).sum() / (groups.size - len(groups))
-    between = repeats * means.var(ddof=1)
-    return (between - within) / repeats, within
-
-
-@pytest.mark.parametrize("seed", [1, 2, 3, 4])
-def test_a_balanced_plan_gives_the_components_of_the_analysis_of_variance(seed):
-    """REML of a balanced one-way plan is the method of mean squares, where that is not negative."""
-    model = one_way(np.random.default_rng(seed), 8, 4, 0.1, 0.05)
-    between, within = analysis_of_variance(model, 4)
-    found = variance_components([model])
-    assert between > 0.0
-    # The search ends where the likelihood changes by 1e-14 of itself, so the place is known to about 1e-6.
-    assert found.between_samples**2 == pytest.approx(between, rel=1e-4)
-    assert found.between_tests**2 == pytest.approx(within, rel=1e-4)
-
-
-def test_samples_that_differ_less_than_their_tests_have_no_scatter_of_their_own():
-    """Where the closed form is negative the estimate is 0, and the other is the plain variance."""
-    rng = np.random.default_rng(5)
-    model = next(
-        m for m in (one_way(rng, 6, 3, 0.0, 0.05) for _ in range(50)) if analysis_of_variance(m, 3)[0] < 0.0
-    )
-    found = variance_components([model])
-    assert found.between_samples < 2e-4  # an edge of the search: 0.05 of its start is left at most
-    assert found.between_tests**2 == pytest.approx(model.y.var(ddof=1), rel=1e-3)
-
-
 def test_the_likelihood_is_that_of_the_whole_covariance_matrix():
     """The sums over samples give what a dense covariance gives by determinant and inverse."""
     rng = np.random.default_rng(6)
@@ -93,17 +54,6 @@ def test_the_likelihood_is_that_of_the_whole_covariance_matrix():
     assert found.log_likelihood[0] == pytest.approx(dense, rel=1e-12)
     assert found.mean[0] == pytest.approx(b, rel=1e-11)
     assert found.covariance[0] == pytest.approx(np.linalg.inv(A), rel=1e-11)
-
-
-def test_variance_components_are_recovered_without_bias():
-    """Over 80 simulated plans the mean of each variance is the true one, within four standard errors."""
-    rng = np.random.default_rng(7)
-    found = [variance_components([one_way(rng, 10, 3, 0.1, 0.05)]) for _ in range(80)]
-    for name, true in (("between_samples", 0.1**2), ("between_tests", 0.05**2)):
-        values = [getattr(one, name) ** 2 for one in found]
-        error = np.std(values) / sqrt(len(values))
-        assert abs(np.mean(values) - true) < 4.0 * error  # one draw in 16000 lies outside
-        assert error < 0.12 * true
 
 
 def test_a_single_test_returns_its_value_with_the_assumed_scatter():

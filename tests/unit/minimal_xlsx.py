@@ -1,34 +1,14 @@
-"""The smallest workbooks, part by part, so that a test can make one wrong in one place."""
+"""Workbooks with what openpyxl does not write: saved values of formulas, parts that a test makes wrong."""
 
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from dataclasses import dataclass
-from xml.sax.saxutils import escape
 
+import openpyxl
 from openpyxl.utils import get_column_letter
-
-SPREADSHEET = "application/vnd.openxmlformats-officedocument.spreadsheetml"
-TYPES = (
-    '<?xml version="1.0" encoding="UTF-8"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/'
-    'content-types"><Default Extension="xml" ContentType="application/xml"/>'
-    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
-    f'<Override PartName="/xl/workbook.xml" ContentType="{SPREADSHEET}.sheet.main+xml"/>'
-    f'<Override PartName="/xl/styles.xml" ContentType="{SPREADSHEET}.styles+xml"/></Types>'
-)
-REL = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-PACKAGE = "http://schemas.openxmlformats.org/package/2006/relationships"
-MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-ROOT = (
-    f'<Relationships xmlns="{PACKAGE}">'
-    f'<Relationship Id="r1" Type="{REL}/officeDocument" Target="xl/workbook.xml"/></Relationships>'
-)
-STYLES = (
-    f'<styleSheet xmlns="{MAIN}"><numFmts count="1">'
-    '<numFmt numFmtId="170" formatCode="hh:mm:ss.000"/></numFmts>'
-    '<cellXfs count="3"><xf numFmtId="0"/><xf numFmtId="170"/><xf numFmtId="9"/></cellXfs></styleSheet>'
-)
 
 
 @dataclass(frozen=True)
@@ -54,54 +34,32 @@ class Fault:
     text: str
 
 
-def parts(sheets: dict[str, list[list[object]]]) -> dict[str, str]:
+def parts(sheets: dict[str, list[list[object]]]) -> dict[str, bytes]:
     """Return the parts of a workbook by their names."""
-    numbered = list(enumerate(sheets.items(), 1))
-    names = "".join(f'<sheet name="{escape(n)}" sheetId="{i}" r:id="r{i}"/>' for i, (n, _) in numbered)
-    links = "".join(
-        f'<Relationship Id="r{i}" Type="{REL}/worksheet" Target="worksheets/sheet{i}.xml"/>'
-        for i, _ in numbered
-    )
-    links += f'<Relationship Id="styles" Type="{REL}/styles" Target="styles.xml"/>'
-    found = {
-        "[Content_Types].xml": TYPES,
-        "_rels/.rels": ROOT,
-        "xl/workbook.xml": f'<workbook xmlns="{MAIN}" xmlns:r="{REL}"><sheets>{names}</sheets></workbook>',
-        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{PACKAGE}">{links}</Relationships>',
-        "xl/styles.xml": STYLES,
-    }
-    return found | {f"xl/worksheets/sheet{i}.xml": sheet(rows) for i, (_, rows) in numbered}
-
-
-def sheet(rows: list[list[object]]) -> str:
-    """Return the part of a sheet."""
-    lines = (
-        f'<row r="{r}">{"".join(cell(r, c, v) for c, v in enumerate(row, 1))}</row>'
-        for r, row in enumerate(rows, 1)
-    )
-    return f'<worksheet xmlns="{MAIN}"><sheetData>{"".join(lines)}</sheetData></worksheet>'
-
-
-def cell(row: int, column: int, value: object) -> str:
-    """Return one cell; nothing for None."""
-    at = f'r="{get_column_letter(column)}{row}"'
-    if value is None:
-        return ""
-    if isinstance(value, Formula):
-        if value.value == "":
-            return f'<c {at} t="str"><f>{escape(value.text)}</f><v></v></c>'
-        saved = "" if value.value is None else f"<v>{value.value!r}</v>"
-        return f"<c {at}><f>{escape(value.text)}</f>{saved}</c>"
-    if isinstance(value, Shown):
-        saved = "" if value.value is None else f"<v>{value.value!r}</v>"
-        return f'<c {at} s="{value.style}">{saved}</c>'
-    if isinstance(value, Fault):
-        return f'<c {at} t="e"><v>{value.text}</v></c>'
-    if isinstance(value, bool):
-        return f'<c {at} t="b"><v>{int(value)}</v></c>'
-    if isinstance(value, str):
-        return f'<c {at} t="inlineStr"><is><t>{escape(value)}</t></is></c>'
-    return f"<c {at}><v>{value!r}</v></c>"
+    book, formulas = openpyxl.Workbook(), []
+    book.remove(book.active)
+    for number, (name, rows) in enumerate(sheets.items(), 1):
+        sheet = book.create_sheet(name)
+        for r, row in enumerate(rows, 1):
+            for c, value in enumerate(row, 1):
+                cell = sheet.cell(r, c) if value is not None else None
+                if isinstance(value, Shown):
+                    cell.value, cell.number_format = value.value, ("", "hh:mm:ss.000", "0%")[value.style]
+                elif isinstance(value, Formula):
+                    cell.value = 0.0
+                    formulas.append((f"xl/worksheets/sheet{number}.xml", f"{get_column_letter(c)}{r}", value))
+                elif value is not None:
+                    cell.value = value.text if isinstance(value, Fault) else value
+                    cell.data_type = "s" if isinstance(value, str) else cell.data_type
+    book.save(made := io.BytesIO())
+    with zipfile.ZipFile(made) as source:
+        found = {name: source.read(name) for name in source.namelist()}
+    for part, at, one in formulas:
+        kind = ' t="str"' if one.value == "" else ""
+        saved = "" if one.value is None else f"<v>{one.value}</v>"
+        new = f'<c r="{at}"{kind}><f>{one.text}</f>{saved}</c>'
+        found[part] = re.sub(rf'<c r="{at}".*?</c>', new, found[part].decode()).encode()
+    return found
 
 
 def zipped(members: dict[str, str | bytes], compression: int = zipfile.ZIP_DEFLATED) -> bytes:
@@ -113,7 +71,6 @@ def zipped(members: dict[str, str | bytes], compression: int = zipfile.ZIP_DEFLA
     return made.getvalue()
 
 
-def workbook(sheets: dict[str, list[list[object]]], **more: str | bytes) -> bytes:
-    """Return a workbook; further or other parts by their names, with / written as __ and . as _dot_."""
-    extra = {name.replace("__", "/").replace("_dot_", "."): content for name, content in more.items()}
-    return zipped(parts(sheets) | extra)
+def workbook(sheets: dict[str, list[list[object]]]) -> bytes:
+    """Return a workbook."""
+    return zipped(parts(sheets))

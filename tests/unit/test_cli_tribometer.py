@@ -195,22 +195,6 @@ def test_a_column_map_says_where_running_in_ends_in_each_file(logs, capsys):
     assert [test["run_in_end"] for test in found] == [360.0, 360.0]
 
 
-@pytest.mark.parametrize(
-    ("end", "words"),
-    [
-        ('"5"', "[files] b.csv.run_in_end must be a time, a distance"),
-        ("5.0", "run_in_end must be a time, a distance"),
-        ('"5 h"', "b.csv: the end of running-in must lie before the end of the test"),
-        ('"5 m"', "b.csv needs a column of distance"),
-    ],
-)
-def test_a_wrong_end_of_running_in_in_a_column_map_is_refused(logs, capsys, end, words):
-    """The line names the map, or the file whose log it does not fit."""
-    (logs / "map.toml").write_text(f"{MAP}run_in_end = {end}\n")
-    assert main(BOTH) == 2
-    assert words in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("more", [[], ["--json"]], ids=["text", "json"])
 def test_a_pattern_that_fits_no_file_is_said_and_with_out_refused(logs, capsys, more):
     """Mistyped, it would lose a sample in silence; who looks at one log of many is only told."""

@@ -8,8 +8,7 @@ from commands import refusal_line, rows_of, written
 
 from separatrix.study.pocket_shape import half_play, tilt
 from separatrix.study.reading import read_study
-from separatrix.study.sources import resolved
-from separatrix.study.study import CageDesign, PocketContact, PocketShape
+from separatrix.study.study import CageDesign, PocketShape
 from separatrix.verbs.check import _cage as checked
 
 EVEN = ", ".join(f'"{360 / 13 * j:.6f} deg"' for j in range(13))
@@ -89,27 +88,6 @@ def test_a_cage_that_cannot_be_is_refused_in_one_line(keys, words, read):
     message = read(keys, read=refusal_line)
     assert words[0] in message
     assert message.startswith("case.toml")
-
-
-KEYS = [
-    ('pocket_axial_offset = "-0.1 mm"\npocket_shape = "cylindrical"', -1e-4),
-    ('pocket_contact = "hertz"', PocketContact.HERTZ),
-    ("pocket_spacing_scatter = 0.1", 0.1),
-    ('pocket_position_scatter = "20 um"', 2e-5),
-    ('ball_diameter_scatter = "1 um"', 1e-6),
-    ('land_out_of_round = "50 um"', 5e-5),
-    ('land_lobes = 3\nland_out_of_round = "50 um"', 3),
-    ('gravity = "1 g0"', 9.80665),
-    (f"pocket_angles = [{EVEN}]", tuple(math.radians(float(one[1:-5])) for one in EVEN.split(", "))),
-]
-
-
-@pytest.mark.parametrize(("text", "value"), KEYS)
-def test_a_key_of_the_cage_is_read_in_its_unit(text, value, read):
-    """To the last bit, and with its place in the file."""
-    study, key = read(cage=text), text.partition(" ")[0]
-    assert getattr(study.cage, key) == pytest.approx(value, rel=1e-15) if key == "pocket_angles" else value
-    assert resolved(study)["cage"][key]["origin"].startswith("case.toml, line ")
 
 
 def test_uneven_pockets_fit_up_to_their_bars(read):

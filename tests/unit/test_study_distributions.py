@@ -151,13 +151,6 @@ def test_values_are_set_together_and_become_certain(study_of):
         with_values(study, {"bearing.ball_diameter": 0.016})
 
 
-def test_a_variant_replaces_an_uncertain_number(study_of, tmp_path):
-    """With `extends` the file above wins, certain or not."""
-    study_of('[film]\nthickness = "0.5 um +- 20 %"\n')
-    text = 'title = "V"\nextends = "case.toml"\n[film]\nthickness = "0.4 um"\n'
-    assert read_study(written(tmp_path, text, "variant.toml")).distributions == {}
-
-
 def test_resolved_inputs_tell_origin_and_distribution(study_of):
     """In the part where the number stands, and in one list of all; the whole is JSON without NaN."""
     study = study_of(

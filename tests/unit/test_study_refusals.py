@@ -129,19 +129,6 @@ def test_a_wrong_file_is_refused_with_place_rule_and_cure(edit, words, tmp_path)
     assert [word for word in ["study.toml", *words[0].split(" ; ")] if word not in message] == [], message
 
 
-BYTES = {
-    "UTF-16": ('title = "Cage"'.encode("utf-16"), "not UTF-8"),
-    "an open string": (b'title = """Cage\n', "not valid TOML"),
-    "only a title": (b'title = "Cage"\n', "lacks: [operation], [bearing], [film]"),
-}
-
-
-@pytest.mark.parametrize(("content", "words"), BYTES.values(), ids=BYTES.keys())
-def test_what_is_no_study_is_refused(content, words, tmp_path):
-    """Whatever the bytes, the answer is one line."""
-    assert words in refusal(written(tmp_path, content))
-
-
 def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
     """Nothing but a regular file is opened, so that a pipe without a writer does not hang."""
     assert "is a folder" in refusal(tmp_path)

@@ -51,10 +51,11 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
 
 
 def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
-    """60 rpm, then 120 rpm behind the end of running-in, on a radius that the head states: 0.251 m/s."""
+    """60 rpm, then 120 rpm behind the end of running-in, on a radius of the map: 0.251 m/s."""
     rows = "".join(f"{i},{0.1 + 0.001 * (i % 3)},{60 if i < 150 else 120}\n" for i in range(300))
-    (tmp_path / "a.csv").write_text(f"Track radius: 20 mm\ntime [s],COF,Speed [rpm]\n{rows}")
-    (test,) = separatrix.tribometer(tmp_path / "a.csv", run_in="150 s").tests
+    (tmp_path / "a.csv").write_text(f"time [s],COF,Speed [rpm]\n{rows}")
+    radius = column_map({"test": {"track_radius": "20 mm"}})
+    (test,) = separatrix.tribometer(tmp_path / "a.csv", run_in="150 s", column_map=radius).tests
     assert test.conditions.slip_speed == pytest.approx(4 * np.pi * 0.02, rel=1e-12)  # rounding
 
 

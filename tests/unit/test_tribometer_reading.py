@@ -239,8 +239,7 @@ def test_the_friction_written_is_read(tmp_path, what):
 
 ANTON_PAAR = raw_logs.anton_paar(FRICTION, TIME)
 STROKES = ANTON_PAAR.replace("Angle [\u00b0]".encode("cp1252"), b"Linear Position [mm]")
-UMT, RTEC = raw_logs.umt(FRICTION, TIME), raw_logs.rtec(FRICTION, TIME)
-BARE_RTEC = raw_logs.rtec(FRICTION, TIME, metadata=False)
+RTEC = raw_logs.rtec(FRICTION, TIME)
 GAPS = csv({"time [s]": TIME, "COF": FRICTION, "temp [C]": np.where(TIME < 1.25, np.nan, 20.0)})
 PATTERNS = {
     "test": {"medium": "gaseous nitrogen", "counterface": "440C", "temperature": "77 K"},
@@ -251,45 +250,29 @@ PATTERNS = {
     },
 }
 FOLDERS = {"files": {"armalon/*.csv": {"material": "Armalon"}, "a.csv": {"sample": "A"}}}
-ANTON = {"sample": "A1", "slip_speed": 0.1, "normal_force": 5.0, "temperature": 295.15}
-TURNING = {"slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5, "sample": "disk 7", "material": "Armalon"}
+RADIUS = {"test": {"track_radius": "15 mm"}}
+ANTON = {"slip_speed": 0.1, "normal_force": 5.0}
+TURNING = {"slip_speed": 4 * math.pi * 0.02, "cycle_time": 0.5, "material": "Armalon"}
 PIN = {"normal_force": "100 N", "pin_diameter": "6 mm"}
 COLD = {"environment": "liquid nitrogen, 440C", "material": "Armalon", "temperature": 77.0}
-UNKNOWN = csv(head=["Load: 50 N", "Pin diameter: 1/4 in", "Speed: as usual"])
 CONDITIONS = {
-    "Anton Paar: radius 15 mm": (ANTON_PAAR, {}, ANTON | {"cycle_time": 2 * math.pi * 0.015 / 0.1}),
+    "Anton Paar, radius of the map": (ANTON_PAAR, RADIUS, ANTON | {"cycle_time": 2 * math.pi * 0.015 / 0.1}),
     "millinewtons": (raw_logs.anton_paar(FRICTION, TIME, nano=True), {}, {"normal_force": 5.0}),
     "a stroke's greatest speed is not its sliding speed": (STROKES, {}, {"slip_speed": None}),
-    "UMT keys without units": (UMT, {}, {"slip_speed": None}),
     "Rtec": (RTEC, {"test": {"track_radius": "20 mm", "material": "Armalon"}}, TURNING),
-    "Rtec, one key is no table": (b"Sample\ndisk 7\n" + BARE_RTEC, {}, {"sample": None}),
-    "Rtec, a bare carriage return": (RTEC.replace(b"e\r\ndisk", b"e\rdisk"), {}, {"sample": "disk 7"}),
     "a speed in rpm": (csv(TWO_MEANINGS | {"Speed [rpm]": 60 * ONE}), {}, {"cycle_time": 1.0}),
-    "a comment": (csv(head=["# material: Armalon"]), {}, {"material": "Armalon"}),
     "a measured column with gaps": (GAPS, {}, {"temperature": 293.15}),
-    "the map before the metadata": (ANTON_PAAR, {"test": {"normal_force": "6 N"}}, {"normal_force": 6.0}),
+    "the map before the column": (ANTON_PAAR, {"test": {"normal_force": "6 N"}}, {"normal_force": 6.0}),
     "pressure of a flat pin": (csv(), {"test": PIN}, {"pressure": 100.0 / (9.0 * math.pi) * 1e6}),
     "patterns, in the order written: armalon_3_ln2.txt": (csv(), PATTERNS, COLD),
     "a pattern with the folder: armalon/a.csv": (csv(), FOLDERS, {"material": "Armalon", "sample": "A"}),
     "a pattern with another folder: peek/a.csv": (csv(), FOLDERS, {"material": None, "sample": "A"}),
-    "a load that is known, a diameter that is not": (UNKNOWN, {}, {"normal_force": 50.0}),
-}
-NOTES = {
-    "a stroke's": ["slip_speed below [test]"],
-    "UMT": [
-        'Velocity 240 has no unit; put slip_speed = "240 <unit>" under [test]',
-        'Radius 15.000 has no unit; put track_radius = "15.000 mm" under [test]',
-    ],
-    "a load": [
-        'Pin diameter 1/4 in is not understood; put pin_diameter = "..." with its unit under [test]',
-        "Speed as usual is not understood",
-    ],
 }
 
 
 @pytest.mark.parametrize("what", CONDITIONS)
 def test_conditions_are_those_of_the_map_and_the_file(tmp_path, what):
-    """In SI, or None with a note: from its lines, its columns, [test] and each pattern that fits."""
+    """In SI, or None with a note: from its columns, [test] and each pattern that fits."""
     content, given, conditions = CONDITIONS[what]
     folder, _, name = what.partition(": ")[2].rpartition("/")
     (tmp_path / folder).mkdir(exist_ok=True)
@@ -297,10 +280,7 @@ def test_conditions_are_those_of_the_map_and_the_file(tmp_path, what):
     found = {key: getattr(log.conditions, key) for key in conditions}
     near = {key: pytest.approx(of, rel=1e-12) for key, of in conditions.items() if isinstance(of, float)}
     assert found == conditions | near  # rounding of units
-    notes = "\n".join(log.notes)
-    assert [
-        words for start, of in NOTES.items() if what.startswith(start) for words in of if words not in notes
-    ] == []
+    assert ("slip_speed below [test]" in "\n".join(log.notes)) == what.startswith("a stroke's")
 
 
 def test_column_map_says_what_names_do_not(tmp_path):
@@ -318,11 +298,7 @@ def test_column_map_says_what_names_do_not(tmp_path):
 
 
 def test_what_stands_beside_the_numbers_is_kept(tmp_path):
-    """Lines above in any code, a name without the file's mark of byte order, a column with gaps, why not."""
-    assert read(tmp_path, csv(separator=";", head=LONG_HEAD)).metadata["key 39"] == "value 39"
-    head = [f"remark {i}: {'a' * 90}" for i in range(250)] + ["place: K\u00f6ln"]
-    assert read(tmp_path, csv(head=head, encoding="cp1252", separator="\t")).metadata["place"] == "K\u00f6ln"
-    assert read(tmp_path, RTEC).metadata["Operator"] == "nobody"
+    """A name without the file's mark of byte order, a column with gaps, why not."""
     assert read(tmp_path, csv(encoding="utf-8-sig")).columns[0].header == "time [s]"
     assert "comma, decimal comma" in read(tmp_path, lines('"t, s","mu"', '"{T}","{F}"')).format
     assert (read(tmp_path, GAPS).rows, np.isnan(read(tmp_path, GAPS).temperature).sum()) == (ROWS, 5)
@@ -352,23 +328,11 @@ SIGN = np.where(np.arange(ROWS) % 20 < 10, 1.0, -1.0)
 LOAD = np.where(np.isin(np.arange(ROWS), (3, 4)), -0.5, 10.0)
 FEW = np.arange(ROWS) % 20 == 5
 TEN = {"Ff [N]": FRICTION * 10.0}
-TORQUES = [("Torque [Nm]", {}, 1.0), ("Drehmoment", {"unit": "N mm"}, 1e3), ("Moment", {"unit": "mNm"}, 1e3)]
 TENFOLD = as_written(FRICTION * 10.0) / 10.0
 BY_TEN = {"test": {"normal_force": "10 N"}}
 
 
-def named(name, unit):
-    """Return a map in which a column of this name and unit is a force on a radius."""
-    return {"columns": {"tangential_force": {"name": name} | unit}, "test": {"track_radius": "20 mm"}}
-
-
 MADE = {  # columns beside the time, the friction made of them, begin of a note, map
-    **{
-        f"a torque that the map names {name}": (
-            *({name: 0.012 * size * ONE, "Fz [N]": 10.0 * ONE}, 0.06 * ONE, "", named(name, unit)),
-        )
-        for name, unit, size in TORQUES
-    },
     "percent": ({"COF [%]": FRICTION * 100.0}, as_written(FRICTION * 100.0) / 100.0, "", None),
     "a constant load of the map": (
         *(TEN, TENFOLD, "friction is |tangential force| / 10 N, the constant given", BY_TEN),
@@ -403,7 +367,6 @@ def test_friction_is_a_magnitude_made_from_what_is_logged(tmp_path, what):
     columns, friction, note, given = MADE[what]
     log = read(tmp_path, csv({"time [s]": TIME} | columns), given and column_map(given))
     np.testing.assert_allclose(log.friction, friction, rtol=ULP)
-    assert ("divided by the radius of the track" in "\n".join(log.notes)) == ("torque" in what)
     assert log.missing == ROWS - len(friction)
     assert any(one.startswith(note) for one in log.notes) or not note
     assert any("negative" in one for one in log.notes) == ("negative" in note)
@@ -422,13 +385,14 @@ def test_a_header_repeated_among_the_rows_does_not_divide_a_test(tmp_path, units
         np.testing.assert_array_equal(log.time, as_written(TIME))
 
 
-def test_a_header_repeated_where_time_begins_anew_begins_a_test(tmp_path):
-    """Without a line between, or with one that names the test."""
+def test_a_header_repeated_where_time_begins_anew_is_refused_and_with_a_line_between_begins_a_test(tmp_path):
+    """Without a line between it is one table, in which time must not run backwards."""
     one, two = (raw_logs.plain_csv({"time [s]": TIME, "COF": f}) for f in (FRICTION, FRICTION + 0.1))
-    for between in (b"", b"\n", b"test B\n"):
-        first, second = read_all(tmp_path, one + between + two)
-        np.testing.assert_array_equal(first.friction, as_written(FRICTION))
-        np.testing.assert_array_equal(second.time, as_written(TIME))
+    with pytest.raises(InputError, match=r"time must not run backwards.* Split the file there"):
+        read_all(tmp_path, one + two)
+    first, second = read_all(tmp_path, one + b"test B\n" + two)
+    np.testing.assert_array_equal(first.friction, as_written(FRICTION))
+    np.testing.assert_array_equal(second.time, as_written(TIME))
 
 
 def test_no_name_and_unit_have_two_meanings():

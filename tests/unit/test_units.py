@@ -57,13 +57,6 @@ def test_every_unit_means_what_pint_says(si, unit, registry):
     assert parse(f"12.5 {unit}", si) == pytest.approx(oracle, rel=4e-16 * 4)
 
 
-def test_the_table_has_about_sixty_units_of_named_quantities():
-    """Each with a word for what it measures, and an SI unit that is its own."""
-    assert 60 <= len(EVERY_UNIT) <= 100
-    assert set(UNITS) == set(units.QUANTITIES)
-    assert all(UNITS[si][si] == "1" for si in UNITS)
-
-
 def test_angle_and_cycles_are_kept_apart():
     """250 Hz of rotation is 500 pi rad/s, to the last bit what 15 000 rpm is, and never 250 rad/s."""
     for text in ("250 Hz", "15000 rpm", "250 rev/s", "0.25 kHz", "90000 deg/s"):
@@ -88,13 +81,6 @@ def test_one_quantity_is_one_float_however_it_is_written(value, si, texts):
     """Exact arithmetic, rounded once: a change of units or of spelling changes nothing."""
     for text in texts.split("|"):
         assert parse(text, si) == value, text
-
-
-def test_temperatures_are_absolute():
-    """Celsius and Fahrenheit are shifted, not scaled."""
-    assert parse("-196.15 degC", "K") == pytest.approx(77.0, rel=1e-15)  # a rounding
-    assert parse("0 °C", "K") == 273.15
-    assert parse("-321.07 degF", "K") == pytest.approx(77.0, rel=1e-15)  # a rounding
 
 
 WRONG = {

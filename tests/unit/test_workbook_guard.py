@@ -1,7 +1,6 @@
 """A workbook is judged before it is read: what its directory declares, and that its parts keep to it."""
 
 import hashlib
-import io
 import struct
 import zipfile
 
@@ -69,14 +68,11 @@ def test_a_short_repetitive_part_is_not_a_bomb(tmp_path):
     refuse_unsafe(bomb(tmp_path, 900_000, besides=20_000))
 
 
-@pytest.mark.parametrize("declared", [10, 5_000, 5_001, 100_000])
+@pytest.mark.parametrize("declared", [10, 5_001])
 def test_a_part_of_another_length_than_it_declares_is_refused(tmp_path, declared):
     """A part of 5 000 bytes that declares another size."""
     content = zipped({"a": b"xyz" * 1_666 + b"xy", "noise": noise(4_000)})
     path = written(tmp_path / "lies.xlsx", patched_directory(content, "a", SIZE, struct.pack("<I", declared)))
-    if declared == 5_000:
-        refuse_unsafe(path)
-        return
     with pytest.raises(InputError, match="not of the length or checksum it declares"):
         refuse_unsafe(path)
 
@@ -119,16 +115,6 @@ def test_a_wrong_archive_is_refused_in_one_line(tmp_path, content, words):
     assert text.startswith("case.xlsx ")
     assert words in text
     assert "\n" not in text
-
-
-@pytest.mark.parametrize("name", ["one.xml", "folder/two.xml"])
-def test_a_damaged_part_is_refused(tmp_path, name):
-    """A byte changed inside a deflated part is found by its checksum or by the expansion itself."""
-    info = zipfile.ZipFile(io.BytesIO(GOOD)).getinfo(name)
-    changed = bytearray(GOOD)
-    changed[info.header_offset + 30 + len(name) + info.compress_size // 2] ^= 0xFF
-    with pytest.raises(InputError, match=r"damaged|not a readable workbook"):
-        refuse_unsafe(written(tmp_path / "case.xlsx", bytes(changed)))
 
 
 def test_too_many_parts_are_refused(tmp_path, monkeypatch):

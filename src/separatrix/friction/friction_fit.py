@@ -25,13 +25,7 @@ from separatrix.friction.friction_law import (
     values_of,
 )
 from separatrix.friction.prediction import Prediction
-from separatrix.friction.scatter import (
-    LinearModel,
-    Posterior,
-    VarianceComponents,
-    posteriors,
-    variance_components,
-)
+from separatrix.friction.scatter import LinearModel, Posterior, posteriors
 from separatrix.ground.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
@@ -133,10 +127,6 @@ class FrictionFit:
 
     groups: Mapping[GroupKey, MaterialFit]
     default_scatter: Ratio
-
-    def components(self) -> VarianceComponents | None:
-        """Scatter that all groups share, by restricted maximum likelihood; None if nothing was repeated."""
-        return variance_components([linear_model(one.tests, one.covariates) for one in self.groups.values()])
 
     def of(self, material: str, environment: str) -> MaterialFit:
         """Fit of one material in one environment."""

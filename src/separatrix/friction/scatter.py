@@ -1,4 +1,4 @@
-"""Scatter between samples and between tests: restricted likelihood, its estimate, its posterior on a grid.
+"""Scatter between samples and between tests: restricted likelihood, and its posterior on a grid.
 
 For one group of tests: ``y = X b + u[sample] + e + m`` with ``u ~ N(0, s2)``, ``e ~ N(0, t2)`` and the
 tests' own errors ``m ~ N(0, se2)``, which are known. Patterson and Thompson, Biometrika 58 (1971) 545:
@@ -16,8 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from separatrix.ground.units import Array, Ratio
-
-_SEARCHED = ((0.0, 30.0), (1e-3, 30.0))  # where both deviations are searched, in units of the residual one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,55 +73,12 @@ def conditional(model: LinearModel, between_samples: Array, between_tests: Array
     return Conditional(log_likelihood=likelihood, mean=mean, covariance=covariance)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VarianceComponents:
-    """Standard deviations of ln f, so relative ones: between samples and between tests of one sample [-].
-
-    `between_tests` is None where no sample was tested twice: then `between_samples` contains both.
-    """
-
-    between_samples: Ratio
-    between_tests: Ratio | None
-
-
-def variance_components(models: Sequence[LinearModel]) -> VarianceComponents | None:
-    """REML estimate of the scatter that several groups share; None if no group has a test to spare."""
-    from scipy.optimize import minimize
-
-    useful = [model for model in models if model.freedom > 0]
-    if not useful:
-        return None
-    separate = any(np.bincount(model.sample).max() > 1 for model in useful)  # a sample was tested twice
-    squares = 0.0  # that ordinary least squares leave
-    for model in useful:
-        b = np.linalg.lstsq(model.design, model.y, rcond=None)[0]
-        squares += float(np.sum((model.y - model.design @ b) ** 2))
-    scale = max(float((squares / sum(model.freedom for model in useful)) ** 0.5), 1e-6)
-
-    def loss(deviations: Array) -> float:
-        s, t = (scale * deviations) if separate else (0.0, scale * deviations[0])
-        nodes = np.array([s * s]), np.array([t * t])
-        return -float(sum(conditional(model, *nodes).log_likelihood[0] for model in useful))
-
-    # begin at the likeliest of a few pairs of deviations
-    sizes, ratios = (grid.ravel() for grid in np.meshgrid(_SIZES, _RATIOS if separate else [0.0]))
-    s, t = sizes * np.sqrt(ratios), sizes * np.sqrt(1.0 - ratios)
-    nodes = (scale * s) ** 2, (scale * t) ** 2
-    best = int(np.argmax(sum(conditional(model, *nodes).log_likelihood for model in useful)))
-    start = [float(s[best]) + 0.05, float(t[best])] if separate else [float(t[best])]
-    bounds = _SEARCHED[-len(start) :]
-    found = minimize(loss, start, method="L-BFGS-B", bounds=bounds, options={"ftol": 1e-14, "gtol": 1e-8})
-    samples, *tests = (float(x) * scale for x in found.x)
-    return VarianceComponents(between_samples=samples, between_tests=tests[0] if separate else None)
-
-
 BETWEEN_GROUPS = 0.2
 """Standard deviation of the logarithm of a group's scatter about that of all groups: a guess."""
 
 OF_THE_ASSUMPTION = 0.3
 """Standard deviation of the logarithm of all groups' scatter about the assumed one: a guess."""
 
-_SIZES, _RATIOS = np.geomspace(0.3, 4.0, 9), np.array([0.0, 0.15, 0.4, 0.7, 0.95])
 _LOGS = np.linspace(-4.0, 4.0, 65)
 _LEAST = 1e-300
 _SHARES = np.sqrt((np.arange(8) + 0.5) / 8.0)

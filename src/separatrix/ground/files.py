@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-import platform
-import re
 import shutil
 import stat
 import tempfile
+import time
 import uuid
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -77,51 +75,30 @@ def unreadable(where: str, error: OSError | ValueError) -> InputError:
 # ---- writing
 
 _AHEAD = ".separatrix-"
-_MINE = re.compile(re.escape(_AHEAD) + r"(?P<host>[0-9a-f]{8})-(?P<process>[0-9]+)-")
+"""Beginning of the names of folders and files written aside."""
 
-
-def _prefix() -> str:
-    """Beginning of the names of files written aside: the machine and the process."""
-    return f"{_AHEAD}{_host()}-{os.getpid()}-"
-
-
-def _host() -> str:
-    return f"{zlib.crc32(platform.node().encode()):08x}"
+LEFT = 86_400.0
+"""Age from which what was written aside is of a killed process [s]: writing takes seconds."""
 
 
 def _remove_left_behind(folder: Path) -> None:
-    """Remove files that processes of this machine wrote aside before they were killed."""
+    """Remove what killed processes wrote aside."""
     for path in folder.glob(f"{_AHEAD}*"):
-        named = _MINE.match(path.name)
-        if named is None or named["host"] != _host() or _is_alive(int(named["process"])):
-            continue
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink(missing_ok=True)
-
-
-def _is_alive(process: int) -> bool:
-    """Whether a process exists; taken as true where the system has no harmless test."""
-    if os.name == "posix":
-        try:
-            os.kill(process, 0)  # sends nothing
-        except ProcessLookupError:
-            return False
-        except (OSError, OverflowError):  # it belongs to another user; or the number is none of a process
-            return True
-    return True
+        with contextlib.suppress(OSError):  # another process may remove it too
+            if path.lstat().st_mtime < time.time() - LEFT:
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
 
 
 @contextmanager
 def staged(folder: Path) -> Iterator[Path]:
     """Yield a folder inside `folder` to write into; at the end its files take their places, all or none.
 
-    Such folders of processes that were killed are removed first. A folder that cannot be written is refused.
+    Those of processes that were killed a day ago are removed first. A folder that cannot be written is
+    refused.
     """
     try:
         _remove_left_behind(folder)
-        with tempfile.TemporaryDirectory(dir=folder, prefix=_prefix()) as stage:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=_AHEAD) as stage:
             yield Path(stage)
             for path in sorted(Path(stage).iterdir()):
                 path.replace(folder / path.name)
@@ -135,7 +112,7 @@ def writable_folder(path: Path) -> Iterator[Path]:
 
     Folders that it made are removed at the end if they are empty. One that cannot be written is refused.
     """
-    probe, missing = path / f"{_prefix()}{uuid.uuid4().hex}", list[Path]()
+    probe, missing = path / f"{_AHEAD}{uuid.uuid4().hex}", list[Path]()
     try:
         try:
             missing += [folder for folder in (path, *path.parents) if not folder.exists()]

@@ -11,14 +11,13 @@ import io
 import math
 import re
 import struct
-import textwrap
+import warnings
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
@@ -27,6 +26,8 @@ from separatrix.ground.units import printable
 if TYPE_CHECKING:
     from openpyxl import Workbook
     from openpyxl.worksheet.worksheet import Worksheet
+
+Made = TypeVar("Made")
 
 MOST_BYTES = 512 * 1024**2
 """Expanded size of the whole workbook."""
@@ -39,6 +40,11 @@ REAL_SIZE = 1024**2
 PIECE = 1024**2
 _ENCRYPTED = 0x1 | 0x40
 SAVE_AGAIN = "Open it in a spreadsheet program and save it again as .xlsx."
+DAMAGED = (
+    *(ValueError, TypeError, LookupError, AttributeError, ArithmeticError, SyntaxError, OSError, EOFError),
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError, AssertionError),
+)
+"""What openpyxl raises for a workbook that is damaged or makes no sense."""
 
 
 def refuse_unsafe(path: Path, label: str | None = None) -> None:
@@ -109,39 +115,44 @@ def _check_content(file: BinaryIO, part: zipfile.ZipInfo, label: str) -> None:
         raise InputError(label, rule, cure=SAVE_AGAIN)
 
 
+def by_sheet(path: Path, label: str, read: Callable[[str, Any, Any], Made | None]) -> dict[str, Made]:
+    """What `read` makes of each sheet, from its name, its saved values and its formulas; None is left out.
+
+    Sheets are read row by row, by their used cells; macros are never run, links to other files not followed.
+    """
+    import openpyxl
+    from openpyxl.utils.exceptions import InvalidFileException
+
+    refuse_unsafe(path, label)
+    found: dict[str, Made] = {}
+    try:
+        with warnings.catch_warnings(), path.open("rb") as file:
+            warnings.simplefilter("ignore")  # on parts of the workbook that are not read
+            saved = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
+            formulas = openpyxl.load_workbook(file, read_only=True, keep_links=False)
+            for sheet in saved.worksheets:
+                for one in (sheet, formulas[sheet.title]):  # what a file states of its size may be wrong
+                    one.reset_dimensions()
+                if (made := read(sheet.title, sheet, formulas[sheet.title])) is not None:
+                    found[sheet.title] = made
+    except InputError:  # which is a ValueError, too
+        raise
+    except (*DAMAGED, InvalidFileException) as error:
+        rule = f"is not a readable workbook: {printable(str(error), 100)}"
+        raise InputError(label, rule, cure=SAVE_AGAIN) from None
+    return found
+
+
 LONGEST_TEXT = 32_000
 """Characters of the longest text of a cell, with room to spare."""
 
 EVALUATED = "=+-@＝＋－＠"
 """Beginnings of a text that spreadsheet programs take for a formula."""
 
-HEADER = "1F3864"
-INPUT = "FFF9E5"
-LINE_HEIGHT = 15.0
-"""Points."""
-
 _STAMP = re.compile(rb"(<dcterms:(created|modified)[^>]*>)[^<]*(</dcterms:)")
 _FIXED = b"2000-01-01T00:00:00Z"
 _CODE = re.compile("_(?=x[0-9A-Fa-f]{4}_)")
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Look:
-    """Look of a cell."""
-
-    bold: bool = False
-    italic: bool = False
-    colour: str = ""
-    """Of the text, as RRGGBB; empty for black."""
-    fill: str = ""
-    wrap: bool = False
-
-
-PLAIN = Look()
-HEADING = Look(bold=True, colour="FFFFFF", fill=HEADER, wrap=True)
-WRAPPED = Look(wrap=True)
-SMALL = Look(italic=True, colour="595959", wrap=True)
 
 
 def new_workbook() -> Workbook:
@@ -155,43 +166,21 @@ def new_workbook() -> Workbook:
     return book
 
 
-def add_sheet(book: Workbook, name: str) -> Worksheet:
-    """Add a sheet at the end; it prints across, as wide as the page."""
-    from openpyxl.worksheet.properties import PageSetupProperties
-
-    sheet: Worksheet = book.create_sheet(name)
-    sheet.page_setup.orientation = "landscape"
-    sheet.page_setup.fitToHeight = 0
-    sheet.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
-    sheet.print_title_rows = "1:1"
-    return sheet
-
-
-def put(
-    sheet: Worksheet, row: int, column: int, value: object, look: Look = PLAIN, *, exact: bool = False
-) -> None:
+def put(sheet: Worksheet, row: int, column: int, value: object) -> None:
     """Write a value into a cell; nothing if it is None.
 
     A text is never a formula: its cell has the type of texts (quotePrefix). A text that a program would
-    evaluate in a text file made from the workbook begins with an apostrophe, unless `exact` is set.
+    evaluate in a text file made from the workbook begins with an apostrophe.
     """
-    from openpyxl.styles import Alignment, Font, PatternFill
-
     cell: Any = sheet.cell(row, column)
     if isinstance(value, str):
-        cell.value = text_for_cell(value, exact=exact)
+        cell.value = text_for_cell(value)
         cell.data_type = "s"
         cell.quotePrefix = is_evaluated(value)
     elif isinstance(value, bool):
         cell.value = "yes" if value else "no"
     elif isinstance(value, int | float) and math.isfinite(value):
         cell.value = value
-    if look.bold or look.italic or look.colour:
-        colour = look.colour or "000000"
-        cell.font = Font(name="Calibri", size=11, bold=look.bold, italic=look.italic, color=colour)
-    if look.fill:
-        cell.fill = PatternFill("solid", fgColor=look.fill)
-    cell.alignment = Alignment(wrap_text=look.wrap, vertical="top")
 
 
 def is_evaluated(text: str) -> bool:
@@ -199,33 +188,10 @@ def is_evaluated(text: str) -> bool:
     return text.lstrip(" \t\r\n")[:1] in tuple(EVALUATED) and re.search(r"\w", text) is not None
 
 
-def text_for_cell(text: str, *, exact: bool = False) -> str:
+def text_for_cell(text: str) -> str:
     """Return a text as a cell may have it: control characters as codes, no beginning of a formula."""
     plain = _CODE.sub("_x005F_", printable(text, LONGEST_TEXT))  # else read as the code of a character
-    return f"'{plain}" if is_evaluated(text) and not exact else plain
-
-
-def headings(sheet: Worksheet, names: Sequence[str], *, keep_columns: int = 0) -> None:
-    """Write a row of headings, which stays in view."""
-    for column, name in enumerate(names, 1):
-        put(sheet, 1, column, name, HEADING)
-    sheet.freeze_panes = sheet.cell(2, keep_columns + 1).coordinate
-
-
-def widths(sheet: Worksheet, *sizes: float) -> None:
-    """Set the widths of columns, in characters, and the heights of rows for their wrapped texts."""
-    from openpyxl.utils import get_column_letter
-
-    for column, size in enumerate(sizes, 1):
-        sheet.column_dimensions[get_column_letter(column)].width = size
-    for number, row in enumerate(sheet.iter_rows(max_col=len(sizes)), 1):
-        lines = 1
-        for cell, size in zip(row, sizes, strict=True):
-            if isinstance(cell.value, str) and cell.alignment.wrap_text:
-                width = max(int(size * (0.85 if cell.font.bold else 1.0)), 1)
-                lines = max(lines, len(textwrap.wrap(cell.value, width)))
-        if lines > 1:
-            sheet.row_dimensions[number].height = LINE_HEIGHT * lines
+    return f"'{plain}" if is_evaluated(text) else plain
 
 
 def add_table(
@@ -235,13 +201,21 @@ def add_table(
     rows: Iterable[Iterable[object]],
     *,
     keep_columns: int = 0,
+    widths: Sequence[float] = (),
 ) -> None:
-    """Add a sheet of headings and rows."""
-    sheet = add_sheet(book, name)
-    headings(sheet, heads, keep_columns=keep_columns)
-    for number, row in enumerate(rows, 2):
+    """Add a sheet of headings, which stay in view, and rows; `widths` are those of columns, in characters."""
+    from openpyxl.styles import Alignment, Font
+    from openpyxl.utils import get_column_letter
+
+    sheet: Worksheet = book.create_sheet(name)
+    for number, row in enumerate((heads, *rows), 1):
         for column, one in enumerate(row, 1):
             put(sheet, number, column, one)
+    for cell in sheet[1]:
+        cell.font, cell.alignment = Font(bold=True), Alignment(wrap_text=True, vertical="top")
+    sheet.freeze_panes = sheet.cell(2, keep_columns + 1).coordinate
+    for column, width in enumerate(widths, 1):
+        sheet.column_dimensions[get_column_letter(column)].width = width
 
 
 def workbook_bytes(book: Workbook) -> bytes:
@@ -257,17 +231,8 @@ def workbook_bytes(book: Workbook) -> bytes:
 
 
 WORKBOOK_ENDINGS = (".xlsx", ".xlsm", ".xltx", ".xls", ".xlsb", ".ods")
-WORKBOOK_MAGICS = (b"PK\x03\x04", b"PK\x05\x06", b"\xd0\xcf\x11\xe0")
 
 
 def is_workbook(path: Path) -> bool:
-    """Whether a file is a workbook, by its name or its first bytes."""
-    if not path.is_file():  # a pipe may never end
-        return False
-    if path.suffix.casefold() in WORKBOOK_ENDINGS:
-        return True
-    try:
-        with path.open("rb") as file:
-            return file.read(4) in WORKBOOK_MAGICS
-    except OSError:
-        return False
+    """Whether a file is a workbook by its name; of those only .xlsx is read."""
+    return path.suffix.casefold() in WORKBOOK_ENDINGS

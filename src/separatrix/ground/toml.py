@@ -53,9 +53,9 @@ _BESIDE = ("ring", "race", "land", "guided")
 """Words that may follow a choice."""
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
-_DOTTED = rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*"
-_KEY_LINE = re.compile(rf"\s*({_DOTTED})[ \t]*=")
-_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({_DOTTED})[ \t]*\]")
+DOTTED = rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*"
+_KEY_LINE = re.compile(rf"\s*({DOTTED})[ \t]*=")
+_HEADER = re.compile(rf"\s*(\[\[?)[ \t]*({DOTTED})[ \t]*\]")
 _STRING_OR_COMMENT = re.compile(
     r'"""(?:\\.|[^\\])*?(?:"""|\Z)'
     r"|'''.*?(?:'''|\Z)"

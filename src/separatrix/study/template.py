@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 import typing
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,20 +11,8 @@ from functools import cache
 from typing import Any
 
 from separatrix.ground.schema import Described, OneOf, is_number, is_record, keys_of, meanings_of
-from separatrix.ground.sheet import (
-    HEADING,
-    INPUT,
-    SMALL,
-    WRAPPED,
-    Look,
-    add_sheet,
-    headings,
-    new_workbook,
-    put,
-    widths,
-    workbook_bytes,
-)
-from separatrix.ground.units import HABITS, NUMBER, UNITS, format_quantity, shown
+from separatrix.ground.sheet import add_table, new_workbook, workbook_bytes
+from separatrix.ground.units import HABITS, UNITS, format_quantity, shown
 from separatrix.ground.workbook import COLUMNS, SEPARATOR, TOP
 from separatrix.study.library import Library
 from separatrix.study.study import ORDER, Study
@@ -43,14 +30,14 @@ A line that starts with # is off: it shows an optional key, with its default or 
 Names of the library: separatrix materials list
 """
 IN_CELLS = """\
-Fill in the yellow cells of each sheet; the names of the sheets and the headings stay as they are.
-A key in bold is required. A key without a value has its default, which its meaning states.
+Fill in the values of each sheet; the names of the sheets and the headings stay as they are.
+A key without a value has its default; its meaning states that, or that the key is required.
 A value is a number, its unit beside it. Ratios and counts have no unit.
 Under +- is the uncertainty of a value: 20 %, or a number in the same unit (two standard deviations).
 Several values are in one cell with ; between them: 0.1; 0.5; 2.
 A material is a name of the library, or has rows of its own: ball_material.elastic_modulus, ...
-Candidates: a row for each cage material, columns for its friction in each environment.
-Or name a table of the library on the sheet ranking; not both.
+Candidates: on the sheet ranking, a row [[candidates]] for each, below it name, friction."air, 440C", ...
+Or name a table of the library or a friction file there; not both.
 Formulas may be used; the value saved with them is read.
 Sheets of your own are not read.
 """
@@ -91,8 +78,6 @@ EXAMPLES = {
     f"{CANDIDATES}.material": '{ elastic_modulus = "5 GPa", poisson_ratio = 0.4 }',
 }
 """Values of the bearing of the template for keys that are off there, where the default shows nothing."""
-
-_QUANTITY = re.compile(rf"\s*({NUMBER}) ?([^0-9\s].*?)?\s*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -255,66 +240,25 @@ def template() -> str:
 # ---- the same as a workbook
 
 
-def quantity_of(value: object, unit: str) -> tuple[str | None, str]:
-    """Number and unit of a value as texts; None for one that is not a quantity of this kind."""
-    if is_number(value):
-        return str(value), ""
-    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
-    return (match[1], match[2]) if match and match[2] in UNITS.get(unit, ()) else (None, "")
-
-
 def template_workbook() -> bytes:
     """The workbook that ``separatrix new PATH.xlsx`` writes; valid as it is."""
     book = new_workbook()
-    sheet = add_sheet(book, "instructions")
-    headings(sheet, ("How to fill this in",))
-    for number, line in enumerate((USE + IN_CELLS).splitlines(), 2):
-        put(sheet, number, 1, line.strip(), WRAPPED)
-    widths(sheet, 110)
+    lines = [[line.strip()] for line in (USE + IN_CELLS).splitlines()]
+    add_table(book, "instructions", ("How to fill this in",), lines, widths=(110,))
     for section in ("", *ORDER):
-        _fill(add_sheet(book, section or TOP), section)
-    sheet, inside = add_sheet(book, "candidates"), ("elastic_modulus", "poisson_ratio")
-    columns = [("", "name"), ("", "material"), ("GPa", inside[0]), ("", inside[1])]
-    environment = str(EXAMPLES["ranking.environment"]).strip('"')
-    columns += [(environment, part) for part in ("mean", "standard_deviation", "count")]
-    for column, heads in enumerate(columns, 1):
-        for row in range(1, 15):
-            look = HEADING if row < 3 else Look(fill=INPUT)
-            put(sheet, row, column, heads[row - 1] if row < 3 else None, look, exact=True)
-    sheet.freeze_panes = "B3"
-    widths(sheet, *[22.0] * len(columns))
+        rows = (row for key in study_keys(section) for row in _rows(key, key.name, key.example))
+        add_table(book, section or TOP, COLUMNS, rows, keep_columns=1, widths=(30, 24, 10, 10, 120))
     return workbook_bytes(book)
 
 
-def _fill(sheet: Any, section: str) -> None:
-    """Write the keys of a section, those without a value too, and lists of the words to choose from."""
-    from openpyxl.worksheet.datavalidation import DataValidation
-
-    headings(sheet, COLUMNS, keep_columns=1)
-    rows = ((key, *cells) for key in study_keys(section) for cells in _cells(key, key.name, key.example))
-    for row, (key, name, value, unit) in enumerate(rows, 2):
-        put(sheet, row, 1, name, Look(bold=key.is_required), exact=True)
-        for column, content in enumerate((value if key.is_on else None, None, unit), 2):
-            put(sheet, row, column, content, Look(fill=INPUT), exact=True)
-        put(sheet, row, 5, key.meaning if name.startswith(key.name) else "", SMALL)
-        if key.is_word and "," not in "".join(key.choices):
-            words = DataValidation(type="list", formula1=f'"{",".join(key.choices)}"', allow_blank=True)
-            words.error = "Choose one of the list."
-            sheet.add_data_validation(words)
-            words.add(f"B{row}")
-    widths(sheet, 30, 24, 10, 10, 90)
-
-
-def _cells(key: StudyKey, name: str, value: object) -> Iterator[tuple[str, object, str]]:
-    """Key, value and unit of the rows of an example; a table has a row for each part."""
+def _rows(key: StudyKey, name: str, value: object) -> Iterator[tuple[object, ...]]:
+    """Rows of an example: one, or one for each part of a table; without the value of a key that is off."""
     if isinstance(value, Mapping):
         for part, item in value.items():
-            yield from _cells(key, f"{name}.{part}", item)
+            yield from _rows(key, f"{name}.{part}", item)
         return
-    items = value if isinstance(value, list) else [value]
-    unit = key.one.unit
-    found = [quantity_of(item, unit) for item in items]
-    plain = [number or item for item, (number, _) in zip(items, found, strict=True)]
-    cell = f"{SEPARATOR} ".join(map(str, plain)) if isinstance(value, list) else plain[0]
-    is_quantity = found[0][0] is not None and not isinstance(value, list)
-    yield name, float(str(cell)) if is_quantity else cell, found[0][1]
+    number, _, unit = str(value).partition(" ")
+    unit = unit if isinstance(value, str) and unit in UNITS.get(key.one.unit, ()) else ""
+    if isinstance(value, list):
+        value = f"{SEPARATOR} ".join(map(str, value))
+    yield name, (float(number) if unit else value) if key.is_on else None, None, unit, key.meaning

@@ -131,7 +131,6 @@ def document(found: ReducedLogs, written: str | None = None) -> Document:
         "files": [{name: plain(getattr(log, name)) for name in OF_A_LOG} for log in found.logs],
         "tests": [plain(one, "test") for one in nodes],
         "fits": [_fit(*key, one) for key, one in fit.groups.items()] if fit else [],
-        "components": None if fit is None else plain(fit.components(), "components"),
         "default_scatter": None if fit is None else fit.default_scatter,
         "units": {"tests": units_of(nodes[0]), "fits": {"tested": tested}},
     }
@@ -147,7 +146,7 @@ def _test(one: Reduction) -> Any:
     return Group(shape(one.test) | ends | {"course": Group(shape(course(one)))})
 
 
-OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "metadata", "notes")
+OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "notes")
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
@@ -291,14 +290,8 @@ def _fits(answer: Part) -> Iterator[Block]:
     yield Note(FIT_LEGEND, "legend")
     for one in answer.fits:
         yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
-    if "components" not in answer:
-        share = show(answer, "default_scatter")
-        yield Note(f"No test was repeated: each is assumed to scatter by {share} of its mean, a guess.")
-        return
-    between = {"between_samples": "between samples", "between_tests": "between tests of one sample"}
-    found = answer.components
-    words = ", ".join(f"{name} {show(found, key)}" for key, name in between.items() if key in found)
-    yield Note(f"Scatter over all materials, by restricted maximum likelihood: {words}.")
+    share = show(answer, "default_scatter")
+    yield Note(f"Without a repeated test a material is assumed to scatter by {share} of its mean, a guess.")
 
 
 def _slopes(fit: Part) -> Iterator[str]:

@@ -12,8 +12,6 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
-
 from separatrix.friction.logs.column_map import (
     ColumnMap,
     column_map_of,
@@ -21,8 +19,7 @@ from separatrix.friction.logs.column_map import (
     shipped_maps,
 )
 from separatrix.friction.logs.draft import Draft, draft_of
-from separatrix.friction.logs.log import RawLog, UnfitError, in_si, raw_log
-from separatrix.friction.logs.names import ABSCISSAE, time_form
+from separatrix.friction.logs.log import RawLog, UnfitError, raw_log
 from separatrix.friction.logs.tables import Block, Content, blocks_of, cells_of, content_of, matching
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import printable, shown
@@ -75,7 +72,7 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
         return _logs(content, given)
     fitting = [one for one in shipped_maps() if all(text in content.beginning for text in one.signature)]
     known = given.over(fitting[0]) if fitting else given
-    why: InputError | None = None
+    why: UnfitError | None = None
     if known.is_complete:
         try:
             return _logs(content, replace(known, is_shipped=True))
@@ -89,10 +86,14 @@ def read_log(path: str | Path, column_map: ColumnMap | None = None) -> tuple[Raw
     stated = {meaning: one for meaning, one in known.columns.items() if meaning in columns.columns}
     name = fitting[0].name if fitting else "plain text"
     columns = replace(columns, columns={**columns.columns, **stated}, name=name)
-    return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
+    try:
+        return tuple(replace(log, notes=(*log.notes, *draft.notes)) for log in _logs(content, columns))
+    except UnfitError as error:
+        draft.form.insert(0, draft.ask("# It does not read the log yet", error.question))
+        raise _unmapped(content, draft, draft.text(content.name), why) from None
 
 
-def _unmapped(content: Content, draft: Draft, text: str, why: InputError | None) -> UnmappedError:
+def _unmapped(content: Content, draft: Draft, text: str, why: UnfitError | None) -> UnmappedError:
     first, count = printable(draft.questions[0], 250).rstrip("?"), len(draft.questions)
     like = "" if why is None else f"is like {draft.given.name}, but not the same, and "
     rule = f"{like}has {count} open questions, the first: {first}"
@@ -162,33 +163,20 @@ def _once(found: Sequence[tuple[str, RawLog]], content: Content, parts: Sequence
 
 
 def _tests(content: Content, columns: ColumnMap) -> list[Block]:
-    """Tables of two rows or more; one under repeated names goes on with the test before it, if time does."""
+    """Tables of two rows or more; one under the names of that before it, with nothing between, goes on."""
     tests: list[Block] = []
     for block in blocks_of(content, columns):
-        if tests and _goes_on(tests[-1], block, columns):
-            tests[-1].rows += block.rows
-            tests[-1].lines = [*tests[-1].lines, *block.lines]
+        before = tests[-1] if tests else None
+        if before and _table_of(before) == _table_of(block) and not any(map(str.strip, block.above)):
+            before.rows += block.rows
+            before.lines = [*before.lines, *block.lines]
         elif len(block.lines) > 1:
             tests.append(block)
     return tests
 
 
-def _goes_on(before: Block, block: Block, columns: ColumnMap) -> bool:
-    """Whether a table under repeated names goes on where the one before it ends: a page of one test."""
-    parts = [(one.source, one.name, one.heads, one.below) for one in (before, block)]
-    if parts[0] != parts[1] or any(line.strip() for line in block.above):
-        return False
-    abscissae = {name: one for name, one in columns.columns.items() if name in ABSCISSAE}
-    rows, lines = before.rows[-1:] + block.rows[:1], [before.lines[-1], block.lines[0]]
-    joint = replace(before, rows=rows, lines=lines)
-    decimal = "," if "," in "".join(rows) and block.separator != "," else "."
-    try:
-        arrays = in_si(joint, replace(columns, columns=abscissae), None, decimal).arrays
-    except InputError:
-        return False
-    clock = time_form(abscissae["time"].unit or "") if "time" in abscissae else ""
-    most = 43_200.0 if clock else np.inf
-    return all(0.0 <= np.diff(one)[0] < most for one in arrays.values() if np.isfinite(one).all())
+def _table_of(block: Block) -> tuple[object, ...]:
+    return block.source, block.name, block.heads, block.below
 
 
 def _by_step(block: Block, columns: ColumnMap) -> Iterator[Block]:

@@ -9,41 +9,17 @@ from importlib.resources import files as files_of
 from pathlib import Path, PurePosixPath
 from typing import Any, ClassVar, Literal
 
-from separatrix.friction.friction_file import Place, place
+from separatrix.friction.logs.conditions import Conditions
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS, SHAPES, known_units, scale_of
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import read_text
-from separatrix.ground.schema import Fault, Faults, between, check, key, keys_of, positive, record
+from separatrix.ground.schema import Fault, Faults, between, check, key, keys_of, record
 from separatrix.ground.toml import Kind, label_of, nearest, parsed
 from separatrix.ground.toml import read_text as text_of
-from separatrix.ground.units import (
-    Kelvin,
-    Metre,
-    MetrePerSecond,
-    Newton,
-    Pascal,
-    RadianPerSecond,
-    Second,
-    SquareMetre,
-    printable,
-    shown,
-)
+from separatrix.ground.units import printable, shown
 
 LAST = between(1, 1_000_000_000)  # numbers of columns and lines
-SEPARATORS = {"tab": "\t", "\t": "\t", ";": ";", ",": ",", "|": "|", "blanks": " ", " ": " "}
-DECIMALS = {".": ".", ",": ",", "point": ".", "comma": ","}
-
-
-def _one_of(known: Mapping[str, str]) -> Any:
-    """Reader of a text that stands for a character."""
-
-    def read(raw: object, *_: object) -> str:
-        if not isinstance(raw, str) or raw not in known:
-            names = ", ".join(f'"{name}"' for name in known if name.isprintable() and name.strip())
-            raise InputError("", f"must be one of {names}", shown(raw))
-        return known[raw]
-
-    return read
+SEPARATORS = {"tab": "\t", ";": ";", ",": ",", "|": "|", "blanks": " "}
 
 
 def _column_name(raw: object, *_: object) -> tuple[str, ...] | int:
@@ -90,8 +66,8 @@ class Column:
 class TextFormat:
     """How the table is written; what is not given the file shows."""
 
-    separator: Literal["\t", ";", ",", "|", " "] | None = key(default=None, read=_one_of(SEPARATORS))
-    decimal: Literal[".", ","] | None = key(default=None, read=_one_of(DECIMALS))
+    separator: Literal["tab", ";", ",", "|", "blanks"] | None = key(default=None)
+    decimal: Literal[".", ","] | None = key(default=None)
     encoding: (
         Literal["utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp1250", "cp932", "gbk"]
         | None
@@ -130,34 +106,6 @@ def _commas(separator: str, decimal: str) -> Faults:
 
 
 @record
-class Stated:
-    """What is stated about a test."""
-
-    material: str | None = key(default=None)
-    counterface: str | None = key(default=None)
-    medium: str | None = key(default=None)
-    sample: str | None = key(default=None)
-    test: str | None = key(default=None)
-    temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
-    slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
-    pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
-    normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
-    cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
-    contact_area: SquareMetre | None = key(positive(1e-18, 1e3), default=None)
-    pin_diameter: Metre | None = key(positive(1e-9, 1e2), default=None)
-    track_radius: Metre | None = key(positive(1e-9, 1e2), default=None)
-    rotational_speed: RadianPerSecond | None = key(positive(1e-9, 1e6), default=None)
-    run_in_end: Place | None = key(default=None, read=lambda raw, *_: place(raw, ""))
-    """Where running-in ends."""
-
-
-QUANTITIES = {name: one.unit for name, one in keys_of(Stated).items() if one.unit}
-"""Conditions that are a number, and the SI unit of each."""
-
-TEXTS = ("material", "counterface", "medium", "sample", "test")  # conditions that are words
-
-
-@record
 class ColumnMap:
     """What is stated about files: their columns, text format, conditions for all and by file pattern."""
 
@@ -171,8 +119,8 @@ class ColumnMap:
 
     columns: Mapping[str, Column] = key(default={})
     format: TextFormat = key(default=TextFormat())
-    test: Stated = key(default=Stated())
-    files: Mapping[str, Stated] = key(default={})
+    test: Conditions = key(default=Conditions())
+    files: Mapping[str, Conditions] = key(default={})
     source: str = ""
     as_written: Mapping[str, Any] = field(default_factory=dict)
     """Sections of the file, for a draft."""
@@ -238,7 +186,7 @@ def _meanings_and_units(columns: Mapping[str, Column]) -> Faults:
 
 
 @check(ColumnMap)
-def _patterns(files: Mapping[str, Stated]) -> Faults:
+def _patterns(files: Mapping[str, Conditions]) -> Faults:
     for pattern in files:
         if not PurePosixPath(pattern).name:
             yield Fault(("files", pattern), "must be a pattern of names of files", 'Write "peek_*.csv".', "")

@@ -12,7 +12,7 @@ import numpy as np
 from separatrix.friction.logs import names as naming
 from separatrix.friction.logs import tables
 from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.conditions import Conditions, conditions_of, metadata_of
+from separatrix.friction.logs.conditions import Conditions, conditions_of
 from separatrix.friction.logs.sliding import Rows, Signal, sliding_rows
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, format_quantity, printable, shown
@@ -33,6 +33,11 @@ TIMES = 'unit = "clock" for 10:00:01.5, "iso" for 2026-02-01 10:00:01, "mm:ss", 
 
 class UnfitError(InputError):
     """A table that its map does not fit: it lacks a column, or states another unit."""
+
+    @property
+    def question(self) -> str:
+        """What a draft asks about it."""
+        return f"{self.rule}: {self.got}. {self.cure}" if self.got else f"{self.rule}. {self.cure}"
 
 
 # --- a log ----------------------------------------------------------------------------------------
@@ -64,8 +69,7 @@ class RawLog:
     slip_speed: Array | None = None  # shape (row,) [m/s]
     missing: int = 0  # rows left out because friction or its abscissa was not there
     columns: tuple[ColumnRead, ...] = ()  # how each was understood
-    metadata: Mapping[str, str] = field(default_factory=dict)  # what the header states, by its name there
-    conditions: Conditions = field(default_factory=Conditions)  # from header, column map and columns
+    conditions: Conditions = field(default_factory=Conditions)  # from column map and columns
     measured: frozenset[str] = frozenset()
     """Conditions that are the median of a column, or follow from one; the others are stated."""
     series: str = ""  # what the header states about the test that this is a part of; empty if nothing
@@ -237,15 +241,24 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
     if meaning in naming.SHAPES:
         return naming.Scale(), (stated or [""])[0]
     where = f'{block.source}: column "{printable(head)}"'
+    if any(map(naming.is_torque, stated)):
+        cure_torque = "Divide it by the radius of the track in the file, and name that column."
+        raise InputError(where, "is a torque, not a force", cure=cure_torque)
 
     def cure(unit: str) -> str:
         line = f"{meaning} = {{ name = {shown(head)}, unit = {shown(unit)} }}"
         return f"Below [columns] of a column map: {line}."
 
+    def alike(scale: naming.Scale) -> bool:
+        """Whether a unit is of the size that the map states; for times as text the map decides."""
+        mapped = column.unit or ""
+        is_text = meaning == "time" and bool(naming.time_form(mapped))
+        return is_text or scale == naming.scale_of(mapped, meaning)
+
     known = {unit: naming.scale_of(unit, meaning) for unit in stated}
     if column.unit is not None:
         for unit, scale in known.items():
-            if columns.is_shipped if scale is None else not _alike(unit, column.unit, meaning):
+            if columns.is_shipped if scale is None else not alike(scale):
                 rule, got = f'is in "{column.unit}" by its map', f'"{printable(unit)}" in the file'
                 raise UnfitError(where, rule, got, cure(unit))
         return naming.scale_of(column.unit, meaning) or naming.Scale(), column.unit
@@ -261,25 +274,16 @@ def scale_for(block: tables.Block, i: int, meaning: str, columns: ColumnMap) -> 
     return (known[stated[0]] or naming.Scale(), stated[0]) if stated else (naming.Scale(), "")
 
 
-def _alike(unit: str, other: str, meaning: str) -> bool:
-    """Whether two units have one size and are of one quantity; for times as text the map decides."""
-    if meaning == "time" and naming.time_form(other):
-        return True
-    same = (naming.torque_scale(unit) is None) == (naming.torque_scale(other) is None)
-    return naming.scale_of(unit, meaning) == naming.scale_of(other, meaning) and same
-
-
-def in_si(block: tables.Block, columns: ColumnMap, radius: float | None, decimal: str | None = None) -> Read:
+def in_si(block: tables.Block, columns: ColumnMap) -> Read:
     """Columns of the map in SI units; of columns of one name, the first, if all have its numbers."""
     notes = list(block.notes)
     places = places_of(block, columns, notes)
     scales = {i: scale_for(block, i, meaning, columns) for meaning, some in places.items() for i in some}
     cells = dict(zip(scales, tables.cells_of(block, list(scales)), strict=True))
     timed = {i: form for i in places.get("time", ()) if (form := naming.time_form(scales[i][1]))}
-    if decimal is None:
-        numeric = [cells[i] for i in sorted(scales) if i not in timed]
-        decimal = columns.format.decimal if block.word == "line" else "."
-        decimal = decimal or decimal_of(numeric, block.separator, block.source)
+    numeric = [cells[i] for i in sorted(scales) if i not in timed]
+    stated = columns.format.decimal if block.word == "line" else "."
+    decimal = stated or decimal_of(numeric, block.separator, block.source)
     absent = [float(one) for one in columns.format.missing if FLOAT.fullmatch(one)]
     arrays: Arrays = {}
     for meaning, some in places.items():
@@ -289,7 +293,7 @@ def in_si(block: tables.Block, columns: ColumnMap, radius: float | None, decimal
             if scales[i][1] == "%":  # a cell shown as a percentage is saved as a fraction
                 values = values * np.where([tables.PERCENT in cell for cell in cells[i]], 100.0, 1.0)
             values = np.where(np.isin(values, absent), np.nan, values) if absent else values
-            made.append(_scaled(block, values, i, meaning, *scales[i], columns, radius, notes))
+            made.append(_scaled(block, values, i, meaning, *scales[i], columns.columns[meaning].sign))
         both = np.isfinite(made).all(axis=0)
         if any(not np.array_equal(made[0][both], other[both]) for other in made[1:]):
             listed = ", ".join(f'"{printable(block.heads[i].strip())}"' for i in some)
@@ -308,18 +312,13 @@ def _values(
 ) -> Array:
     """Numbers or seconds of a column; refused with the row of what is neither."""
     own = {one.casefold() for one in marks}
-    missing = naming.MISSING | own | {f"{tables.ERROR}{one}" for one in own}
+    missing = naming.MISSING | own
     values, wrong = seconds(cells, form, missing) if form else numbers(cells, decimal, missing)
     if not wrong:
         return values
     cell, where = cells[wrong[0]], block.at(wrong[0], i)
-    if cell == tables.UNCOMPUTED:
-        cure = "Open the workbook in a spreadsheet program and save it."
-        raise InputError(where, "holds a formula without a saved value", cure=cure)
-    bare = cell.lstrip(tables.ERROR).rstrip(tables.PERCENT)
+    bare = cell.rstrip(tables.PERCENT)
     cure = f"If that means a missing value, add below [format] in the column map: missing = [{shown(bare)}]."
-    if cell.startswith(tables.ERROR):
-        raise InputError(where, "holds an error", bare, cure)
     got = f'"{printable(bare)}"'
     if form:
         raise InputError(where, f'must be a time ("{form}")', got, f"Forms of times: {TIMES}.")
@@ -329,28 +328,12 @@ def _values(
 
 
 def _scaled(
-    block: tables.Block,
-    values: Array,
-    i: int,
-    meaning: str,
-    size: naming.Scale,
-    unit: str,
-    columns: ColumnMap,
-    radius: float | None,
-    notes: list[str],
+    block: tables.Block, values: Array, i: int, meaning: str, size: naming.Scale, unit: str, sign: float
 ) -> Array:
-    """A column in SI units; a torque divided by the radius of the track."""
+    """A column in SI units."""
     head = block.heads[i].strip()
     where = f'{block.source}: column "{printable(head)}"'
-    if meaning == "tangential_force" and naming.torque_scale(unit) is not None:
-        if radius is None:
-            line = f'tangential_force = {{ name = {shown(head)}, unit = "{unit}" }}'
-            cure = f'In a column map: {line} below [columns], and track_radius = "... mm" below [test].'
-            raise UnfitError(where, "is a torque, not a force", cure=cure)
-        notes.append(f"the torque is divided by the radius of the track, {format_quantity(radius, 'm')}")
-        size = naming.Scale(size.factor / radius)
-    sign = -1.0 if columns.columns[meaning].sign < 0 and meaning != "time" else 1.0
-    found = (values * size.factor + size.offset) * sign
+    found = (values * size.factor + size.offset) * (sign if meaning != "time" else 1.0)
     if meaning == "temperature" and (below := np.flatnonzero(found < -1e-9)).size:
         got = f"{float(values[below[0]]):g}"
         line = f'temperature = {{ name = {shown(head)}, unit = "..." }}'
@@ -367,7 +350,7 @@ def raw_log(
     """Log of one table, with the conditions that the column map states for its file."""
     source = f"{content.name}, {printable(block.name)}" if block.name else content.name
     radius = given.get("track_radius")
-    read = in_si(block, columns, radius)
+    read = in_si(block, columns)
     notes = read.notes
     if naming.looks_extreme(head := read.head("friction")):
         notes.append(f'the column of friction, "{printable(head)}", is not a mean friction by its name')
@@ -377,14 +360,9 @@ def raw_log(
     if turns and radius is not None and "slip_speed" not in arrays:
         arrays["slip_speed"] = turns["rotational_speed"] * radius
         notes.append(f"slip speed is rotational speed times {format_quantity(radius, 'm')}")
-    metadata = metadata_of(block.above)
-    useful = _without_stroke_speed(metadata, read, arrays)
+    _drop_stroke_speed(read, arrays)
     is_text = block.word == "line"
-    decimal = read.decimal if is_text else ""
-    conditions, measured, sentences = conditions_of(given, useful, arrays | turns, source, decimal)
-    if turns and "slip_speed" in measured and conditions.slip_speed and "slip_speed" not in arrays:
-        speed = turns["rotational_speed"]  # the radius of the track is in the head of the file
-        arrays["slip_speed"] = speed * (conditions.slip_speed / float(np.nanmedian(speed)))
+    conditions, measured, sentences = conditions_of(given, arrays | turns, source)
     sign = "comma" if read.decimal == "," else "point"
     form = f", {tables.SEPARATED[block.separator]}, decimal {sign}" if is_text else ""
     return RawLog(
@@ -393,7 +371,6 @@ def raw_log(
         format=f"{columns.name} ({content.words}{form})",
         missing=missing,
         columns=_columns_read(columns, read),
-        metadata=metadata,
         conditions=conditions,
         measured=measured,
         notes=(*notes, *sentences),
@@ -534,15 +511,11 @@ def _complete(arrays: Arrays, block: tables.Block, source: str) -> Rows:
     return kept
 
 
-def _without_stroke_speed(metadata: Mapping[str, str], read: Read, arrays: Arrays) -> dict[str, str]:
-    """Metadata, and columns, without the greatest speed of a stroke: it is not the speed of sliding."""
-    speeds = [key for key in metadata if "slip_speed" in naming.conditions_named(key)]
+def _drop_stroke_speed(read: Read, arrays: Arrays) -> None:
+    """Leave out the greatest speed of a stroke: it is not the speed of sliding."""
     is_stroke = naming.plain(read.head("position")).startswith(("linear position", "lin position"))
-    if not is_stroke or not (speeds or "slip_speed" in arrays):
-        return dict(metadata)
-    arrays.pop("slip_speed", None)
-    read.notes.append(
-        "these are strokes there and back: the file has their greatest speed, which is not used; write "
-        "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
-    )
-    return {key: value for key, value in metadata.items() if key not in speeds}
+    if is_stroke and arrays.pop("slip_speed", None) is not None:
+        read.notes.append(
+            "these are strokes there and back: the file has their greatest speed, which is not used; write "
+            "the mean as slip_speed below [test] (2/pi of the greatest, if the motion is sinusoidal)"
+        )

@@ -35,12 +35,8 @@ NAMES: dict[str, list[frozenset[str]]] = {
 }
 """Names of each meaning; a name in an earlier entry is preferred to one in a later."""
 
-KEYS = {key: frozenset(names.split("; ")) for key, names in _TABLE["conditions"].items()}
-"""Names of each condition in the lines above a table."""
-
 ALIASES: dict[str, dict[str, str]] = _TABLE["units"]  # spellings beyond study files, by the size of each
 SYMBOLS: dict[str, list[str]] = _TABLE["symbols"]  # they may follow a name of their meaning
-TORQUES: dict[str, float] = _TABLE["torques"]
 _WORDS = {key: frozenset(words.split()) for key, words in _TABLE["words"].items()}
 MISSING = _WORDS["missing"] | {""}  # how files write a missing value
 REMARKS = _WORDS["remarks"]  # names of a last column that rows leave out
@@ -56,7 +52,7 @@ _NONE = frozenset({"", "-", "--", "1", "none", "dimensionless", "n/n", "unitless
 UNIT_WORDS = frozenset(
     [spelling.casefold() for table in units.UNITS.values() for spelling in table]
     + [word for table in ALIASES.values() for group in table.values() for word in group.split("; ")]
-    + [*(unit.casefold() for unit in TORQUES), *_WORDS["other_units"], *_WORDS["counts"], *_NONE]
+    + [*_WORDS["torques"], *_WORDS["other_units"], *_WORDS["counts"], *_NONE]
     + ["gf", "kgf", "n.a.", "n m", "n mm", "n\u00b7m", "n\u00b7mm", "\u00b5m", "\u03bcm"]
 )
 """What may be in a row of units, in small letters."""
@@ -97,8 +93,6 @@ def scale_of(unit: str, meaning: str) -> Scale | None:
     spelling = unit.strip()
     if meaning in SHAPES or (meaning == "time" and time_form(spelling)):
         return Scale()
-    if meaning == "tangential_force" and torque_scale(spelling) is not None:
-        return torque_scale(spelling)  # to be divided by the radius of the track
     if MEANINGS[meaning] != "-":
         return scale_in(spelling, MEANINGS[meaning])
     if meaning == "friction" and spelling == "%":
@@ -135,10 +129,9 @@ def time_form(unit: str) -> str:
     return next((form for form, spellings in CLOCKS.items() if spelling in spellings), "")
 
 
-def torque_scale(unit: str) -> Scale | None:
-    """How to bring a torque in that unit to N m; None where the unit is not one of torque."""
-    text = re.sub(r"[\s.*\u00b7\u22c5-]+", "", unit.replace("\u00b5", "u").replace("\u03bc", "u"))
-    return Scale(TORQUES[text]) if text in TORQUES else None
+def is_torque(unit: str) -> bool:
+    """True for a unit of torque: a column of it is not a force."""
+    return re.sub(r"[\s.*\u00b7\u22c5-]+", "", plain(unit)) in _WORDS["torques"]
 
 
 def known_units(meaning: str) -> str:
@@ -164,12 +157,6 @@ def header_parts(header: str) -> list[tuple[str, str]]:
     return [(text, "")] + [(one[1].strip(), one[2].strip()) for one in patterns if one and one[2] != "1"]
 
 
-def conditions_named(key: str) -> list[str]:
-    """Conditions that a key above a table may be of, the likelier first."""
-    name = plain(header_parts(key)[0][0])
-    return [condition for condition, names in KEYS.items() if name in names]
-
-
 def ranks(name: str) -> dict[str, int]:
     """Meanings that a name may have, each with its place in the list of names."""
     words = plain(name)
@@ -183,22 +170,6 @@ def ranks(name: str) -> dict[str, int]:
 
 
 # --- what a name looks like, for a draft ----------------------------------------------------------
-def looks_like_torque(header: str, unit: str = "") -> bool:
-    """True for a column of torque, by its unit or by its name."""
-    written = (unit, *(part for _, part in header_parts(header)))
-    named = any(word == "couple" or word.endswith(("torque", "moment")) for word in plain(header).split())
-    force = any(scale_in(one, "N") is not None for one in written if one)
-    return any(torque_scale(one) is not None for one in written) or (named and not force)
-
-
-def looks_like_friction(header: str) -> bool:
-    """True for a name that may be that of a coefficient of friction; never for a force."""
-    words = plain(header)
-    parts = ("cof", "coef", "fric", "reib", "frott", "traction")
-    named = any(part in words for part in parts) or "mu" in words.split()
-    return named and not looks_like_force(header)
-
-
 def looks_extreme(header: str) -> bool:
     """True for a name of an extreme or a scatter of what it names, and not of its mean."""
     return not _WORDS["extremes"].isdisjoint(plain(header).split())

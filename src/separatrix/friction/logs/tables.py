@@ -1,9 +1,9 @@
 """Tables of a file: of its text, or of the sheets of a workbook.
 
 A sheet is a text with tabs whose row n is line n: it is read by its used cells, wherever the last one is.
-Formulas have the value saved with them; dates and times of day are written as such. Nothing here knows what
-a column means: a table begins at the line with the names that a column map needs, and a line that is not a
-row of it is refused.
+Formulas have the value saved with them, or none; dates and times of day are written as such. Nothing here
+knows what a column means: a table begins at the line with the names that a column map needs, and a line that
+is not a row of it is refused.
 """
 
 from __future__ import annotations
@@ -12,19 +12,16 @@ import codecs
 import datetime
 import hashlib
 import re
-import warnings
-import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from separatrix.friction.logs.column_map import ColumnMap, TextFormat
+from separatrix.friction.logs.column_map import SEPARATORS, ColumnMap, TextFormat
 from separatrix.friction.logs.names import MISSING, REMARKS, UNIT_WORDS, header_parts, ranks
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import size_of, unreadable
-from separatrix.ground.sheet import SAVE_AGAIN, refuse_unsafe
+from separatrix.ground.sheet import by_sheet
 from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
 
@@ -46,9 +43,8 @@ Needed = Sequence[tuple[str, ...]]  # columns that a table must have, each by on
 STARTS = frozenset("0123456789+-.")
 
 BOUND = "\x04"  # in place of a separator in quotes
-PERCENT, ERROR, UNCOMPUTED = "\x01", "\x02", "\x03"
-"""Signs in the text of a sheet: behind a fraction shown as a percentage, before an error, for a formula
-without a saved value."""
+PERCENT = "\x01"
+"""Sign in the text of a sheet, behind a fraction that is shown as a percentage."""
 
 
 @dataclass(slots=True)
@@ -126,31 +122,12 @@ MOST_ROWS = 1_048_576  # that a sheet can have
 _LITERAL = re.compile(r'"[^"]*"|\\.')
 """Part of a number format that is shown as it is: a % in it does not make a percentage."""
 
-_BLANKS = str.maketrans("\t\r\n\x01\x02\x03\x04", "       ")
-# what openpyxl raises for a workbook that is damaged or makes no sense
-_DAMAGED = (
-    *(ValueError, TypeError, LookupError, AttributeError, ArithmeticError, SyntaxError, OSError, EOFError),
-    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RecursionError, AssertionError),
-)
+_BLANKS = str.maketrans("\t\r\n\x01\x04", "     ")
 
 
 def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     """Return the lines of each sheet with a number in it, by its name."""
-    import openpyxl
-    from openpyxl.utils.exceptions import InvalidFileException
-
-    refuse_unsafe(path, label)
-    try:
-        with warnings.catch_warnings(), path.open("rb") as file:
-            warnings.simplefilter("ignore")
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True, keep_links=False)
-            formulas = openpyxl.load_workbook(file, read_only=True, keep_links=False)
-            found = {one.title: _lines(one, formulas[one.title], label) for one in book.worksheets}
-    except InputError:
-        raise
-    except (*_DAMAGED, InvalidFileException) as error:
-        rule = f"is not a readable workbook: {printable(str(error), 100)}"
-        raise InputError(label, rule, cure=SAVE_AGAIN) from None
+    found = by_sheet(path, label, lambda _, saved, __: _lines(saved, label))
     found = {title: lines for title, lines in found.items() if any(re.search(r"\d", one) for one in lines)}
     if not found:
         cure = "Put the names of the columns in one row, and the numbers (not as text) below."
@@ -158,14 +135,11 @@ def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     return found
 
 
-def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
+def _lines(sheet: Any, label: str) -> list[str]:
     """Lines of a sheet, of equal length where there is a number in them; empty where no cell is used."""
     from openpyxl.cell.read_only import EmptyCell
 
     rows: dict[int, dict[int, str]] = {}
-    empty: set[tuple[int, int]] = set()  # cells that are there, without a value
-    for one in (sheet, formulas):  # else each row is filled up to the last column that the sheet declares
-        one.reset_dimensions()
     count = 0
     for number, row in enumerate(sheet.iter_rows(), 1):
         cells = [(i, one) for i, one in enumerate(row[:MOST_COLUMNS]) if not isinstance(one, EmptyCell)]
@@ -174,18 +148,13 @@ def _lines(sheet: Any, formulas: Any, label: str) -> list[str]:
             raise ValueError(f"row {number}")
         if count > MOST_CELLS:
             raise InputError(label, f"has more than {MOST_CELLS} cells", cure="Save it as CSV.")
-        empty |= {(number, i) for i, one in cells if one.value is None and one.data_type == "n"}
         if used := {i: text for i, one in cells if (text := _written(one))}:
             rows[number] = used
-    for number, row in enumerate(formulas.iter_rows() if empty else (), 1):
-        unknown = [i for i, one in enumerate(row) if (number, i) in empty and one.data_type == "f"]
-        if unknown:
-            rows[number] = rows.get(number, {}) | dict.fromkeys(unknown, UNCOMPUTED)
     table = [used for used in rows.values() if sum(text[0].isdigit() for text in used.values()) > 1]
     width = max((max(used) for used in table), default=0)
     lines = [""] * max(rows, default=0)
     for number, used in rows.items():
-        has_numbers = any(text[:1] in f"0123456789-.{ERROR}{UNCOMPUTED}" for text in used.values())
+        has_numbers = any(text[:1] in "0123456789-.#" for text in used.values())
         last = max(width, *used) if has_numbers or len(used) > 1 else max(used)
         lines[number - 1] = "\t".join(used.get(i, "") for i in range(last + 1))
     return lines
@@ -196,8 +165,6 @@ def _written(cell: Any) -> str:
     value = cell.value
     if value is None:
         return ""
-    if cell.data_type == "e":
-        return f"{ERROR}{value}"
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         is_percentage = "%" in _LITERAL.sub("", cell.number_format)
         return repr(float(value)) + (PERCENT if is_percentage else "")
@@ -307,7 +274,7 @@ def is_row(fields: Sequence[str], missing: Iterable[str] = MISSING, *, blanks: b
             numbers += 1
         elif is_clock(one):
             clocks += 1
-        elif _WORD.match(one) or one[:1] in (ERROR, UNCOMPUTED):
+        elif _WORD.match(one):
             words += 1
         else:
             return False
@@ -416,7 +383,7 @@ def blocks_of(content: Content, columns: ColumnMap) -> list[Block]:
 def separator_in(part: Part, form: TextFormat) -> tuple[str, list[str]]:
     """The separator that is stated, or that a text shows, with others that it may be; empty for none."""
     if part.sheet or form.separator:
-        return ("\t" if part.sheet else form.separator or ""), []
+        return ("\t" if part.sheet else SEPARATORS[form.separator or "tab"]), []
     return separator_of(part.lines, MISSING | {one.casefold() for one in form.missing})
 
 

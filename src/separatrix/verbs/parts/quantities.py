@@ -229,8 +229,6 @@ QUANTITIES: dict[str, Quantity] = {
     "cycle_time": Q(label="time of a cycle", digits=4),
     "run_in_end": Q(label="end of running-in", head="running-in ends", digits=4),
     "steady_end": Q(label="end of the steady part", head="steady until", digits=4),
-    "between_samples": Q(label="scatter between samples", unit="%", digits=2),
-    "between_tests": Q(label="scatter between tests of one sample", unit="%", digits=2),
     "default_scatter": Q(label="assumed scatter", unit="%"),
 }
 
