@@ -11,8 +11,6 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from separatrix.chain.creep import Creep
-from separatrix.chain.exact.grid import elliptic_grid
-from separatrix.chain.exact.operator import rolling_operator
 from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
 from separatrix.chain.exact.slip import FrictionLaw, rough_compliance
 from separatrix.chain.exact.slope import traction_slope
@@ -53,17 +51,6 @@ def test_rough_interface_alone_slips_at_one_distance(creep):
     found = kalker(alone(40, friction=MU), xi=creep * MU / B)
     assert -found.force == pytest.approx(exact, rel=1e-3)
     assert found.stick_share == pytest.approx(1.0 if creep < 0.6 else 2.0 / math.pi / creep, abs=0.04)
-
-
-def test_uniform_pressure_is_a_film_in_series():
-    """L = l/p on whole and cut cells alike; the operators are equal."""
-    grid = elliptic_grid(semi_minor=B, semi_major=1.0, columns=12, rows=10)
-    bodies = body(0.25), body(0.25)
-    rough = rough_compliance(grid, 2.0 * grid.fraction, 0.3)
-    assert rough == pytest.approx(np.where(grid.fraction > 0.0, 0.15, 0.0), rel=1e-14)
-    one, other = (rolling_operator(grid, bodies, L) for L in (rough, np.full(grid.shape, 0.15)))
-    assert one.local == pytest.approx(other.local, rel=1e-12)
-    assert one.upstream == pytest.approx(other.upstream, rel=1e-12)
 
 
 def test_smooth_surfaces_are_no_film():
