@@ -145,13 +145,6 @@ def test_slip_by_the_pressure_moves_free_rolling():
         TractionSettings(pressure_slip=PressureSlip.INCLUDED)
 
 
-def test_a_worn_film_has_the_pressure_of_hertz():
-    """Its thickness varies; it is in series."""
-    worn = replace(COATED, wear=Wear(friction=0.3, share=0.1))
-    with pytest.raises(InputError, match=r'Study.traction.pressure must be "hertz"'):
-        study(worn, traction=TractionSettings(pressure=ContactPressure.COATED))
-
-
 def test_the_exact_contact_is_solved_once(monkeypatch):
     """The range of the strips takes the exact contact of the chain."""
     _ = solve(study(traction=EXACT, cage=CAGE)).traction

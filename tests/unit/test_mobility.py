@@ -11,14 +11,6 @@ from separatrix.front import api, main
 from separatrix.study.study import Wear, Worn
 
 
-def test_a_study_without_a_cage_has_a_mobility():
-    """Rates in their order, and one picture."""
-    answer = api.mobility("le7")
-    document = answer.document()
-    assert document["rates"] == sorted(document["rates"])
-    assert answer.plot("mobility").axes
-
-
 def test_document_and_table_of_a_wheel():
     """Units and places of the keys; the main table is the push."""
     answer = api.mobility("momentum-wheel")

@@ -230,14 +230,6 @@ def test_one_state_decides_alone_where_it_is_enough():
     assert a.judgement.ball_reason.endswith("below 25 % one state is enough.")
 
 
-def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
-    """Thresholds need the critical friction alone."""
-    curve = rank(quick_study(ranking=asked(("A", Friction(mean=0.1))))).stability
-    assert curve.band is False
-    assert {point.critical_friction_low for point in curve.curve} == {None}
-    assert (curve.here.critical_friction_low, curve.here.critical_friction_high) != (None, None)
-
-
 def test_scatter_of_the_friction_widens_the_threshold():
     """A friction known to 0.04 leaves a wider threshold than one taken as exact."""
     exact, scattered = (

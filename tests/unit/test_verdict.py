@@ -11,7 +11,7 @@ from cages import ensemble
 from scipy import stats
 
 from separatrix.cage import Cause, RunOutcome
-from separatrix.cage.closed_forms import drive_energy, room
+from separatrix.cage.closed_forms import drive_energy
 from separatrix.chain.ball_traction import BallTraction, FreeBall, SlipField
 from separatrix.study.study import BallModel, Guidance, MotionModel, PocketShape
 from separatrix.verdict import judgement
@@ -290,12 +290,6 @@ def test_the_growth_rate_is_the_mean_at_the_worst_kick_with_students_interval():
     assert (result.growth_rate_low, result.growth_rate_high) == pytest.approx(tuple(expected), rel=1e-9)
 
 
-def test_one_run_has_no_interval():
-    """There is no scatter to see in one run: absent, not a number that looks like one."""
-    result = judge(CAGE, ensemble([[SETTLES]]))
-    assert (result.growth_rate_low, result.growth_rate_high) == (None, None)
-
-
 def test_the_whirl_ratio_is_the_orbits_speed_over_the_ball_sets():
     """Median of the runs that whirl, as most do, three times backward; a ball set at rest has none."""
     runs = ensemble([[WHIRLS] * 9 + [SETTLES] * 7], orbit_speed=[-2010.0] * 9 + [670.0] * 7)
@@ -328,14 +322,6 @@ def test_the_class_of_motion_is_that_of_most_runs_from_the_worst_kick():
     assert judge(GUIDED, rest).cage_motion is ON_THE_LAND
 
 
-def test_a_settled_cage_that_rubs_states_force_speed_and_power():
-    """Medians over the settled runs; the power is that of the friction: 0.1 times force times speed."""
-    rubbing = {"rubbing_force": [[2.0, 4.0, 6.0, 4.0, 90.0]], "rubbing_speed": [[3.0, 3.0, 3.0, 3.0, 9.0]]}
-    result = judge(GUIDED, ensemble([[SETTLES] * 4 + [WHIRLS]], **rubbing))
-    assert (result.rubbing_force, result.rubbing_speed) == (4.0, 3.0)
-    assert result.rubbing_power == pytest.approx(0.1 * 4.0 * 3.0, rel=1e-12)  # rounding
-
-
 def test_gravity_unbalance_and_leading_balls_drive_too():
     """(M/2)(Omega w)^2, 2 w (M g + U Omega^2) over the room w = 0.2 mm, (M + J/R^2)(2 V)^2/2, V = 5 cm/s."""
     assert drive_energy(GUIDED) == pytest.approx(0.5 * 0.05 * (670.0 * 2e-4) ** 2, rel=1e-12)  # rounding
@@ -363,12 +349,6 @@ def test_a_leaning_axis_and_gravity_along_it_drive_in_space():
     assert drive_energy(held) == drive_energy(plain) == drive_energy(flat)
     wet = replace(plain, added_mass=0.03)
     assert drive_energy(wet) == pytest.approx(0.08 / 0.05 * drive_energy(plain), rel=1e-12)
-
-
-def test_the_room_is_the_land_or_the_pockets():
-    """0.2 mm to the land; 0.3 mm of half play without one."""
-    assert (room(GUIDED), room(CAGE)) == (2e-4, 3e-4)
-    assert math.isinf(CAGE.land_gap)
 
 
 def test_evidence_is_the_worst_of_forces_and_offsets_and_the_median_of_the_rest():
