@@ -15,11 +15,6 @@ def toeplitz(nodes, lam):
     return strip_influence(nodes, lam)[i[:, None] - i[None, :] + nodes - 1]
 
 
-def carter(creep):
-    """Traction over mu P of a bare strip, T/(mu P) = 1 - (1 - |xi|/xi_s)^2."""
-    return 1.0 - (1.0 - creep) ** 2
-
-
 def table_value(creep, lam):
     """F and dF/dc of the default master table."""
     return master_traction(creep, lam, film_tables(200)[0])

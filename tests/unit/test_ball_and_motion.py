@@ -8,14 +8,11 @@ import numpy as np
 import pytest
 from commands import refused
 
-from separatrix.cage import moving_cage
 from separatrix.chain.ball_traction import BallTraction
-from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.study.cage_body import cage_inertia, ring_body
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
-    CageModel,
     MotionModel,
     PocketShape,
     StabilitySettings,
@@ -95,17 +92,6 @@ def test_a_cage_that_cannot_be_is_refused(keys, said):
     """Sizes that leave no cage, lands beside it, an inertia that no body has: a line each."""
     with pytest.raises(InputError, match=re.escape(said)):
         shipped(**keys)
-
-
-@pytest.mark.parametrize("model", list(CageModel))
-def test_a_model_is_asked_for_on_the_command_line(model):
-    """--model sets the key of the cage, with itself as the origin."""
-    study = read_study("cryogenic-turbopump", model.value)
-    assert study.origins["cage.model"] == f"--model {model.value}"
-    study = replace(study, cage=replace(study.cage, pocket_shape=PocketShape.CYLINDRICAL))
-    cage = moving_cage(solve(study), 0.1)
-    is_full = model is CageModel.FULL
-    assert (cage.is_in_space, cage.traction == solve(study).mobility.traction) == (is_full, is_full)
 
 
 ASKED = [

@@ -44,12 +44,15 @@ def moving(asked) -> MovingCage:
 
 
 CONTROLLED = Kinematics(model=KinematicModel.OUTER_RACE_CONTROL)
+BARE = study(film=Film(race_friction=0.0), kinematics=CONTROLLED)
 STILL = study(operation=replace(STUDY.operation, inner_speed=0.0))
 NAMELESS = cage(ball_cage_stiffness=None, material=None, material_name=None)
 REFUSED = [
     (STILL, "traction", "inner_speed must differ from outer_speed"),
     (STILL, "restitution", "inner_speed must differ from outer_speed"),
-    (study(film=Film(race_friction=0.0), kinematics=CONTROLLED), "traction", "race_friction must be > 0"),
+    (STILL, "mobility", "inner_speed must differ from outer_speed"),
+    (BARE, "traction", "race_friction must be > 0"),
+    (BARE, "mobility", "race_friction must be > 0"),
     (study(cage=None), "restitution", r"lacks the section \[cage\]"),
     (NAMELESS, "ball_cage_stiffness", r"ball_cage_stiffness is missing.*elastic_modulus"),
 ]
