@@ -6,12 +6,14 @@ tolerances are that, as measured, with a factor of 2 to 3.
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from cages import AT_REST, ON_A_LAND, damping_of, followed, impact_restitution
+from cages import AT_REST, ON_A_LAND, damping_of, followed, impact_restitution, linear_roots
 from mobile_balls import impact
 from scipy.integrate import solve_ivp
+from scipy.special import ellipk
 
 from separatrix.cage import MovingCage
 from separatrix.cage.closed_forms import rebound, rebound_damping, returned_share
@@ -89,6 +91,23 @@ def test_friction_of_an_impact_is_a_share_of_its_impulse(outer):
     normal, sense = M * (after.velocity[-1, 1] - 0.5), -1.0 if outer else 1.0
     # rounding, 4e-16: the ball is as good as infinitely fast, and one force acts along and across
     assert M * after.velocity[-1, 0] == pytest.approx(0.2 * sense * normal, rel=1e-12)
+
+
+def test_a_hertz_impact_has_the_force_and_the_time_of_the_closed_form():
+    """5.496616 g at 0.5 m/s on K 5e8: 66.15387 N for 152.8449 us (numbers of dynamics3d.md, E7).
+
+    Cage and ball have twice the mass each, which makes that mass of the pair, and trade their speeds.
+    """
+    twice = 2 * 5.496616e-3
+    free = BallTraction(mass=twice, slope=1e-9, speed=math.inf)
+    cage = one_ball(traction=free, mass=twice, hertz_coefficient=5e8)
+    after = followed(cage, 1e-3, samples=10_000, refine=64)
+    force = after.contact_force[:, 0]
+    touching = np.count_nonzero(force > 1e-3) * after.time[1]
+    # the peak lies up to half a row, 0.15 us, beside one: (pi/2 x 0.15/76)^2 of the force at most
+    assert force.max() == pytest.approx(66.15387, rel=1e-5)
+    assert touching == pytest.approx(152.8449e-6, abs=after.time[1])  # rows are counted: one more or less
+    assert after.ball_speed[-1, 0] == pytest.approx(0.5, rel=3e-8)  # 1e-8: ends within a step
 
 
 @pytest.mark.parametrize("kick", [0.02, 0.5, 2.0])
@@ -220,6 +239,20 @@ def test_a_cage_hangs_on_its_land_as_a_pendulum(friction, frequency):
     assert period == pytest.approx(1.0 / frequency, rel=2.5e-5)
 
 
+def test_a_rolling_cage_swings_far_as_the_elliptic_pendulum_does():
+    """4 K(sin(A/2))/w_0, w_0^2 = g/(c (1 + J/(M R^2))): .06809150 s at 60 deg (dynamics3d E5)."""
+    cage = on_a_land(gravity=G, land_friction=1.5)
+    found = followed(cage, 0.3, kick=0.3, direction=math.radians(62.0), samples=8001)
+    late = found.time > 0.02
+    angle = np.arctan2(*found.position[late].T[::-1])
+    amplitude = np.array([0.5 * np.ptp(angle[a:b]) for a, b in pairwise(rising(angle))])
+    rate = math.sqrt(G / (2.0 * C_G))
+    period = (4.0 / rate * ellipk(np.sin(amplitude / 2.0) ** 2)).mean()
+    assert amplitude[0] > math.radians(50.0)
+    assert crossings(found.time[late], angle) == pytest.approx(period, rel=2.5e-5)
+    assert 4.0 / rate * ellipk(0.25) == pytest.approx(0.06809150, rel=1e-7)
+
+
 def test_a_dry_land_slows_down_a_whirl_against_it():
     """Nu = nu_0/(1 + f nu_0 t), N = M c nu^2, and the spin takes M R c (nu_0 - nu)/J (dynamics3d E6).
 
@@ -243,3 +276,41 @@ def test_a_dry_land_slows_down_a_whirl_against_it():
     after = 1.0 / (1.0 / 500.0 + f * 0.01)
     spun = M_L * R_L * C_G * (500.0 - after) / J
     assert (after, spun, M_L * C_G * 500.0**2) == pytest.approx((333.3333, 2.807674, 3.125), rel=2e-7)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_dry_land_speeds_up_a_whirl(sense):
+    """Nu = nu_0/(1 - f nu_0 t): 1/nu falls by f each second (dynamics3d E6), with the spin held.
+
+    The ring drags it along; 2e-5 measured: the land gives way by 1e-5 of the clearance.
+    """
+    f = 0.1
+    held = {"moment_of_inertia": 1e3, "guidance": Guidance.OUTER, "outer_speed": 1e4 * sense}
+    found = followed(on_a_land(**held, land_friction=f), 0.04, kick=0.3, direction=0.0, samples=4001)
+    late = found.time > 0.02
+    nu = whirl(found, late)
+    assert np.all(nu * sense > 0.0)
+    assert np.polyfit(found.time[late], 1.0 / np.abs(nu), 1)[0] == pytest.approx(-f, rel=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("friction", "offset", "angle"), [(0.0, 1.586139e-7, 85.4536), (0.1, 1.578267e-7, 91.1642)]
+)
+def test_gripped_pockets_hold_a_cage_against_gravity(friction, offset, angle):
+    """Sag and its angle from gravity where the pockets of a turning ball set grip (dynamics3d E8).
+
+    To the digits printed there: 7 of the sag, 4 decimals of the angle.
+    """
+    cage = on_a_land(
+        guidance=Guidance.BALL, land_clearance=None, pocket_clearance=0.0, pitch_radius=0.0325,
+        moment_of_inertia=M_L * 0.0325**2, cage_speed=668.9886, inner_speed=1570.8, race_damping=356.5792,
+        ball_cage_friction=friction, gravity=G, ball_count=13,
+    )  # fmt: skip
+    found = followed(cage, 0.2, kick=1e-3, direction=0.0, samples=2001)
+    # beside the sag, which turns backward in this frame, the slow root of small motions is left
+    late = found.time > 0.1
+    t, drift = found.time[late], linear_roots(cage)[0]
+    columns = np.stack([np.exp(-1j * cage.cage_speed * t), np.exp(drift * t)], axis=1)
+    sag = np.linalg.lstsq(columns, found.position[late] @ np.array([1.0, 1j]), rcond=None)[0][0]
+    assert np.abs(sag) == pytest.approx(offset, rel=5e-7)
+    assert math.degrees(abs(np.angle(sag))) == pytest.approx(angle, abs=1e-4)
