@@ -10,10 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from separatrix.chain.creep import Creep
-from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
+from separatrix.chain.exact.rolling import ContactProblem, rolling_contact
 from separatrix.chain.exact.slip import FrictionLaw, rough_compliance
-from separatrix.chain.exact.slope import traction_slope
 
 quick = settings(derandomize=True, max_examples=12, deadline=None)
 B = 0.2
@@ -51,18 +49,6 @@ def test_rough_interface_alone_slips_at_one_distance(creep):
     found = kalker(alone(40, friction=MU), xi=creep * MU / B)
     assert -found.force == pytest.approx(exact, rel=1e-3)
     assert found.stick_share == pytest.approx(1.0 if creep < 0.6 else 2.0 / math.pi / creep, abs=0.04)
-
-
-def test_smooth_surfaces_are_no_film():
-    """Length l -> 0: the bare contact, in force and slope; to the solver's tolerance."""
-    made, smooth = contact(B, columns=20, rows=20), contact(B, columns=20, rows=20, roughness=1e-12)
-    xs = saturation(0.25)
-    slip = rigid_slip(made.grid, longitudinal=0.4 * xs, spin=xs)
-    for one, other in zip(*(solve_each(c, [slip, 2.0 * slip]) for c in (made, smooth)), strict=True):
-        assert other.force == pytest.approx(one.force, rel=2e-5)
-    creep = Creep(spin=2.0 * xs, curvature=xs)
-    slopes = [traction_slope(c.problem, creep, columns=(10, 14), rows=16).slope for c in (made, smooth)]
-    assert slopes[1] == pytest.approx(slopes[0], rel=2e-5)
 
 
 shape = st.floats(-1.0, 0.5).map(lambda x: 10.0**x)
