@@ -317,30 +317,24 @@ def test_a_file_that_is_no_ledger_is_refused(tmp_path):
 
 STUDY = """
 extends = "momentum-wheel"
-[cage]
-model = "paper"
 [stability]
 kicks = ["0.4 m/s"]
 duration = "5 ms"
-runs = 8
-restitution_factors = [0.3, 0.9]
-[ranking]
-friction_scatter = 0.2
+runs = 16
 """
-LONG_VERBS = {
-    "rank": [],
-    "map": ["--points", "4"],
-    "sweep": ["--vary", "ball_cage_friction=0.1..0.4:4", "--verdicts"],
-}
 
 
 @pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("verb", LONG_VERBS)
-def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, capsys):
-    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
+def test_a_killed_job_goes_on_to_the_same_bytes(tmp_path, monkeypatch, capsys):
+    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs.
+
+    The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
+    and test_stability_map.
+    """
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(STUDY)
-    call = [verb, "s.toml", *LONG_VERBS[verb], "--json", "--jobs", "1"]
+    given = "sweep s.toml --vary ball_cage_friction=0.1..0.4:6 --verdicts --json --jobs 1"
+    call = given.split()
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     process = subprocess.Popen([*COMMAND, *call, "--out", "k"], **pipes)
     while pieces(tmp_path / "k") < 3 and process.poll() is None:
