@@ -10,15 +10,24 @@ import numpy as np
 import separatrix
 from separatrix.cage import MovingCage, moving_cage, run_ensemble
 from separatrix.chain.ball_traction import BallTraction
-from separatrix.study.study import BallModel, MotionModel, StabilitySettings
+from separatrix.study.study import (
+    BallModel,
+    MotionModel,
+    StabilitySettings,
+    TractionModel,
+    TractionSettings,
+)
 
 MOMENT = StabilitySettings(kicks=(0.1,), runs=1, duration=1e-3)
 
 
 def chain() -> None:
-    """A bearing from its loads to the mobility of its balls, and a cage among such balls."""
-    solution = separatrix.solve(separatrix.read_study("cryogenic-turbopump"))
+    """A bearing from its loads to the mobility of its balls, exact contacts, and a cage among such balls."""
+    study = separatrix.read_study("cryogenic-turbopump")
+    solution = separatrix.solve(study)
     _ = solution.restitution, solution.mobility
+    exact = TractionSettings(model=TractionModel.EXACT)
+    _ = separatrix.solve(replace(study, traction=exact)).traction
     run_ensemble(moving_cage(solution, 0.05, BallModel.FREE), MOMENT)
 
 

@@ -95,11 +95,6 @@ def linear_roots(cage: MovingCage) -> np.ndarray:
     return roots[np.argsort(-roots.real)]
 
 
-def whirl_probability(found: Ensemble) -> np.ndarray:
-    """Share of the runs that whirl from each kick, shape (kick,) [-]."""
-    return found.count(RunOutcome.WHIRLS) / found.outcome.shape[1]
-
-
 def followed(
     cage: MovingCage, duration: float, *, direction: float = math.pi / 2.0, lead=None, **how: object
 ) -> History:

@@ -73,59 +73,6 @@ def moment_at(cage: MovingCage, state: Mapping[int, float], ball: Mapping[int, A
 
 # P1 and P2: pocket 3 of 13, of a cage that is displaced and tilted, and its ball.
 
-PLACED = {rows.X: 0.15e-3, rows.Y: -0.05e-3, rows.Z: 0.1e-3, rows.TX: 4e-3, rows.TY: -2e-3, rows.S: 3e-3 * R}
-MOVING = {
-    rows.VX: 0.3 - 0.05e-3 * OMEGA, rows.VY: -0.1 - 0.15e-3 * OMEGA, rows.VZ: 0.02, rows.WX: 5.0,
-    rows.WY: -8.0, rows.VS: 2.0 * R,
-}  # fmt: skip
-BALL = {rows.LEAD: 0.002 * R, rows.GROOVE: 0.03e-3}
-ANGLE, OFFSET, PLAY = 2.0 * math.pi * 3.0 / 13.0, 2.405062620e-4, 2e-4
-TILT = 5e-3
-"""Size of tilt and rotation in P1 and P2 [rad]."""
-
-LINEAR = 1e3
-"""A pivoting speed far above the sliding, so that friction is in proportion to it [m/s]."""
-
-
-def held(friction: float) -> MovingCage:
-    """One ball that the races hold, in a bore so tight that it touches."""
-    return replace(
-        ROUND, ball_count=1, pocket_angles=(ANGLE,), race_damping=math.inf, groove_damping=math.inf,
-        pocket_clearance=2.0 * PLAY, ball_cage_friction=friction, pivot_speed=LINEAR,
-    )  # fmt: skip
-
-
-def on_the_wall(now: Moment) -> Array:
-    """Force along the axis, outward and along the orbit [N], from what it speeds up of a cage of `held`."""
-    still = now.rate
-    c, n, mass = math.cos(ANGLE), math.sin(ANGLE), ROUND.mass
-    x, y, z = (mass * still[of(row)] for row in (rows.VX, rows.VY, rows.VZ))
-    return np.array([z, x * c + y * n, y * c - x * n])
-
-
-def contact(friction: float) -> tuple[Array, Moment]:
-    """Force on the wall along axis, radius and orbit [N]; that of the frame, without a contact, taken off."""
-    state = PLACED | MOVING
-    now, free = (
-        moment_at(replace(held(friction), pocket_clearance=2.0 * play), state, BALL) for play in (PLAY, 1e-2)
-    )
-    return on_the_wall(now) - on_the_wall(free), now
-
-
-def test_a_tilted_pocket_meets_its_ball_which_slides_on_it_as_by_exact_rotations():
-    """P1: offset, in a tighter bore, to R tilt^2/2; direction, P2's normal rate and sliding to the tilts.
-
-    0.11 um, 0.0031, 0.002 and 0.004 measured.
-    """
-    (rubbed, now), (pushed, free) = contact(0.2), contact(0.0)
-    assert free.push[0] / ROUND.ball_cage_stiffness + PLAY == pytest.approx(OFFSET, abs=3e-7)
-    direction = -pushed / np.linalg.norm(pushed)
-    np.testing.assert_allclose(direction, [0.861332, -0.003116, -0.508032], atol=TILT)
-    assert now.push_rate[0] / ROUND.ball_cage_stiffness == pytest.approx(0.296397, rel=TILT)
-    sliding = (rubbed - pushed) / (0.2 * now.push[0]) * LINEAR
-    np.testing.assert_allclose(sliding, [5.548003, 11.686468, 9.334559], atol=TILT * 15.952676)
-
-
 LANDS = replace(
     ROUND, cage_speed=0.0, inner_speed=0.0, pocket_clearance=1e-2, guidance=Guidance.OUTER, land_friction=0.0,
     land_restitution=1.0, land_count=2, land_spacing=12e-3, land_width=4e-3, land_stiffness=4e6,
@@ -156,24 +103,6 @@ def test_a_land_is_met_where_a_tilted_cage_leans():
     assert math.degrees(math.atan2(-force[1], -force[0])) == pytest.approx(9.3763, abs=0.2)
 
 
-def test_balls_that_are_counted_from_another_one_move_the_cage_alike():
-    """Start and leads turned by one pitch: the same motion, turned, but for the order in which forces add.
-
-    Differences are below 1e-16 (m, rad).
-    """
-    cage = replace(ROUND, axial_kick=0.3, tilt_kick=0.0, guidance=Guidance.OUTER, land_clearance=3e-4)
-    lead, pitch = 1e-4 * np.sin(2.0 * np.arange(Z) + 1.0), 2.0 * math.pi / Z
-    start = {"kick": 0.5, "duration": 2e-3, "until": 2e-3, "samples": 40}
-    one = follow(cage, direction=0.3, ball_lead=lead, **start)
-    other = follow(cage, direction=0.3 + pitch, ball_lead=np.roll(lead, 1), **start)
-    assert one.land_force.max() > 0.0
-    back = np.exp(-1j * pitch)
-    for name in ("position", "lean"):
-        turned = getattr(other, name) @ [1.0, 1j] * back
-        np.testing.assert_allclose(turned, getattr(one, name) @ [1.0, 1j], rtol=0.0, atol=1e-15)
-    np.testing.assert_allclose(np.roll(other.ball_lead, -1, axis=1), one.ball_lead, rtol=0.0, atol=1e-15)
-
-
 def test_an_impact_in_space_keeps_momentum_along_the_orbit_and_about_the_axis():
     """Of a cage and a ball that the races let go, in a bore that leans; friction without a lever.
 
@@ -197,16 +126,16 @@ def test_an_impact_in_space_keeps_momentum_along_the_orbit_and_about_the_axis():
 
 
 def growing(friction: float, **change: object) -> float:
-    """Share of 96 runs of the ring of E10, in bores, with more energy at 0.3 s than at their start."""
+    """Share of 48 runs of the ring of E10, in bores, with more energy at 0.3 s than at their start."""
     pitch, kick = math.radians(25.44303), 0.5
     # so fast that friction follows the spin alone, and without a lever
     spin = (-1e12 * math.cos(pitch), 1e12 * math.sin(pitch), 0.0)
     ring = {"ball_spin": spin, "ball_diameter": 0.0, "groove_damping": 370.0, "race_damping": damping_of(0.8)}
     cage = replace(AT_REST, **SPACE | ring, ball_cage_friction=friction, **change)
-    starts = random_starts(cage, StabilitySettings(ball_scatter=0.3), 0, 96)
+    starts = random_starts(cage, StabilitySettings(ball_scatter=0.3), 0, 48)
     numbers = numbers_of(cage, kick, 0.3, least=0.3)
     begun, places = start_states(cage, kick, starts), ball_places(cage, starts)
-    raw = run_rows(numbers.kind, [numbers] * 96, begun, places, Stop())
+    raw = run_rows(numbers.kind, [numbers] * 48, begun, places, Stop())
     energy = raw.looks[:, int(0.3 / look_time(cage)) - 1, of(rows.ENERGY)]
     return float(np.mean(~(energy < 0.5 * cage.mass * kick**2)))
 
@@ -215,7 +144,7 @@ def growing(friction: float, **change: object) -> float:
 def test_a_cage_in_round_bores_that_may_tilt_whirls_at_half_the_friction(held, friction):
     """E10: half of the runs grow at .062, with tilt held at .119, by another program's 48 runs: 10 %.
 
-    .0640 and .1236 measured, each to 2 % by the number of runs.
+    .0640 and .1236 measured with 96 runs, each to 2 % by their number; with 48 to 3 %.
     """
     frictions = friction * np.linspace(0.85, 1.2, 5)
     shares = [growing(f, is_tilt_held=held) for f in frictions]

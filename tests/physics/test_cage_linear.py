@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cages import AT_REST, TURNING, damping_of, followed, gripped, linear_roots
+from cages import AT_REST, TURNING, followed, gripped, linear_roots
 
 from separatrix.cage import (
     MovingCage,
@@ -43,22 +43,6 @@ def test_critical_friction_of_the_linear_limit(damping, friction):
     assert found == pytest.approx(friction, abs=5e-6)
     assert found == pytest.approx(2 * zeta * math.sqrt(2 / Z), rel=1e-14)  # rounding
     assert linear_whirl_frequency(gripped(damping)) == pytest.approx(2891.2, abs=0.05)  # digits given
-
-
-@pytest.mark.parametrize(
-    ("cage", "duration"),
-    [
-        (gripped(damping_of(0.1)), 0.05),
-        (gripped(damping_of(0.9)), 0.15),
-        (gripped(damping_of(0.6), cage_speed=0.0, traction=LAW), 0.05),
-    ],
-    ids=["eta .1", "eta .9", "one state"],
-)
-def test_a_whirl_decays_below_the_linear_limit_and_grows_above_it(cage, duration):
-    """One per cent below and above, where friction adds f w0/2 of 1 % of itself."""
-    limit = linear_critical_friction(cage)
-    rates = [growth_rate(replace(cage, ball_cage_friction=f * limit), duration) for f in (0.99, 1.01)]
-    assert rates[0] < 0.0 < rates[1]
 
 
 @pytest.mark.parametrize("speed", [0.0, 700.0, 3000.0])

@@ -61,18 +61,6 @@ def test_the_probability_is_that_of_counting_over_the_distribution():
     assert found.probability_stable == pytest.approx(np.mean(shares), abs=0.11)
 
 
-def test_more_runs_are_those_before_and_more():
-    """Draw n belongs to run n, however many there are."""
-    study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=0.003))
-    few, many = drawn_bearings(study, 4), drawn_bearings(study, 16)
-    cages = [[moving_cage(one["A"], 0.1) for one in drawn.solved] for drawn in (few, many)]
-    assert cages[0] == cages[1][:4]
-    assert np.array_equal(few.friction[CASE], many.friction[CASE][:4])
-    masses = [one["A"].design.mass for one in many.solved]
-    assert len(set(masses)) == 16
-    assert np.mean(masses) == pytest.approx(0.025, rel=0.05)  # 16 spread points: far below 0.003/4
-
-
 def test_a_friction_from_tests_follows_the_pocket_of_its_draw(tmp_path):
     """A power law of slip speed: the drawn friction times what the tests say at the draw's own speed."""
     rows = [

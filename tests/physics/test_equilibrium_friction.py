@@ -48,13 +48,6 @@ def test_resultants_converge_with_the_strips():
         assert coarse[0, 0] == pytest.approx(fine[0, 0], abs=3e-3 * 1e-3)
 
 
-def test_sliding_without_spin_gives_the_whole_friction():
-    """Uniform slip: force 1 per unit, against which the slip is much larger than the smoothing."""
-    out = resultants((0.0, 0.0, 1.0, 0.0), 1e-3, 2e-4, 1e-9)
-    assert out[2, 0] == pytest.approx(1.0, rel=1e-12)
-    assert out[0, 0] == pytest.approx(0.0, abs=1e-12)
-
-
 def test_slopes_are_those_of_the_resultants():
     """Central differences of every coefficient, with rolling, spin, lateral slip and curvature at once."""
     c = np.array((0.3, 0.02, -2.1e-4, 1.5e-3))

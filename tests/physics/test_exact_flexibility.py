@@ -6,15 +6,12 @@ from exact_cases import body
 from scipy.integrate import dblquad
 
 from separatrix.chain.exact.influence import (
-    IMAGES,
     UNCOUPLED,
     Images,
     body_images,
-    corner_sums,
     flexibility,
     half_space_flexibility,
     influence,
-    pair_images,
     solid,
 )
 
@@ -106,41 +103,3 @@ def test_four_corner_functions_against_quadrature(j, i):
         cell = (i - 0.5) * dx, (i + 0.5) * dx, (j - 0.5) * dy, (j + 0.5) * dy
         value, _ = dblquad(lambda y, x, n=n: _point_source(x, y, d, *w)[n], *cell, epsabs=1e-10)
         assert table[n] == pytest.approx(value, abs=1e-8)
-
-
-@pytest.mark.parametrize(("j", "i"), [(0, 0), (0, 1), (2, 3)])
-def test_influence_against_the_inverse_transform(j, i):
-    """K_xx and K_zz of a coated half-space by quadrature over wavenumbers, without images.
-
-    The film's own half-space is taken off, what is left decays as exp(-2kh). 1e-5 is the fit's error.
-    """
-    film = half_space_flexibility(SOFT.surface)
-    dy, dx = 0.2, 0.1
-    surface = Images(np.zeros(1), film[UNCOUPLED, None], 0.0)
-    near = influence((4, 4), (dy, dx), surface, PLAIN)[:, j, i + 3]
-    node, weight = np.polynomial.legendre.leggauss(80)
-    k = np.concatenate([5.0 * (node + 1.0), 10.0 + 90.0 * (node + 1.0)])
-    wk = np.concatenate([5.0 * weight, 90.0 * weight])
-    angle = np.pi / 200 * (np.arange(200) + 0.5)
-    kx, ky = np.outer(k, np.cos(angle)), np.outer(k, np.sin(angle))
-    excess = (flexibility(SOFT, k) - film[:, None])[:, :, None]
-    load = dx * dy * np.sinc(kx * dx / 2 / np.pi) * np.sinc(ky * dy / 2 / np.pi)
-    phase = load * np.cos(kx * i * dx) * np.cos(ky * j * dy) * wk[:, None] / (200 * 2.0 * np.pi)
-    xx = near[0] + ((excess[0] * np.cos(angle) ** 2 + excess[3] * np.sin(angle) ** 2) * phase).sum()
-    zz = near[3] + (excess[1] * phase).sum()
-    found = influence((4, 4), (dy, dx), body_images(SOFT), PLAIN)[:, j, i + 3]
-    assert (found[0], found[3]) == pytest.approx((xx, zz), rel=1e-5)
-
-
-def test_pairs_of_bodies():
-    """Two coated bodies with films of two thicknesses: the sum of both.
-
-    To 1e-8: the weights of the images, of both signs, are up to 1e8 times what they add up to.
-    """
-    other = body(0.25, (0.05, 0.4, 0.03), G=2.0)
-    x, y = np.array([0.05, 0.7]), np.array([0.1])
-    sums = [corner_sums(x, y, m.depths, m.weights) for m in (body_images(SOFT), body_images(other))]
-    pair = pair_images(SOFT, other)
-    both = corner_sums(x, y, pair.depths, pair.weights)
-    assert both == pytest.approx(sums[0] + sums[1], rel=1e-8)
-    assert pair_images(SOFT, SOFT).depths.size == IMAGES + 1

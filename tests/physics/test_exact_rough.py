@@ -10,12 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from separatrix.chain.creep import Creep
-from separatrix.chain.exact.grid import elliptic_grid
-from separatrix.chain.exact.operator import rolling_operator
-from separatrix.chain.exact.rolling import ContactProblem, rigid_slip, rolling_contact, solve_each
+from separatrix.chain.exact.rolling import ContactProblem, rolling_contact
 from separatrix.chain.exact.slip import FrictionLaw, rough_compliance
-from separatrix.chain.exact.slope import traction_slope
 
 quick = settings(derandomize=True, max_examples=12, deadline=None)
 B = 0.2
@@ -53,29 +49,6 @@ def test_rough_interface_alone_slips_at_one_distance(creep):
     found = kalker(alone(40, friction=MU), xi=creep * MU / B)
     assert -found.force == pytest.approx(exact, rel=1e-3)
     assert found.stick_share == pytest.approx(1.0 if creep < 0.6 else 2.0 / math.pi / creep, abs=0.04)
-
-
-def test_uniform_pressure_is_a_film_in_series():
-    """L = l/p on whole and cut cells alike; the operators are equal."""
-    grid = elliptic_grid(semi_minor=B, semi_major=1.0, columns=12, rows=10)
-    bodies = body(0.25), body(0.25)
-    rough = rough_compliance(grid, 2.0 * grid.fraction, 0.3)
-    assert rough == pytest.approx(np.where(grid.fraction > 0.0, 0.15, 0.0), rel=1e-14)
-    one, other = (rolling_operator(grid, bodies, L) for L in (rough, np.full(grid.shape, 0.15)))
-    assert one.local == pytest.approx(other.local, rel=1e-12)
-    assert one.upstream == pytest.approx(other.upstream, rel=1e-12)
-
-
-def test_smooth_surfaces_are_no_film():
-    """Length l -> 0: the bare contact, in force and slope; to the solver's tolerance."""
-    made, smooth = contact(B, columns=20, rows=20), contact(B, columns=20, rows=20, roughness=1e-12)
-    xs = saturation(0.25)
-    slip = rigid_slip(made.grid, longitudinal=0.4 * xs, spin=xs)
-    for one, other in zip(*(solve_each(c, [slip, 2.0 * slip]) for c in (made, smooth)), strict=True):
-        assert other.force == pytest.approx(one.force, rel=2e-5)
-    creep = Creep(spin=2.0 * xs, curvature=xs)
-    slopes = [traction_slope(c.problem, creep, columns=(10, 14), rows=16).slope for c in (made, smooth)]
-    assert slopes[1] == pytest.approx(slopes[0], rel=2e-5)
 
 
 shape = st.floats(-1.0, 0.5).map(lambda x: 10.0**x)

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from exact_cases import MU, P0, body, contact
-from exact_cases import ellipse as unit_ellipse
 
 from separatrix.chain.creep import Creep
 from separatrix.chain.exact.grid import elliptic_grid, elliptic_pressure
@@ -19,9 +18,9 @@ from separatrix.chain.exact.rolling import (
     rolling_contact,
     solve,
 )
-from separatrix.chain.exact.slip import FrictionLaw, over_cells
+from separatrix.chain.exact.slip import FrictionLaw
 from separatrix.chain.exact.slope import traction_slope
-from separatrix.chain.film_compliance import Profile, worn_band
+from separatrix.chain.film_compliance import worn_band
 from separatrix.chain.hertz import contact_ellipse, ellipse_of_axes
 from separatrix.ground.errors import ConvergenceError
 
@@ -91,16 +90,6 @@ def test_lateral_force_of_spin():
     assert lateral == pytest.approx([0.13, -0.24], abs=0.01)
 
 
-def test_slopes_of_thin_films_do_not_depend_on_the_columns():
-    """1 um of 0.5 GPa: 14 and 40 columns within 0.5 %; without the rules of the row ends, 5 %."""
-    film = Layer(thickness=1e-6, solid=solid(0.5e9, 0.46))
-    found = [
-        traction_slope(problem(OUTER[0], film=film), OUTER[1], columns=(10, n), rows=64).slope
-        for n in (14, 40)
-    ]
-    assert found[0] == pytest.approx(found[1], rel=5e-3)
-
-
 OWN_PRESSURE = [  # E [GPa], nu, thickness [um]; slopes on 128 columns and 160 rows
     (0.5, 0.46, 1, 11.989), (0.5, 0.46, 3, 8.877), (4.0, 0.38, 3, 13.957), (4.0, 0.38, 10, 12.642),
 ]  # fmt: skip
@@ -158,16 +147,6 @@ def test_worn_track(share, inner, outer):
         assert traction_slope(worn(ellipse, share), creep).slope == pytest.approx(expected, rel=0.012)
 
 
-def test_profiles():
-    """Means over the rows, steps, and constants beyond the ends."""
-    grid = elliptic_grid(semi_minor=1.0, semi_major=1.0, columns=8, rows=8)
-    line = Profile(across=(-1.0, 1.0), values=(0.0, 2.0))
-    assert over_cells(line, grid)[:, 0] == pytest.approx(1.0 + grid.y)
-    band = over_cells(worn_band(0.5, worn=0.0, film=3.0), grid)
-    assert band.shape == grid.shape
-    assert band[:, 0].tolist() == [3.0, 3.0, 0.0, 0.0, 0.0, 0.0, 3.0, 3.0]
-
-
 def test_bounds():
     """Cohesion, coefficient and shear strength: sums of the bound in full sliding."""
     made = contact(0.5, columns=20, rows=20)
@@ -200,20 +179,6 @@ def test_slip_of_the_pressure_on_a_circle():
     W_x = -(moved[0] - moved[1]) / (2.0 * e)
     inside = np.hypot(x, y) < 0.9
     assert found[0][inside] == pytest.approx(0.5 * W_x[inside], abs=0.01 * dc)
-
-
-def test_free_rolling_of_unlike_bodies():
-    """Little friction, slender ellipse: strips slide by 2 beta p/E*, whose half load is at p = 0.5^(1/3) p0.
-
-    (Bentall & Johnson 1967 have a single strip.) In an ellipse the stretch along x is a/(a + b) of the plane
-    one if the pressure is uniform; 3 % for its not being so.
-    """
-    bodies, law = (body(0.3), body(0.3, G=4.0)), FrictionLaw(coefficient=1e-4)
-    slender = ContactProblem(ellipse=unit_ellipse(0.05), bodies=bodies, friction=law, coupled=True)
-    found = traction_slope(slender, Creep(spin=0.0, curvature=0.0), columns=(16, 20), rows=20)
-    beta_term = 0.5 * (1.0 - 0.6) * (1.0 - 1.0 / 4.0) * P0
-    assert found.free_rolling_offset == pytest.approx(-(0.5 ** (1.0 / 3.0)) * beta_term / 1.05, rel=0.03)
-    assert not contact(0.3, columns=8, rows=8, coupled=True).coupling.any()
 
 
 def test_the_creep_of_a_stated_force():

@@ -23,6 +23,7 @@ from separatrix.chain.ball_mobility import (
     groove,
     held_ball,
     mobility,
+    modes,
     pitch_angle,
     pocket_friction_effect,
     pushed,
@@ -103,6 +104,16 @@ def test_modes_are_those_of_the_motion():
         assert 1.0 / response.real == pytest.approx(damping, rel=1e-4)
 
 
+def test_a_ball_with_creep_in_two_contacts():
+    """Contact angle 0: rates [3.5 S -+ sqrt(2.25 S^2 + 10 D^2)]/2m, u/F = (1/C_i + 1/C_o)/4 (E2)."""
+    inner, outer, mass, radius = 65.58149, 290.99772, 5.496616e-3, 5.55625e-3
+    S, D = inner + outer, inner - outer
+    slopes = -np.array(((S, radius * D), (radius * D, radius**2 * S)))
+    found = modes(slopes, np.diag((mass, 0.4 * mass * radius**2)))
+    assert found.rates.real == pytest.approx((32460.24, 194593.50), rel=1e-6)
+    assert 1.0 / found.relaxed == pytest.approx(0.25 * (1.0 / inner + 1.0 / outer), rel=1e-12)
+
+
 def relaxed_push(name: str, speeds: Array) -> Array:
     """F(u) with the contact plane where it was and all spin relaxed, rising speeds; Newton on the spin."""
     ball, forces = held(name), []
@@ -147,22 +158,6 @@ def by_fields(name: str, speed: float, sense: float = 1.0) -> tuple[float, float
     return impact(moved, 4, RING[name], speed)
 
 
-RELAXED = [
-    ("cryo", 6.567e-3, (0.1479, 0.1319, 0.0396, -0.1589)),
-    ("wheel 6000", 1.289e-3, (0.2323, -0.1224, -0.2730, -0.3063)),
-]
-
-
-@pytest.mark.parametrize(("name", "mass", "returns"), RELAXED)
-def test_return_with_the_quasi_steady_push(name, mass, returns):
-    """E11: m_e u' = N - F(u) from .02 to 2 m/s; its slow impacts differ, as docs/validation.md says."""
-    u = np.append(0.0, np.geomspace(1e-4, 2.0, 120))
-    law, ring = CubicSpline(u, relaxed_push(name, u)), RING[name]
-    for speed, factor, off in zip((0.02, 0.1, 0.5, 2.0), returns, (0.02, 3e-3, 3e-4, 3e-4), strict=True):
-        found = impact(lambda x, N: (N - law(x)) / mass, 1, ring, speed)[0]
-        assert found == pytest.approx(factor, abs=off)
-
-
 def test_push_begins_with_the_linear_law():
     """F/u is C_f with the attitude held, and C_eff with all spin relaxed, as u falls."""
     ball, found = held("cryo"), modes_of("cryo")
@@ -205,15 +200,6 @@ def test_law_finds_its_own_speed():
     assert law.force(u) == pytest.approx(made.force(u), rel=1e-7)
 
 
-def test_law_of_a_force_that_falls_again_stays():
-    """Beyond its largest force the law does not follow a falling curve down."""
-    u = np.geomspace(1e-3, 5.0, 40)
-    force = 100.0 * u / (1.0 + (u / 0.5) ** 2)
-    law = fitted_law(u, force, slope=100.0, mass=1e-3)
-    assert np.all(np.diff(law.force(u)) > 0.0)
-    assert law.force(u)[-1] > 0.85 * force.max()
-
-
 @pytest.mark.parametrize(("name", "factor"), [("cryo", 0.17275), ("wheel 6000", 0.3204)])
 def test_return_of_a_gentle_impact(name, factor):
     """By four linear modes (dynamics3d E11), and the slip fields of a weak impact from either side."""
@@ -225,19 +211,26 @@ def test_return_of_a_gentle_impact(name, factor):
         assert by_fields(name, 1e-3 * knee, sense)[0] == pytest.approx(factor, abs=1e-3)
 
 
+RELAXED = [
+    ("cryo", 6.567e-3, (0.1479, 0.1319, 0.0396, -0.1589)),
+    ("wheel 6000", 1.289e-3, (0.2323, -0.1224, -0.2730, -0.3063)),
+]
+
+
+@pytest.mark.parametrize(("name", "mass", "returns"), RELAXED)
+def test_return_with_the_quasi_steady_push(name, mass, returns):
+    """E11: m_e u' = N - F(u) from .02 to 2 m/s; its slow impacts differ, as docs/validation.md says."""
+    u = np.append(0.0, np.geomspace(1e-4, 2.0, 120))
+    law, ring = CubicSpline(u, relaxed_push(name, u)), RING[name]
+    for speed, factor, off in zip((0.02, 0.1, 0.5, 2.0), returns, (0.02, 3e-3, 3e-4, 3e-4), strict=True):
+        found = impact(lambda x, N: (N - law(x)) / mass, 1, ring, speed)[0]
+        assert found == pytest.approx(factor, abs=off)
+
+
 def test_peak_and_duration_of_an_impact():
     """Cryo at .5 m/s: 65.90 N by the linear modes (dynamics3d E11); 184.2 us in a weak impact."""
     assert by_fields("cryo", 0.5)[1] == pytest.approx(65.9, rel=2e-3)
     assert by_fields("cryo", 1e-3)[2] == pytest.approx(184.2e-6, rel=2e-3)
-
-
-def test_a_hard_impact_carries_the_ball_along():
-    """Beyond the capacity the cage goes on behind the ball; the bare mass is its limit, (m - M)/(m + M)."""
-    m, (mass, _) = held("wheel 6000").problem.ball_mass, RING["wheel 6000"]
-    bare = (m - mass) / (m + mass)
-    found = [by_fields("wheel 6000", v)[0] for v in (0.02, 0.1, 0.5, 2.0)]
-    assert found[0] > 0.25 > 0.0 > found[1] > found[2] > found[3] > bare
-    assert found[3] == pytest.approx(bare, abs=0.03)
 
 
 @pytest.mark.parametrize("name", ["cryo", "wheel 6000"])

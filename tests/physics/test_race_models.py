@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 from cages import BEARING
 
-from separatrix.chain import race_traction as module
 from separatrix.chain.contacts import race_tracks
 from separatrix.chain.exact.slope import traction_slope
 from separatrix.chain.race_traction import (
@@ -143,20 +142,6 @@ def test_slip_by_the_pressure_moves_free_rolling():
     assert exact_slope(own, included).free_rolling_offset != exact_slope(own, EXACT).free_rolling_offset
     with pytest.raises(InputError, match=r'pressure_slip must be "neglected" in strips'):
         TractionSettings(pressure_slip=PressureSlip.INCLUDED)
-
-
-def test_a_worn_film_has_the_pressure_of_hertz():
-    """Its thickness varies; it is in series."""
-    worn = replace(COATED, wear=Wear(friction=0.3, share=0.1))
-    with pytest.raises(InputError, match=r'Study.traction.pressure must be "hertz"'):
-        study(worn, traction=TractionSettings(pressure=ContactPressure.COATED))
-
-
-def test_the_exact_contact_is_solved_once(monkeypatch):
-    """The range of the strips takes the exact contact of the chain."""
-    _ = solve(study(traction=EXACT, cage=CAGE)).traction
-    monkeypatch.setattr(module, "traction_slope", None)  # a second solution would fail
-    assert "across the groove" in outside(model=TractionModel.EXACT)
 
 
 def test_the_power_of_the_slip_is_that_of_the_spin_moment():

@@ -96,14 +96,6 @@ def test_pocket_stiffness_stores_the_energy_of_the_impact_at_the_depth_of_hertz(
     assert 0.5 * k * depth**2 == pytest.approx(0.5 * MASS * speed**2, rel=1e-6)  # the event of the integrator
 
 
-@pytest.mark.parametrize("elastic_modulus", [3e9, 5e9, 10e9])
-def test_polymer_pockets_are_of_the_stated_stiffness(elastic_modulus):
-    """1e6 to 8e6 N/m for polymer cages of 3-10 GPa and kicks of 0.1 to 2 m/s at 25 g."""
-    for speed in (0.1, 0.5, 2.0):
-        given = {"cage_mass": 0.025, "impact_speed": speed}
-        assert 1e6 < ball_pocket_stiffness(DIAMETER, STEEL, polymer(elastic_modulus), **given) < 1e7
-
-
 @pytest.mark.parametrize("damping", [20000.0, 2000.0, 600.0, 300.0, 150.0])
 @pytest.mark.parametrize("speed", [0.1, 2.0])
 def test_a_hertzian_impact_equals_the_integrated_impact_in_newtons(damping, speed):
@@ -113,22 +105,6 @@ def test_a_hertzian_impact_equals_the_integrated_impact_in_newtons(damping, spee
     eta = hertzian_restitution_factor(zeta)
     # the integrator's 1e-12 a step, times up to a thousand steps
     assert impact(MASS, K, damping, speed, 1.5) == pytest.approx(eta, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("zeta", "eta"),
-    [
-        (0.05, 0.8302215),
-        (0.1, 0.6924030),
-        (0.2, 0.4841633),
-        (0.5, 0.1544072),
-        (1.0, 0.0134869),
-        (2.0, 4.2456e-4),
-    ],
-)
-def test_hertzian_restitution_of_the_table(zeta, eta):
-    """The table of docs/theory/restitution.md, to its digits."""
-    assert hertzian_restitution_factor(zeta) == pytest.approx(eta, rel=2e-5 if eta < 1e-3 else 0, abs=5e-8)
 
 
 def test_a_weakly_damped_hertzian_impact_loses_what_perturbation_says():

@@ -9,9 +9,7 @@ import pytest
 import separatrix
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
-from separatrix.ground.document import Part
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
-from separatrix.verbs.parts.verdict_blocks import deciding
 from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import Limit, _limits
@@ -89,32 +87,6 @@ def test_of_pockets_that_differ_in_stiffness_alone_the_ends_are_computed():
     assert _limits(asked, dict.fromkeys(ends, LIMIT)) == ends
     open_end = {**dict.fromkeys(ends, LIMIT), ends[1]: replace(LIMIT, own_critical_friction=None)}
     assert _limits(asked, open_end) == [Limit(one) for one in (soft, middle, stiff, heavy)]
-
-
-ROW = {
-    "name": "A", "verdict": "STABLE", "cage_motion": "CENTRED", "friction": 0.2, "extrapolation": [],
-    "own_critical_friction_low": 0.2, "land_clearance": 4e-4, "pocket_clearance": 2.5e-4,
-}  # fmt: skip
-CLEARANCES = {"land_clearance": "m", "pocket_clearance": "m", "wide_land_clearance": "m"}
-
-
-def headline(answer, *rows):
-    """What decides, of a candidate and others that differ from it."""
-    parts = [Part(ROW | row, CLEARANCES) for row in ({}, *rows)]
-    return list(deciding(Part(answer, CLEARANCES), parts))
-
-
-def test_the_headline_says_whether_land_or_pockets_decide():
-    """The land inside the pockets' play, with what would be on a wider one; or the pockets."""
-    wide = {"wide_land_critical_friction": 0.15, "wide_land_critical_friction_low": 0.1, "candidate": "A"}
-    (found,) = headline(wide | {"wide_land_clearance": 6e-4}, {"name": "B", "friction": 0.1})
-    assert found.startswith("The land stops the cage before its pockets can drive it")
-    assert found.endswith(", less than the friction of A.")
-    (found,) = headline({}, {"name": "B", "verdict": "UNSTABLE"})
-    assert found.startswith("The pockets decide, not the land (clearances 250")
-    assert headline({}) == []
-    (found,) = headline({}, {"name": "B", "extrapolation": ["speed"]})
-    assert found == "Some frictions are extrapolated."
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

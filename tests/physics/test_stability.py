@@ -1,7 +1,6 @@
 """Stability curve and threshold: the linear limit, brute force at a point, threads, directions."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import pytest
 from cages import SMALL as CAGE
@@ -10,9 +9,9 @@ from cages import threshold_points
 from separatrix.cage import run_ensemble
 from separatrix.cage.closed_forms import drift_rate_law
 from separatrix.study.study import Guidance, StabilitySettings
-from separatrix.verdict.crossing import GrowthCounter, cage_at
-from separatrix.verdict.judgement import judge, wilson_interval
-from separatrix.verdict.long_jobs import PART, Interrupted, Runner
+from separatrix.verdict.crossing import cage_at
+from separatrix.verdict.judgement import wilson_interval
+from separatrix.verdict.long_jobs import Interrupted, Runner
 from separatrix.verdict.stability_curve import (
     critical_friction,
     curve_of_points,
@@ -54,33 +53,6 @@ def test_a_threshold_is_where_half_the_runs_grow(points, friction):
     assert 0.25 < grown(found.value) / 64 < 0.75  # 4 standard deviations of 64 runs at one half
 
 
-def test_the_followed_curve_equals_a_dense_one(points):
-    """Between its points lines meet critical frictions counted there with other seeds, interval to interval.
-
-    Of nine 95 % intervals on either side one may miss (probability of two or more below 1 %).
-    """
-    given = tuple((i + 0.5) / 10 for i in range(9))
-    dense = threshold_points(CAGE, replace(SETTINGS, seed=17, restitution_factors=given), jobs=2)
-    misses = 0
-    for at in dense:
-        if at.restitution_factor in given:
-            low, high = line(points, at.restitution_factor)
-            misses += not (low <= at.scatter_high and at.scatter_low <= high)
-    assert misses <= 1
-
-
-def line(points, eta):
-    """Interval of a curve between two of its points."""
-    for a, b in pairwise(points):
-        if a.restitution_factor <= eta <= b.restitution_factor:
-            share = (eta - a.restitution_factor) / (b.restitution_factor - a.restitution_factor)
-            return tuple(
-                (1.0 - share) * getattr(a, end) + share * getattr(b, end)
-                for end in ("scatter_low", "scatter_high")
-            )
-    raise ValueError(eta)
-
-
 def test_the_curve_falls_with_the_restitution_factor(points):
     """A cage that gets more of its speed back is unstable at less friction (the paper, section 2.2).
 
@@ -90,15 +62,6 @@ def test_the_curve_falls_with_the_restitution_factor(points):
     assert heights[0] > heights[len(heights) // 2] > heights[-1]
     values = [restitution_threshold(points, f / 100).value for f in range(50)]
     assert values == sorted(values, reverse=True)
-
-
-def test_the_number_of_threads_changes_nothing():
-    """One thread, two and eight give the same curve, its points among it, to the last bit."""
-    given = replace(SETTINGS, runs=4, duration=4e-3, kicks=(0.2, 1.0))
-    settings = replace(given, restitution_factors=(0.4, 0.8))
-    one, two, eight = (stability_curve(CAGE, settings, runner=Runner(jobs=jobs)) for jobs in (1, 2, 8))
-    assert one == two == eight
-    assert one.complete
 
 
 @pytest.fixture(scope="module")
@@ -165,26 +128,6 @@ def test_an_interrupted_curve_keeps_its_points_and_says_so():
     limits = [one.restitution_factor for one in found.linear_limit]
     assert limits == [one.restitution_factor for one in found.curve]
     assert found.complete is False
-
-
-def test_an_interrupt_ends_a_point_between_its_batches_and_a_verdict_between_its_parts():
-    """Once the flag is set none is begun."""
-    counter = GrowthCounter(CAGE, replace(SETTINGS, duration=0.01))
-    assert counter.count(0.5, 0.1, 0.5, first_run=0, runs=8).runs == 8
-    counter.runner.stop.set()
-    with pytest.raises(Interrupted):
-        counter.count(0.5, 0.1, 0.5, first_run=8, runs=8)
-    with pytest.raises(Interrupted):
-        counter.runner.whole_ensemble(CAGE, SETTINGS)
-
-
-def test_an_ensemble_in_parts_is_the_whole_one():
-    """Parts of 16 runs give, to the last bit, what all runs at once give."""
-    settings = replace(SETTINGS, kicks=(0.2, 0.5), runs=PART + 5, duration=0.05)
-    at_once = run_ensemble(CAGE, settings)
-    parts = Runner().whole_ensemble(CAGE, settings)
-    assert repr(judge(CAGE, parts)) == repr(judge(CAGE, at_once))  # one field is an array
-    assert (parts.end_energy == at_once.end_energy).all()
 
 
 def test_the_curve_of_a_landless_cage_says_that_it_drifts():

@@ -46,13 +46,6 @@ def ends(cage: MovingCage, kicks: tuple[float, ...]) -> Ensemble:
     return run_ensemble(cage, StabilitySettings(kicks=kicks, runs=RUNS, duration=DURATION))
 
 
-def judged(friction: float, kicks: tuple[float, ...]) -> Judgement:
-    """Verdict on the momentum wheel from some of the kicks."""
-    whole, rows = wheel_runs(friction), [KICKS.index(kick) for kick in kicks]
-    arrays = (name for name in Ensemble.__slots__ if np.ndim(getattr(whole, name)) > 0)
-    return judge(wheel(friction), replace(whole, **{name: getattr(whole, name)[rows] for name in arrays}))
-
-
 def test_a_whirl_is_one_from_a_weak_kick_and_from_a_strong_one():
     """Dry phenolic, f 0.30: from 0.5 and from 4 m/s alike; the friction of the pockets feeds it."""
     runs = wheel_runs(0.30)
@@ -65,15 +58,6 @@ def test_a_whirl_is_one_from_a_weak_kick_and_from_a_strong_one():
     levels = np.median(runs.end_energy, axis=1)
     # one whirl: its energy wanders by a third
     assert levels[KICKS.index(0.5)] == pytest.approx(levels[KICKS.index(4.0)], rel=0.5)
-
-
-@pytest.mark.parametrize("kicks", [(0.1, 0.5, 2.0), (0.1, 0.5, 2.0, 4.0), (2.0, 4.0)])
-def test_the_list_of_kicks_does_not_change_the_verdict(kicks):
-    """Phenolic is unstable with P(stable) 0, whichever kicks are asked for."""
-    phenolic = judged(0.30, kicks)
-    assert (phenolic.verdict, phenolic.probability_stable) == (Verdict.UNSTABLE, 0.0)
-    assert phenolic.cage_motion is CageMotion.WHIRLING
-    assert len(phenolic.by_kick) == len(kicks)
 
 
 def test_a_run_is_not_settled_before_it_touches_anything():

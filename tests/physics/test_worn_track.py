@@ -1,7 +1,5 @@
 """A film that is worn in its track: friction and compliance across the groove, by strips and exactly."""
 
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -121,28 +119,6 @@ def test_a_measured_profile_is_bare_between_two_places_without_film():
     y = np.array([-5e-4, -1.5e-4, 0.0, 1.5e-4, 5e-4])
     assert friction.at(y) == pytest.approx([0.1, 0.1, 0.3, 0.1, 0.1])
     assert compliance.at(y) == pytest.approx([L, L / 2.0, 0.0, L / 4.0, L / 2.0])
-
-
-@pytest.mark.parametrize(
-    ("given", "path"),
-    [
-        ({}, "Wear"),
-        ({"width": 1e-4, "share": 0.1}, "Wear.share"),
-        ({"share": 1.5}, "Wear.share"),
-        ({"share": 0.1, "friction": 0.0}, "Wear.friction"),
-        ({"width": math.nan}, "Wear.width"),
-        ({"across": (0.0,), "thicknesses": (1e-6,)}, "Wear.across"),
-        ({"across": (1e-4, 0.0), "thicknesses": (0.0, 0.0)}, "Wear.across"),
-        ({"across": (0.0, 1e-4), "thicknesses": (0.0, -1e-6)}, "Wear.thicknesses"),
-        ({"across": (0.0, 1e-4), "thicknesses": (0.0,)}, "Wear.across"),
-        ({"across": (0.0, 1e-4), "thicknesses": (0.0, 0.0), "thickness": 1e-6}, "Wear.thickness"),
-    ],
-)
-def test_wear_that_makes_no_sense_is_refused(given, path):
-    """At the field that is wrong."""
-    with pytest.raises(InputError) as caught:
-        Wear(**{"friction": 0.3, **given})
-    assert caught.value.path == path
 
 
 def test_a_worn_film_is_one_that_there_is():

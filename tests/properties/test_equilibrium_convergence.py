@@ -5,25 +5,19 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-import pytest
 from sane_studies import bearing_study
 
-from separatrix.chain.equilibrium import Equilibrium, equilibrium
+from separatrix.chain.equilibrium import equilibrium
 from separatrix.ground.errors import ConvergenceError, InputError
 from separatrix.study.study import BallBearing, KinematicModel, Material, Operation
 
 
-def solved(seed: int, folder: Path) -> Equilibrium:
-    """A sane study's equilibrium without race control."""
-    study = bearing_study(seed, folder)
-    return equilibrium(study.bearing, study.operation, KinematicModel.FREE, study.film.race_friction)
-
-
-@pytest.mark.parametrize("seeds", [range(60), pytest.param(range(60, 260), marks=pytest.mark.slow)], ids=str)
-def test_every_sane_bearing_is_solved(seeds: range, tmp_path: Path) -> None:
+def test_every_sane_bearing_is_solved(tmp_path: Path) -> None:
     """Axial, radial, combined loads and moments, rings held or free to tilt, 0 to 60 krpm, 3 classes."""
-    for seed in seeds:
-        result = solved(seed, tmp_path)
+    for seed in range(100):
+        study = bearing_study(seed, tmp_path)
+        friction = study.film.race_friction
+        result = equilibrium(study.bearing, study.operation, KinematicModel.FREE, friction)
         angles = np.concatenate((result.contact_angle_inner, result.contact_angle_outer))
         assert np.abs(angles).max() < 0.5 * math.pi, seed
 
@@ -83,11 +77,8 @@ def outcome(seed: int) -> str:
     return "solved"
 
 
-@pytest.mark.parametrize(
-    ("seeds", "most"), [(range(60), 4), pytest.param(range(60, 230), 12, marks=pytest.mark.slow)], ids=str
-)
-def test_extreme_bearings_are_solved_or_refused_by_physics(seeds: range, most: int) -> None:
+def test_extreme_bearings_are_solved_or_refused_by_physics() -> None:
     """A quarter of such a set failed with full circles for grooves; now some 3 in 100 do."""
-    counts = Counter(map(outcome, seeds))
+    counts = Counter(map(outcome, range(100)))
     assert set(counts) <= {"solved", "refused", "failed"}
-    assert counts["failed"] <= most
+    assert counts["failed"] <= 6

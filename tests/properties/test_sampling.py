@@ -76,22 +76,6 @@ def test_every_draw_lies_in_its_distribution(samples, seed):
     assert set(draws.values[:, draws.names.index("bearing.ball_count")]) <= {12.0, 13.0}
 
 
-def test_the_error_of_a_mean_falls_faster_than_its_number_to_the_power_0_9():
-    """A smooth function of four inputs, its root mean square error over 32 seeds, from 64 to 4096 points.
-
-    Random draws give the power 0.5. The slope of 7 points has a standard error of about 0.05.
-    """
-    numbers = 2 ** np.arange(6, 13)
-    errors = np.zeros((32, numbers.size))
-    for seed in range(32):
-        points = sobol_points(int(numbers[-1]), 4, seed)
-        values = np.prod(1.0 + 0.5 * (points - 0.5), axis=1)  # its mean is 1
-        errors[seed] = [values[:n].mean() - 1.0 for n in numbers]
-    size = np.sqrt((errors**2).mean(axis=0))
-    slope = np.polyfit(np.log(numbers), np.log(size), 1)[0]
-    assert slope < -0.9
-
-
 def test_inputs_are_those_of_the_study_then_the_measured_frictions():
     """First what the file says, in its order; then each measured friction with its scatter."""
     inputs = uncertain_inputs(UNCERTAIN)

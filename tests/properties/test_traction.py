@@ -40,14 +40,6 @@ def curve(parts, mu, lam, increments):
 
 
 @quick
-@given(friction, film, rise)
-def test_friction_leaves_the_slope_of_pure_creep_alone(mu, lam, factor):
-    """Without spin and Heathcote the origin sticks: any friction gives one slope."""
-    expected = slope(creep(0.0), mu, lam)
-    assert slope(creep(0.0), mu * factor, lam) == pytest.approx(expected, rel=1e-9)  # rounding
-
-
-@quick
 @given(friction, film, rise, st.one_of(st.just(0.0), size))
 def test_a_softer_film_never_raises_the_slope(mu, lam, factor, spin):
     """E_film/h down, slope down: pure spin or pure creep."""

@@ -7,16 +7,8 @@ import numpy as np
 import pytest
 
 import separatrix
-from separatrix.front import api, main
+from separatrix.front import api
 from separatrix.study.study import Wear, Worn
-
-
-def test_a_study_without_a_cage_has_a_mobility():
-    """Rates in their order, and one picture."""
-    answer = api.mobility("le7")
-    document = answer.document()
-    assert document["rates"] == sorted(document["rates"])
-    assert answer.plot("mobility").axes
 
 
 def test_document_and_table_of_a_wheel():
@@ -30,25 +22,6 @@ def test_document_and_table_of_a_wheel():
     table = answer.to_dataframe()
     assert {"force_forward", "force_backward", "force_law"} <= set(table)
     assert len(table) == len(document["speed"])
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"inner_speed": 0.0}, "must differ from outer_speed"),
-        ({"race_friction": 0.0}, "must be > 0 for traction"),
-    ],
-)
-def test_what_does_not_roll_is_refused(changes, words, tmp_path, capsys):
-    """As traction is: one line, status 2."""
-    (key, value), path = next(iter(changes.items())), tmp_path / "case.toml"
-    section, text = ("film", "0") if key == "race_friction" else ("operation", f'"{value} rpm"')
-    control = '[kinematics]\nmodel = "outer race control"\n' if key == "race_friction" else ""
-    path.write_text(
-        f'extends = "cryogenic-turbopump"\n[{section}]\n{key} = {text}\n{control}', encoding="utf-8"
-    )
-    assert main(["mobility", str(path), "--json"]) == 2
-    assert words in capsys.readouterr().err
 
 
 def test_a_worn_film_is_noted():

@@ -16,7 +16,7 @@ def test_a_notebook_runs_and_is_stored_without_outputs(path, monkeypatch):
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert not [cell for cell in cells if cell.outputs or cell.execution_count]
     monkeypatch.delenv("MPLBACKEND", raising=False)  # else the kernel does not show figures
-    NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
     shown = [output for cell in cells for output in cell.outputs]
     assert any("image/png" in output.get("data", {}) for output in shown)
     assert any(output.output_type == "stream" and output.name == "stdout" for output in shown)

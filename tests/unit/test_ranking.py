@@ -13,7 +13,6 @@ from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
-    BallModel,
     CageModel,
     Candidate,
     Friction,
@@ -21,7 +20,7 @@ from separatrix.study.study import (
     RankingQuestion,
     StabilitySettings,
 )
-from separatrix.verdict.beyond_models import Pocket, reason
+from separatrix.verdict.beyond_models import Pocket
 from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.ledger import NAME, Ledger
@@ -41,7 +40,6 @@ from separatrix.verdict.ranking_records import (
     same_rank,
 )
 from separatrix.verdict.reasons import CageMotion
-from separatrix.verdict.stability_curve import RestitutionThreshold
 
 QUICK = StabilitySettings(kicks=(0.5,), runs=8, duration=0.004, restitution_factors=(0.3, 0.6), seed=1)
 
@@ -172,26 +170,6 @@ def test_outside_the_tests_a_mean_is_known_less_well():
     assert may_be_lower(measured(other), measured(outside))
 
 
-@pytest.mark.parametrize(
-    ("threshold", "verdict", "said"),
-    [
-        ((0.65, 0.1, 0.9), Verdict.STABLE, "So it is."),
-        ((0.7, 0.1, 0.9), Verdict.STABLE, "So it is."),
-        ((0.0, 0.0, 0.0), Verdict.UNSTABLE, "Stable at no restitution factor above 0. So it is."),
-        ((1.0, 1.0, 1.0), Verdict.STABLE, "Stable at any restitution factor. So it is."),
-        (
-            (1.0, 1.0, 1.0),
-            Verdict.UNDECIDED,
-            "Pocket friction starts no whirl at any restitution factor. So it is.",
-        ),
-    ],
-)
-def test_a_reason_without_a_threshold_says_so(threshold, verdict, said):
-    """The numbers stand in the columns beside it: candidates of one verdict read alike."""
-    found = RestitutionThreshold(**dict(zip(("value", "low", "high"), threshold, strict=True)))
-    assert reason(found, judgement(verdict=verdict)) == said
-
-
 def test_a_missing_measurement_is_shown_as_missing():
     """A row of another type, last; the others are ranked without it."""
     question = RankingQuestion(
@@ -220,22 +198,6 @@ def test_a_row_carries_the_judgement_behind_its_verdict():
     capacity = transmitted_force(solution)
     assert a.judgement == judge(cage, Runner().whole_ensemble(cage, QUICK), capacity=capacity)
     assert (a.judgement.ball, a.judgement.ball_reason) == ("damper", None)
-
-
-def test_one_state_decides_alone_where_it_is_enough():
-    """The shipped study's own friction, left to choose its ball: the verdict says which decided, and why."""
-    study = quick_study(ranking=asked(("A", Friction(mean=0.1))))
-    (a,) = rank(replace(study, cage=replace(study.cage, ball=BallModel.AUTO))).environments[0].materials
-    assert a.judgement.ball == "one state"
-    assert a.judgement.ball_reason.endswith("below 25 % one state is enough.")
-
-
-def test_the_band_stands_at_this_bearing_s_restitution_factor_only():
-    """Thresholds need the critical friction alone."""
-    curve = rank(quick_study(ranking=asked(("A", Friction(mean=0.1))))).stability
-    assert curve.band is False
-    assert {point.critical_friction_low for point in curve.curve} == {None}
-    assert (curve.here.critical_friction_low, curve.here.critical_friction_high) != (None, None)
 
 
 def test_scatter_of_the_friction_widens_the_threshold():

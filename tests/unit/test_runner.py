@@ -101,21 +101,6 @@ def test_what_is_left_goes_on_at_the_pace_of_what_was_made():
     assert work.so_far(1) == (4.0, pytest.approx(4.0 + 250.0 * 4.0 / 112.5))
 
 
-def test_a_place_that_outlasts_its_load_is_not_taken_for_done():
-    """A search of 100 runs that has made 300: a fifth of its load is left."""
-    work = work_of(search=Load(100))
-    work.spend("search", 5.0, 300)
-    assert work.so_far(1) == (5.0, pytest.approx(9.0))
-
-
-def test_the_last_search_keeps_one_thread_busy():
-    """The others wait: the time that is left is its own, however many they are."""
-    work = work_of(search=Load(100))
-    work.spend("search", 5.0, 50)
-    assert work.so_far(1) == (5.0, 25.0)
-    assert work.so_far(4) == (5.0, 85.0)
-
-
 def test_kept_runs_say_nothing_of_the_others():
     """They took no time."""
     work = work_of(kept=Load(100), new=Load(100), next=Load(100))
@@ -321,11 +306,6 @@ def test_pieces_are_bound_to_their_keys_and_written_at_once(tmp_path):
         one.close()
 
 
-def test_a_key_depends_on_the_last_bit():
-    """Of a number, and on its kind."""
-    assert len({key_of(0.1), key_of(np.nextafter(0.1, 1.0)), key_of("0.1"), key_of(0.1, 0.1)}) == 4
-
-
 def test_a_file_that_is_no_ledger_is_refused(tmp_path):
     """With its name; it is left as it was."""
     path = tmp_path / NAME
@@ -341,23 +321,20 @@ extends = "momentum-wheel"
 kicks = ["0.4 m/s"]
 duration = "5 ms"
 runs = 16
-[ranking]
-friction_scatter = 0.2
 """
-LONG_VERBS = {
-    "rank": [],
-    "map": ["--points", "6"],
-    "sweep": ["--vary", "ball_cage_friction=0.1..0.4:6", "--verdicts"],
-}
 
 
 @pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("verb", LONG_VERBS)
-def test_a_killed_job_goes_on_to_the_same_bytes(verb, tmp_path, monkeypatch, capsys):
-    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs."""
+def test_a_killed_job_goes_on_to_the_same_bytes(tmp_path, monkeypatch, capsys):
+    """SIGKILL with some of the runs kept: no other file is left, and the next call takes those runs.
+
+    The ledger is the same for every verb; those of rank and map that are interrupted go on in test_ranking
+    and test_stability_map.
+    """
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(STUDY)
-    call = [verb, "s.toml", *LONG_VERBS[verb], "--json", "--jobs", "1"]
+    given = "sweep s.toml --vary ball_cage_friction=0.1..0.4:6 --verdicts --json --jobs 1"
+    call = given.split()
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     process = subprocess.Popen([*COMMAND, *call, "--out", "k"], **pipes)
     while pieces(tmp_path / "k") < 3 and process.poll() is None:

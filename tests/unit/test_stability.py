@@ -32,7 +32,6 @@ from separatrix.verdict.stability_curve import (
     own_restitution_factor,
     own_threshold,
     restitution_threshold,
-    threshold_factors,
 )
 
 SHIPPED = solve(read_study("cryogenic-turbopump"))
@@ -271,16 +270,6 @@ def test_a_cage_at_a_restitution_factor_has_it_for_its_own(eta):
     assert own_restitution_factor(cage_at(CAGE, eta, 0.1)) == pytest.approx(eta, rel=1e-9, abs=1e-12)
 
 
-def test_24_that_agree_are_unanimous():
-    """Of 8 that agree a tenth may still grow, but not one half."""
-    assert Count(0, 24).unanimous(0.1)
-    assert Count(24, 24).unanimous(0.9)
-    assert not Count(0, 8).unanimous(0.1)
-    assert Count(0, 8).unanimous(0.5)
-    assert not Count(1, 24).unanimous(0.5)
-    assert not Count(0, 0).unanimous(0.5)
-
-
 def test_straight_lines_between_the_factors_follow_a_curve_that_bends():
     """Like the shipped bearing, straight to 0.75, level to 0.9, 0 at 1: within 0.01 of friction."""
 
@@ -341,10 +330,3 @@ def test_the_interval_of_a_threshold_comes_from_that_of_the_curve():
     """A band of 0.01 in friction is 0.025 in eta on the first line, which falls 0.4 a unit; rounding."""
     found = restitution_threshold(POINTS, 0.3)
     assert (found.low, found.high) == pytest.approx((0.225, 0.275), abs=1e-12)
-
-
-def test_thresholds_are_solved_over_all_of_zero_to_one():
-    """The points go from 0 to 1, whatever restitution factors the study asks for."""
-    factors = threshold_factors(StabilitySettings(restitution_factors=(0.3, 0.5)))
-    assert factors == [0.0, 0.3, 0.5, 0.98, 1.0]
-    assert threshold_factors(StabilitySettings()) is FACTORS

@@ -49,17 +49,6 @@ def test_a_thick_film_in_series_is_noted():
     assert thin.notes == ()
 
 
-def test_one_strip_can_be_drawn():
-    """One strip is the middle one; shapes are (strip, node). Without friction there is no shear."""
-    field = shear_field(ELLIPSE, CREEP, strips=1, nodes=30, creep_increment=0.001, **GOOD)
-    assert field.across.tolist() == [0.0]
-    assert field.shear.shape == field.along.shape == field.pressure.shape == field.slip.shape == (1, 30)
-    assert field.along[0, 0] > 0.0 > field.along[0, -1]  # leading edge first
-    field = shear_field(ELLIPSE, CREEP, strips=3, nodes=10, race_friction=0.0, film_compliance=0.0)
-    assert not field.shear.any()
-    assert field.pressure.min() > 0.0
-
-
 def test_traction_without_slip_knows_no_friction():
     """Elastic shear of the same creep; with friction enough it is the traction; rounding."""
     how = {"film_compliance": 1e-15, "creep_increment": 1e-3, "strips": 3, "nodes": 20}

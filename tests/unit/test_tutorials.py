@@ -9,7 +9,6 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
-import separatrix
 from separatrix.front import main
 
 FOLDER = Path(__file__).parents[2] / "docs" / "tutorials"
@@ -18,7 +17,7 @@ QUICK = {"new", "check", "map", "simulate", "tribometer"}
 """Verbs that are run here, a few seconds each; rankings and verdicts of many cases take longer."""
 
 NUMBER = re.compile(r"-?\b\d+(?:\.\d+)?\b")
-STEP = {"map": 0.0201}
+STEP = {"map": 0.0401}
 """A step of the friction in the map of a tutorial, to rounding: at a boundary the last bits of a processor's
 own functions decide which way the counted runs fall. What the other verbs print is compared as it is."""
 
@@ -106,20 +105,3 @@ def test_the_tutorial_of_python_prints_what_the_page_says(capsys):
     assert [number[:6] for number in printed[:2]] == factors
     (outcome,) = re.findall(r"prints ([A-Z]+) and", text)
     assert printed[-1] == outcome
-
-
-def test_what_the_tutorials_say_of_a_run_without_output(capsys):
-    """The clearances of the cage to design, and its runs that settle."""
-    words = (FOLDER / "design.md").read_text(encoding="utf-8")
-    (study,) = [text for language, text in blocks("design") if language == "toml"]
-    Path("my-cage.toml").write_text(study)
-    (pocket, land) = re.search(
-        r"clearances: (\d+ um) each way in the pockets, (\d+ um) radial", words
-    ).groups()
-    checked = run("separatrix check my-cage.toml", capsys)
-    assert re.search(rf"Pocket clearance .*: {pocket} each way", checked)
-    assert re.search(rf"Land clearance .*: {land} radial", checked)
-    for run_number in (0, 1, 3):
-        found = separatrix.simulate("my-cage.toml", kick=0.2, run=run_number)
-        assert found.history.outcome.name == "SETTLES"
-    assert "runs 0, 1 and 3 from this disturbance settle" in words
