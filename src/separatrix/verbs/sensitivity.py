@@ -47,7 +47,6 @@ from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
-    candidate_numbers,
     evidence_column,
     is_judged,
     judged,
@@ -69,15 +68,14 @@ BRIEF, LONG = Level.BRIEF, Level.LONG
 GUESS = "?"
 """After a friction whose scatter is a guess."""
 
-OVERALL = "over all environments, mean friction"
 SOURCES = {
     "study": "from the study",
     "measured": "with measured scatter",
     "assumed": "with the default scatter, a guess",
 }
-PICTURE = "Probability that a bearing's cage settles, of each candidate in each environment."
-LISTED, LEAST = 6, 0.02
-"""Items of a list on a screen, and the least share of an input shown."""
+PICTURE = "Probability that a bearing's cage settles, of each candidate."
+LISTED, LEAST = 12, 0.02
+"""Rows of sources on a screen, and the least share of an input shown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,28 +128,23 @@ def _drawable(solution: Solution) -> None:
 
 
 def page(answer: Part) -> Page:
-    """Return the page of `sensitivity`: verdicts, what decides them, what to test, what is allowed."""
-    own = next(one for one in answer.environments if one.name == answer.environment)
-    others = {one.name: one.materials for one in answer.environments if one.name != answer.environment}
-    others |= {OVERALL: answer.overall} if others else {}
+    """Return the page of `sensitivity`: verdicts over the uncertain inputs, and what decides them."""
+    rows = answer.materials
+    shares = ((one.name, each) for one in answer.drivers for each in one.shares)
     return page_of(
         answer,
-        Note(f"With the uncertain inputs drawn, in {own.name}: {each_verdict(own.materials)}.", "lead"),
-        *environment(own.name, own.materials, Level.ALWAYS),
-        *footnotes(answer, own.materials),
-        Heading("Verdicts elsewhere", BRIEF),
-        facts(*((_title(name), each_verdict(rows)) for name, rows in others.items()), level=BRIEF),
-        Picture("sensitivity-probabilities", lambda: probabilities_figure(answer), PICTURE),
-        Heading("Which test to run next"),
-        *next_tests(answer),
+        Note(f"With the uncertain inputs drawn, in {answer.environment}: {each_verdict(rows)}.", "lead"),
+        Heading(answer.environment[:1].upper() + answer.environment[1:]),
+        verdicts(rows),
+        Note(LEGEND, "legend", LONG),
+        *footnotes(answer, rows),
         Heading("Main sources of uncertainty"),
         *sources(answer),
-        Heading("Which friction a new material may have"),
-        *allowed_frictions(answer),
-        *(block for name, rows in others.items() for block in environment(name, rows, LONG)),
+        Picture("sensitivity-probabilities", lambda: probabilities_figure(answer), PICTURE),
         Heading("Basis of this answer", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
-        *sheets(answer),
+        all_numbers("all numbers", ("material",), ((row.name, row) for row in rows)),
+        all_numbers("all shares", ("material",), shares),
         draws=True,
     )
 
@@ -159,17 +152,22 @@ def page(answer: Part) -> Page:
 # Verdicts.
 
 
-def _title(name: str) -> str:
-    return name[:1].upper() + name[1:]
-
-
 def each_verdict(rows: Sequence[Part]) -> str:
     """Return each verdict with who has it."""
     return by_verdict(grouped((verdict(row), row.name) for row in rows))
 
 
-def environment(name: str, rows: Sequence[Part], level: Level) -> list[Block]:
-    """Return friction, P(stable), verdict and motion of each candidate in one environment."""
+LEGEND = (
+    "s.d.: standard deviation of the friction of a new cage: its scatter from sample to sample, how well the "
+    "mean is known, and what was not tested. P(stable): share of the bearings whose cage settles or rolls in "
+    "its pockets, from the worst initial disturbance, with its 95 % interval. Motion: class of most of them. "
+    "Offset and force: largest in any run; > what the races hold: there it has no meaning. Runs: bearings "
+    "from the worst initial disturbance; fewer where the verdict was plain before."
+)
+
+
+def verdicts(rows: Sequence[Part]) -> Table:
+    """Return friction, P(stable), verdict and motion of each candidate."""
     columns = (
         text_column("material", lambda row: row.name),
         column("friction", head="friction of a new cage", mark=friction_mark),
@@ -180,18 +178,7 @@ def environment(name: str, rows: Sequence[Part], level: Level) -> list[Block]:
         *map(evidence_column, ("largest_offset", "largest_contact_force")),
         column("runs", of=judged),
     )
-    legend = (
-        "s.d.: standard deviation of the friction of a new cage: its scatter from sample to sample, how well "
-        "the mean is known, and what was not tested. P(stable): share of the bearings whose cage settles or "
-        "rolls in its pockets, from the worst initial disturbance, with its 95 % interval. Motion: class of "
-        "most of them. Offset and force: largest in any run; > what the races hold: there it has no meaning. "
-        "Runs: bearings from the worst initial disturbance; fewer where the verdict was plain before."
-    )
-    return [
-        Heading(_title(name), level),
-        Table(name, columns, tuple(rows), level=level),
-        *([Note(legend, "legend", LONG)] if level is Level.ALWAYS else []),
-    ]
+    return Table("verdicts", columns, tuple(rows))
 
 
 def friction_mark(row: Part) -> str:
@@ -205,7 +192,7 @@ def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
     if etas:
         each = by_verdict(etas) if len(etas) > 1 else next(iter(etas))
         yield Note(f"Restitution factor $eta$ of the drawn bearings, median (nine in ten): {each}.", "legend")
-    rows = [row for one in answer.environments for row in one.materials if "friction" in row]
+    rows = [row for row in own if "friction" in row]
     if any(row.friction_scatter_assumed for row in rows):
         assumed = "its scatter from sample to sample was not measured: {default_scatter} of the mean is "
         yield Note(fill(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
@@ -224,69 +211,42 @@ def holds_for(answer: Part) -> Iterator[tuple[str, str]]:
     yield "Bearings drawn", f"{show(answer, 'bearings')}{failed}; seed {answer.seed}"
     yield "Initial disturbances", ", ".join(number_of(answer, "kicks", one) for one in answer.kicks)
     yield "Runs", f"{show(answer, 'runs')} in all"
-    drifting = [row for row in answer.overall if "drift_rate" in row]
+    drifting = [row for row in answer.materials if "drift_rate" in row]
     if drifting:
         fastest = max(drifting, key=lambda row: row.drift_rate)
         yield "Largest drift", f"{show(fastest, 'drift_rate')} (median of a case)"
     yield "Ended early", fill(answer, "at a risk of {stopped_risk} of another verdict at each look")
 
 
-# What decides, and what to test.
-
-
-def next_tests(answer: Part) -> Iterator[Block]:
-    """Yield which measurement would settle undecided cases."""
-    if not answer.undecided:
-        none = "No case is undecided: no measurement would change a verdict."
-        yield Note(none if answer.complete else "No finished case is undecided.")
-        return
-    none = "" if answer.next_tests else " No single measurement would settle any of them."
-    yield Note(f"Undecided: {'; '.join(answer.undecided)}.{none}")
-
-    def chances(test: Part) -> str:
-        pairs = zip(test.cases, test.chances, strict=True)
-        return "; ".join(f"{case} {number_of(test, 'chances', chance)}" for case, chance in pairs)
-
-    heads = "input to measure", "chance of a verdict"
-    columns = text_column(heads[0], lambda test: test.name), column("settled"), text_column(heads[1], chances)
-    for level, most in ((BRIEF, LISTED), (LONG, None)):
-        yield Table("next tests", columns, tuple(answer.next_tests[:most]), level=level)
+# What decides.
 
 
 def sources(answer: Part) -> Iterator[Block]:
-    """Yield the sources of the cases that have any, and the others."""
-    known = least_decided(answer)
-    shares = [(case, one) for case in known for one in largest_first(case.shares)]
+    """Yield the sources of the cases that have any, the least decided first, and how many have none."""
+    chances = {row.name: row.get("probability_stable") or 0.0 for row in answer.materials}
+    known = sorted(
+        (one for one in answer.drivers if one.shares), key=lambda one: abs(chances[one.name] - 0.5)
+    )
+    shares = [(case, one) for case in known for one in case.shares if one.share >= LEAST]
     columns = (
-        text_column("case", lambda row: f"{row[0].name}, {row[0].environment}"),
+        text_column("material", lambda row: row[0].name),
         text_column("input", lambda row: "own friction" if is_friction(row[1].name) else row[1].name),
         column("share", of=lambda row: row[1]),
         column("skill", of=lambda row: row[0]),
     )
-    caption = (
-        "Share of the variance of the logit of P(settles) that an input brings (95 %), from 2 %, by a "
-        "logistic regression of the runs; chance: the single run's disturbance and leads. Skill: part of the "
-        "deviance explained, on bearings left out of the fit. The least decided cases come first."
-    )
-    for level, most in ((BRIEF, 2 * LISTED), (LONG, None)):
-        yield Table("sources", columns, tuple(shares[:most]), caption, level)
-    reasons = Counter(one.skill is None for one in answer.drivers if not one.shares)
-    for is_few, count in reasons.items():
+    for level, most in ((BRIEF, LISTED), (LONG, None)):
+        yield Table("sources", columns, tuple(shares[:most]), SOURCES_LEGEND, level)
+    reasons = grouped((one.skill is None, one.name) for one in answer.drivers if not one.shares)
+    for is_few, names in reasons.items():
         reason = "too few bearings end otherwise" if is_few else "the inputs explain almost no variance"
-        yield Note(f"No sources of {count} cases: {reason}.", level=LONG if known else Level.ALWAYS)
+        yield Note(f"No sources for {', '.join(names)}: {reason}.", level=LONG if known else Level.ALWAYS)
 
 
-def least_decided(answer: Part) -> list[Part]:
-    """Return the cases whose sources are known, the least decided first."""
-    places = [(one.name, row) for one in answer.environments for row in one.materials]
-    chances = {(place, row.name): row.get("probability_stable") or 0.0 for place, row in places}
-    known = [one for one in answer.drivers if one.shares]
-    return sorted(known, key=lambda one: abs(chances.get((one.environment, one.name), 0.0) - 0.5))
-
-
-def largest_first(shares: Sequence[Part]) -> list[Part]:
-    """Return the shares that are worth a word."""
-    return sorted((one for one in shares if one.share >= LEAST), key=lambda one: -one.share)
+SOURCES_LEGEND = (
+    "Share of the variance of the logit of P(settles) that an input brings (95 %), from 2 %, by a logistic "
+    "regression of the runs: what measuring it could take away at most. Chance: the single run's disturbance "
+    "and leads. Skill: part of the deviance explained, on bearings left out of the fit."
+)
 
 
 def is_friction(name: str) -> bool:
@@ -294,54 +254,12 @@ def is_friction(name: str) -> bool:
     return name.startswith("ranking.") and ".material." not in name
 
 
-# What is allowed.
-
-
-def allowed_frictions(answer: Part) -> Iterator[Note]:
-    """Yield the largest friction that a new material may have, with the pockets of some candidates."""
-    for one in answer.allowed_friction:
-        pocket = f" in the pockets of {', '.join(one.names)}" if answer.allowed_friction[1:] else ""
-        wanted = f"with a probability of {{probability}}{pocket}"
-        if one.friction is None:
-            yield Note(fill(one, f"To be stable {wanted}, no friction can be named: {one.reason}."))
-        else:
-            most = "At most {friction}, if it scatters by {scatter} of itself"
-            yield Note(fill(one, f"{most}, to be stable {wanted}."))
-
-
-# The workbook.
-
-
-def sheets(answer: Part) -> Iterator[Table]:
-    """Yield every number of the candidates, and all shares of inputs."""
-    yield candidate_numbers(answer)
-    shares = ((one.environment, one.name, each) for one in answer.drivers for each in one.shares)
-    yield all_numbers("all shares", ("environment", "material"), shares)
-
-
 # The picture.
 
 
 def probabilities_figure(answer: Part) -> Figure:
-    """Return P(stable) of every candidate in every environment and overall, best at the top."""
-    places = [(one.name, one.materials) for one in answer.environments]
-    places += [(OVERALL, answer.overall)] if places[1:] and answer.overall else []
-    panels = [_panel(name, rows) for name, rows in places]
-    signs = [sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()]
-    signs.append(sign("", GREY, "95 % interval", line="-"))
-    signs.append(sign("", GREY, "probabilities of 0.5 and 0.9", line=":"))
-    signs.append(sign("", GREY, f"{MARK} extrapolated beyond the tests"))
-    return Figure(
-        rows=tuple(tuple(panels[at : at + 2]) for at in range(0, len(panels), 2)),
-        heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt="P(stable) with its interval of each candidate in each environment; the tables have the numbers.",
-        height=0.75 + 0.17 * max(len(rows) for _, rows in places),
-        legend=tuple(signs),
-    )
-
-
-def _panel(name: str, rows: Sequence[Part]) -> Panel:
-    order = sorted(rows, key=lambda row: -1.0 if not is_judged(row) else row.probability_stable)
+    """Return P(stable) of every candidate, best at the top."""
+    order = sorted(answer.materials, key=lambda row: -1.0 if not is_judged(row) else row.probability_stable)
     found: list[Mark] = [Across(at=at, colour=GREY, line=":") for at in (0.5, 0.9)]
     for place, row in enumerate(order):
         if not is_judged(row):
@@ -353,7 +271,17 @@ def _panel(name: str, rows: Sequence[Part]) -> Panel:
     names = tuple(row.name + MARK * bool(row.extrapolation) for row in order)
     x = Axis(label="P(stable) [-]", low=-0.02, high=1.02)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=names)
-    return Panel(title=_title(name), x=x, y=y, marks=tuple(found))
+    signs = [sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()]
+    signs.append(sign("", GREY, "95 % interval", line="-"))
+    signs.append(sign("", GREY, "probabilities of 0.5 and 0.9", line=":"))
+    signs.append(sign("", GREY, f"{MARK} extrapolated beyond the tests"))
+    return Figure(
+        rows=((Panel(title=f"Drawn bearings in {answer.environment}", x=x, y=y, marks=tuple(found)),),),
+        heading=figure_heading(answer, f"seed {answer.seed}"),
+        alt="P(stable) with its interval of each candidate; the table has the numbers.",
+        height=0.75 + 0.25 * len(names),
+        legend=tuple(signs),
+    )
 
 
 def _hover(row: Part) -> str:
