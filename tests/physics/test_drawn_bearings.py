@@ -18,7 +18,7 @@ from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.ranking import rank
 
 PLACE = "liquid nitrogen, 440C"
-CASE = Case("A", PLACE)
+CASE = Case("A")
 FRICTION = f"ranking.A.{PLACE}"
 
 

@@ -38,11 +38,14 @@ friction = { air = { mean = 0.1, standard_deviation = 0.02, count = 4 }, vacuum 
 [[ranking.candidates]]
 name = "B"
 friction = { air = "0.3 +- 10 %" }
+
+[[ranking.candidates]]
+name = "C"
+friction = { vacuum = 0.2 }
 """
 KEYS = (
-    "bearings failed stopped_risk default_scatter environment inputs environments overall "
-    "drivers undecided next_tests allowed_friction kicks runs complete chain cage "
-    "seed study warnings"
+    "bearings failed stopped_risk default_scatter environment inputs materials drivers kicks runs complete "
+    "chain cage seed study warnings"
 )
 OF_A_ROW = (
     "name friction friction_deviation friction_scatter_assumed extrapolation "
@@ -76,19 +79,18 @@ def asked(capsys, *options: str) -> dict:
     return document(capsys, "sensitivity", "small.toml", "--samples", "64", *options)
 
 
-def row(document, environment, name):
+def row(document, name):
     """Return the row of a candidate."""
-    one = next(one for one in document["environments"] if one["name"] == environment)
-    return next(row for row in one["materials"] if row["name"] == name)
+    return next(row for row in document["materials"] if row["name"] == name)
 
 
 def test_the_document_has_the_keys_that_scripts_rely_on(small):
-    """Every candidate in every environment; probabilities in their intervals, with their evidence."""
+    """Every candidate; probabilities in their intervals, with their evidence."""
     found = small
     assert set(KEYS.split()) <= set(found)
-    assert set(OF_A_ROW.split()) <= set(found["overall"][0])
-    rows = [r for one in found["environments"] for r in one["materials"] if r["friction"]] + found["overall"]
-    assert len(rows) == 5
+    assert set(OF_A_ROW.split()) <= set(found["materials"][0])
+    rows = [one for one in found["materials"] if one["friction"]]
+    assert len(rows) == 2
     for one in rows:
         assert 0.0 <= one["probability_low"] <= one["probability_stable"] <= one["probability_high"] <= 1.0
         assert one["runs"] == 64
@@ -102,21 +104,21 @@ def test_the_document_has_the_keys_that_scripts_rely_on(small):
 def test_what_was_not_measured_is_missing(small):
     """Everything is null but name and reason."""
     found = small
-    missing = row(found, "vacuum", "B")
-    assert missing["reason"] == "not measured in vacuum"
+    missing = row(found, "C")
+    assert missing["reason"] == "not measured in air"
     assert missing["friction"] is missing["probability_stable"] is missing["verdict"] is None
 
 
 def test_each_friction_has_the_scatter_that_is_known_of_it(small):
     """A measured one that of a new cage, an unrepeated one the default, a stated one its own."""
     found = small
-    expected = {("air", "A"): 0.02 * (1 + 1 / 4) ** 0.5, ("vacuum", "A"): 0.09 * 0.15, ("air", "B"): 0.015}
-    for place, deviation in expected.items():
-        known = row(found, *place)
+    expected = {"A": 0.02 * (1 + 1 / 4) ** 0.5, "B": 0.015}
+    for name, deviation in expected.items():
+        known = row(found, name)
         assert known["friction_deviation"] == pytest.approx(deviation, rel=0.05)  # of 64 spread draws
-        assert known["friction_scatter_assumed"] is (place == ("vacuum", "A"))
+        assert known["friction_scatter_assumed"] is False
     sources = {one["name"]: one["source"] for one in found["inputs"]}
-    known = {"film.thickness": "study", "ranking.A.air": "measured", "ranking.A.vacuum": "assumed"}
+    known = {"film.thickness": "study", "ranking.A.air": "measured"}
     assert known.items() <= sources.items()
 
 
@@ -129,7 +131,7 @@ def test_certain_inputs_and_frictions_alone_are_answered(capsys):
     """A study without a distribution: the frictions scatter, eta does not."""
     Path("small.toml").write_text(SMALL.replace('thickness = { between = ["0.4 um", "0.6 um"] }', ""))
     found = asked(capsys)
-    known = row(found, "air", "A")
+    known = row(found, "A")
     assert known["restitution_factor_low"] == known["restitution_factor_high"]
 
 
@@ -139,14 +141,14 @@ def test_an_interrupt_keeps_the_cases_that_were_counted(capsys, monkeypatch):
 
     def count(drawn, case, runner):
         found = counted(drawn, case, runner)
-        if case == ("A", "air"):
+        if case == ("A",):
             os.kill(os.getpid(), signal.SIGINT)
         return found
 
     monkeypatch.setattr(uncertain, "counted", count)
     found = document(capsys, "sensitivity", "small.toml", "--samples", "64", "--jobs", "1", status=130)
     assert found["complete"] is False
-    assert row(found, "air", "A")["probability_stable"] is not None
+    assert row(found, "A")["probability_stable"] is not None
     assert main(["sensitivity", "small.toml", "--samples", "64", "--jobs", "1", "--quiet"]) == 130
     assert "Interrupted: only what was finished is here." in capsys.readouterr().out
 

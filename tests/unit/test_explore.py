@@ -5,18 +5,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.special import expit, ndtr
+from scipy.special import expit
 
 from separatrix.cage import Ensemble, RunOutcome
-from separatrix.study.distribution import LogNormal, Normal
-from separatrix.study.study import Candidate, Friction
 from separatrix.verdict import uncertain_study
-from separatrix.verdict.draws import Case, UncertainInput
-from separatrix.verdict.drivers import CHANCE, drivers, fitted, next_tests, reducible_shares
+from separatrix.verdict.draws import Case
+from separatrix.verdict.drivers import CHANCE, drivers, fitted
 from separatrix.verdict.judgement import CLEAR, FEW, KickCount, Verdict, wilson_interval
 from separatrix.verdict.uncertain_study import is_plain, settles_more
 
-CASE = Case("A", "air")
+CASE = Case("A")
 NAMES = ["x", "y", "z"]
 
 
@@ -36,7 +34,7 @@ def test_the_regression_finds_the_law_that_drew_the_outcomes():
 
 def test_shares_are_squares_of_coefficients_beside_chance():
     """X 2, y 1: 4 and 1 against pi^2/3 of the chance of a single run; the interval holds it."""
-    found = drivers(CASE, NAMES, *simulated((0.0, 2.0, 1.0, 0.0), 4096))
+    found = drivers("A", NAMES, *simulated((0.0, 2.0, 1.0, 0.0), 4096))
     total = 4.0 + 1.0 + np.pi**2 / 3.0
     shares = {one.name: one for one in found.shares}
     assert list(shares) == ["x", "y", "z", CHANCE]
@@ -51,7 +49,7 @@ def test_an_interval_holds_the_true_share_about_as_often_as_it_says():
     true = 2.25 / (2.25 + 0.49 + np.pi**2 / 3.0)
     inside = 0
     for seed in range(100):
-        shares = drivers(CASE, NAMES, *simulated((0.0, 1.5, 0.7, 0.0), 512, seed)).shares
+        shares = drivers("A", NAMES, *simulated((0.0, 1.5, 0.7, 0.0), 512, seed)).shares
         (share,) = [one for one in shares if one.name == "x"]
         inside += share.share_low <= true <= share.share_high
     assert inside >= 85
@@ -60,10 +58,10 @@ def test_an_interval_holds_the_true_share_about_as_often_as_it_says():
 def test_what_the_runs_cannot_tell_is_said():
     """Too few of the rarer outcome; and inputs that explain nothing."""
     scores, settled = simulated((4.5, 0.5, 0.0, 0.0), 512)
-    rare = drivers(CASE, NAMES, scores, settled)
+    rare = drivers("A", NAMES, scores, settled)
     assert (rare.shares, rare.skill) == ((), None)
     assert "too few to compare" in rare.reason
-    idle = drivers(CASE, NAMES, *simulated((0.0, 0.0, 0.0, 0.0), 512))
+    idle = drivers("A", NAMES, *simulated((0.0, 0.0, 0.0, 0.0), 512))
     assert idle.shares == ()
     assert "explain" in idle.reason
 
@@ -75,41 +73,6 @@ def test_a_separation_by_one_input_stays_finite():
     assert np.all(np.isfinite(b))
     assert b[1] > 5.0
     assert abs(b[2]) < 2.0
-
-
-def known_input(key, friction=0.1):
-    """An input with a log-normal law."""
-    law = LogNormal(mean=friction, standard_deviation=0.1 * friction)
-    return UncertainInput(key=key, unit="-", distribution=law, central=friction)
-
-
-def test_a_test_settles_with_the_probability_that_its_result_is_clear():
-    """One input, no other: P(settles | z) passes 0.95 and 0.05 at known z: the chance is a normal's tails."""
-    b, steep = np.array([0.0, 6.0]), 6.0
-    scores = np.zeros((1, 1))
-    (found,) = next_tests([known_input("x")], {}, {"A in air": (b, scores)})
-    at = np.log(0.95 / 0.05) / steep
-    # 64 equally likely results: to half a step on either side
-    assert found.settled == pytest.approx(2.0 * ndtr(-at), abs=1.0 / 64.0)
-    assert (found.name, found.cases) == ("x", ("A in air",))
-
-
-def test_a_test_that_removes_nothing_or_an_idle_input_settles_nothing():
-    """A share of 0 that can be learned, and a coefficient of 0."""
-    case = {"A in air": (np.array([0.0, 6.0]), np.zeros((1, 1)))}
-    assert next_tests([known_input("x")], {"x": 0.0}, case) == ()
-    idle = {"A in air": (np.zeros(2), np.zeros((1, 1)))}
-    assert next_tests([known_input("x")], {}, idle) == ()
-
-
-def test_of_a_friction_only_the_error_of_its_mean_can_be_learned():
-    """After n tests with a known scatter 1/(n + 1) of the variance of a new cage's friction."""
-    friction = Friction(mean=0.1, standard_deviation=0.02, count=4)
-    candidate = Candidate(name="A", friction={"air": friction})
-    asked = SimpleNamespace(ranking=SimpleNamespace(candidates=(candidate,), friction_scatter=0.09))
-    law = Normal(mean=0.1, standard_deviation=0.022)
-    one = UncertainInput(key="ranking.A.air", unit="-", distribution=law, central=0.1, source="measured")
-    assert reducible_shares(asked, [one]) == {"ranking.A.air": pytest.approx(1.0 / 5.0)}
 
 
 def judged(verdict, *settles, runs=64):

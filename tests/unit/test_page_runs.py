@@ -1,4 +1,4 @@
-"""The pages of `simulate` and `sensitivity`: what their pictures and the moving cage show, and when."""
+"""The page of `simulate`: what its pictures and the moving cage show, and when."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from scipy.integrate import quad
 
 from separatrix.ground.document import Part
 from separatrix.present import draw, view
-from separatrix.verbs import sensitivity
 from separatrix.verbs.parts import cage_scene, run_panels
 from separatrix.verbs.parts.cage_scene import A_TURN, AROUND, MOST_FRAMES, frame_moments, scene
 
@@ -141,10 +140,3 @@ def test_the_pockets_bound_the_path_by_a_polygon():
     # half a degree from one direction to the next
     assert found.max() == pytest.approx(3e-4 / np.cos(np.pi / 6), rel=1e-4)
     assert AROUND.size == found.size
-
-
-@pytest.mark.parametrize(("complete", "said"), [(True, "No case is undecided"), (False, "No finished case")])
-def test_an_interrupted_answer_does_not_say_that_nothing_is_undecided(complete, said):
-    """Cases that are not finished may be."""
-    answer = Part({"undecided": [], "next_tests": [], "complete": complete}, {})
-    assert next(iter(sensitivity.next_tests(answer))).text.startswith(said)

@@ -21,7 +21,6 @@ from separatrix.study.study import (
     StabilitySettings,
 )
 from separatrix.verdict.beyond_models import Pocket
-from separatrix.verdict.draws import Case
 from separatrix.verdict.judgement import Judgement, Verdict, judge, transmitted_force
 from separatrix.verdict.ledger import NAME, Ledger
 from separatrix.verdict.long_jobs import Interrupted, Runner
@@ -288,7 +287,7 @@ def test_a_row_whose_evidence_is_not_finite_has_a_reason_and_no_verdict(bad):
     question = SimpleNamespace(pockets={"A": pocket}, cages={pocket: SimpleNamespace(restitution=eta)})
     evidence = judgement(largest_contact_force=float(bad))
     found = {Asked(pocket, 0.1): evidence}
-    row = _row(question, found, Case("A", "air"), MeanFriction(0.1, 0.01))
+    row = _row(question, found, "A", "air", MeanFriction(0.1, 0.01))
     assert isinstance(row, NotFinished)
     assert row.judgement is None
     assert row.reason == (

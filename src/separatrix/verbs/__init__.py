@@ -30,7 +30,7 @@ VERBS = {
     "map": "Where the cage is stable in the plane of two parameters.",
     "simulate": "Follow one run of the cage, in the plane or in space.",
     "rank": "Rank the cage materials: verdict, margin, reason.",
-    "sensitivity": "Verdicts over uncertain inputs, and what to test next.",
+    "sensitivity": "Verdicts over uncertain inputs, and which input decides them.",
     "sweep": "Chain and verdict of many cases: one table.",
 }
 """Modules of this package, each a question to a study, in the order of the chain -> its line of help."""

@@ -34,12 +34,18 @@ from separatrix.present.figure import (
     sign,
 )
 from separatrix.verbs.parts.answer_page import figure_heading, page_of
-from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, marks, number_of, show
+from separatrix.verbs.parts.quantity_text import (
+    all_numbers,
+    column,
+    fill,
+    marks,
+    number_of,
+    show,
+)
 from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
-    candidate_numbers,
     evidence_column,
     is_judged,
     judged,
@@ -60,10 +66,9 @@ SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 GUESS = "?"
 """After a friction whose scatter is a guess."""
 
-OVERALL = "over all environments, mean friction"
-PICTURE = "Probability that a bearing's cage settles, of each candidate in each environment."
-LISTED, LEAST = 6, 0.02
-"""Items of a list, and the least share of an input shown; the workbook has all."""
+PICTURE = "Probability that a bearing's cage settles, of each candidate."
+LISTED, LEAST = 12, 0.02
+"""Rows of sources, and the least share of an input shown; the workbook has all."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,33 +121,22 @@ def _drawable(solution: Solution) -> None:
 
 
 def page(answer: Part) -> Page:
-    """Return the page of `sensitivity`: verdicts, what decides them, what to test, what is allowed."""
-    own = next(one for one in answer.environments if one.name == answer.environment)
-    others = [(one.name, one.materials) for one in answer.environments if one.name != answer.environment]
-    others += [(OVERALL, answer.overall)] if others else []
+    """Return the page of `sensitivity`: verdicts over the uncertain inputs, and what decides them."""
+    rows = answer.materials
+    shares = ((one.name, each) for one in answer.drivers for each in one.shares)
     return page_of(
         answer,
-        Note(f"With the uncertain inputs drawn, in {own.name}: {each_verdict(own.materials)}.", "lead"),
-        Heading(_title(own.name)),
-        *candidates(own),
-        *footnotes(answer, own.materials),
-        Heading("Verdicts elsewhere"),
-        facts(*((_title(name), each_verdict(rows)) for name, rows in others)),
-        Picture("sensitivity-probabilities", lambda: probabilities_figure(answer), PICTURE),
-        Heading("Which test to run next"),
-        *next_tests(answer),
+        Note(f"With the uncertain inputs drawn, in {answer.environment}: {each_verdict(rows)}.", "lead"),
+        Heading(answer.environment[:1].upper() + answer.environment[1:]),
+        *verdicts(rows),
+        *footnotes(answer, rows),
         Heading("Main sources of uncertainty"),
         *sources(answer),
-        Heading("Which friction a new material may have"),
-        *allowed_frictions(answer),
+        Picture("sensitivity-probabilities", lambda: probabilities_figure(answer), PICTURE),
         Heading("Basis of this answer", Level.LONG),
         facts(*ensemble_facts(answer), level=Level.LONG),
-        candidate_numbers(answer),
-        all_numbers(
-            "all shares",
-            ("environment", "material"),
-            ((one.environment, one.name, each) for one in answer.drivers for each in one.shares),
-        ),
+        all_numbers("all numbers", ("material",), ((row.name, row) for row in rows)),
+        all_numbers("all shares", ("material",), shares),
         draws=True,
     )
 
@@ -150,29 +144,25 @@ def page(answer: Part) -> Page:
 # Verdicts.
 
 
-def _title(name: str) -> str:
-    return name[:1].upper() + name[1:]
-
-
 def each_verdict(rows: Sequence[Part]) -> str:
     """Return each verdict with who has it."""
     return by_verdict(grouped((verdict(row), row.name) for row in rows))
 
 
-def candidates(own: Part) -> list[Block]:
-    """Return friction, P(stable), verdict and motion of each candidate in the study's environment."""
+def verdicts(rows: Sequence[Part]) -> list[Block]:
+    """Return friction, P(stable), verdict and motion of each candidate."""
     runs = "from the worst initial disturbance; fewer where the verdict was plain before"
     columns = (
         text_column("material", lambda row: row.name),
         column("friction", head="friction of a new cage", mark=friction_mark),
-        column("friction_deviation"),
+        column("friction_deviation", head="s.d."),
         column("probability_stable", of=judged),
         text_column("verdict", verdict),
         motion_column(),
         *map(evidence_column, ("largest_offset", "largest_contact_force")),
         replace(column("runs", of=judged), meaning=runs),
     )
-    return [Table(own.name, columns, tuple(own.materials)), Note(explained(columns), "legend", Level.LONG)]
+    return [Table("verdicts", columns, tuple(rows)), Note(explained(columns), "legend", Level.LONG)]
 
 
 def friction_mark(row: Part) -> str:
@@ -203,51 +193,33 @@ def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:
     yield "Ended early", fill(answer, "at a risk of {stopped_risk} of another verdict at each look")
 
 
-# What decides, and what to test.
-
-
-def next_tests(answer: Part) -> Iterator[Block]:
-    """Yield which measurement would settle undecided cases."""
-    if not answer.undecided:
-        none = "No case is undecided: no measurement would change a verdict."
-        yield Note(none if answer.complete else "No finished case is undecided.")
-        return
-    none = "" if answer.next_tests else " No single measurement would settle any of them."
-    yield Note(f"Undecided: {'; '.join(answer.undecided)}.{none}")
-
-    def chances(test: Part) -> str:
-        pairs = zip(test.cases, test.chances, strict=True)
-        return "; ".join(f"{case} {number_of(test, 'chances', chance)}" for case, chance in pairs)
-
-    measured, chance = text_column("input to measure", lambda test: test.name), "chance of a verdict"
-    columns = measured, column("settled"), text_column(chance, chances)
-    yield Table("next tests", columns, tuple(answer.next_tests[:LISTED]))
+# What decides.
 
 
 def sources(answer: Part) -> Iterator[Block]:
     """Yield the sources of the cases that have any, the least decided first, and how many have none."""
-    places = [(one.name, row) for one in answer.environments for row in one.materials]
-    chances = {(place, row.name): row.get("probability_stable") or 0.0 for place, row in places}
-    drivers = answer.drivers
-    known = [one for one in drivers if one.shares]
-    known.sort(key=lambda one: abs(chances.get((one.environment, one.name), 0.0) - 0.5))
-    largest = [(case, one) for case in known for one in sorted(case.shares, key=lambda one: -one.share)]
-    shares = [(case, one) for case, one in largest if one.share >= LEAST]
+    chances = {row.name: row.get("probability_stable") or 0.0 for row in answer.materials}
+    known = sorted(
+        (one for one in answer.drivers if one.shares), key=lambda one: abs(chances[one.name] - 0.5)
+    )
+    shares = [(case, one) for case in known for one in case.shares if one.share >= LEAST]
     columns = (
-        text_column("case", lambda row: f"{row[0].name}, {row[0].environment}"),
+        text_column("material", lambda row: row[0].name),
         text_column("input", lambda row: "own friction" if is_friction(row[1].name) else row[1].name),
         column("share", of=lambda row: row[1]),
         column("skill", of=lambda row: row[0]),
     )
-    caption = (
-        "Share of the variance of the logit of P(settles) that an input brings (95 %), from 2 %, by a "
-        "logistic regression of the runs; chance: the single run's disturbance and leads. Skill: part of the "
-        "deviance explained, on bearings left out of the fit. The least decided cases come first."
-    )
-    yield Table("sources", columns, tuple(shares[: 2 * LISTED]), caption)
-    if none := len(drivers) - len(known):
-        reason = "too few bearings end otherwise, or the inputs explain almost no variance"
-        yield Note(f"No sources of {none} cases: {reason}.", level=Level.LONG if known else Level.ALWAYS)
+    yield Table("sources", columns, tuple(shares[:LISTED]), SOURCES)
+    for reason, names in grouped((one.reason, one.name) for one in answer.drivers if one.reason).items():
+        level = Level.LONG if known else Level.ALWAYS
+        yield Note(f"No sources for {', '.join(names)}: {reason}.", level=level)
+
+
+SOURCES = (
+    "Share of the variance of the logit of P(settles) that an input brings (95 %), from 2 %, by a logistic "
+    "regression of the runs: what measuring it could take away at most. Chance: the single run's disturbance "
+    "and leads. Skill: part of the deviance explained, on bearings left out of the fit."
+)
 
 
 def is_friction(name: str) -> bool:
@@ -255,41 +227,12 @@ def is_friction(name: str) -> bool:
     return name.startswith("ranking.") and ".material." not in name
 
 
-def allowed_frictions(answer: Part) -> Iterator[Note]:
-    """Yield the largest friction that a new material may have, with the pockets of some candidates."""
-    for one in answer.allowed_friction:
-        pocket = f" in the pockets of {', '.join(one.names)}" if answer.allowed_friction[1:] else ""
-        wanted = f"with a probability of {{probability}}{pocket}"
-        words = f"At most {{friction}}, if it scatters by {{scatter}} of itself, to be stable {wanted}."
-        if one.friction is None:
-            words = f"To be stable {wanted}, no friction can be named: {one.reason}."
-        yield Note(fill(one, words))
-
-
 # The picture.
 
 
 def probabilities_figure(answer: Part) -> Figure:
-    """Return P(stable) of every candidate in every environment and overall, best at the top."""
-    places = [(one.name, one.materials) for one in answer.environments]
-    places += [(OVERALL, answer.overall)] if places[1:] and answer.overall else []
-    panels = [_panel(name, rows) for name, rows in places]
-    return Figure(
-        rows=tuple(tuple(panels[at : at + 2]) for at in range(0, len(panels), 2)),
-        heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt=PICTURE,
-        height=0.75 + 0.17 * max(len(rows) for _, rows in places),
-        legend=(
-            *(sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()),
-            sign("", GREY, "95 % interval", line="-"),
-            sign("", GREY, "probabilities of 0.5 and 0.9", line=":"),
-            sign("", GREY, f"{MARK} extrapolated beyond the tests"),
-        ),
-    )
-
-
-def _panel(name: str, rows: Sequence[Part]) -> Panel:
-    order = sorted(rows, key=lambda row: -1.0 if not is_judged(row) else row.probability_stable)
+    """Return P(stable) of every candidate, best at the top."""
+    order = sorted(answer.materials, key=lambda row: -1.0 if not is_judged(row) else row.probability_stable)
     found: list[Mark] = [Across(at=at, colour=GREY, line=":") for at in (0.5, 0.9)]
     for place, row in enumerate(order):
         if not is_judged(row):
@@ -301,7 +244,17 @@ def _panel(name: str, rows: Sequence[Part]) -> Panel:
     names = tuple(row.name + MARK * bool(row.extrapolation) for row in order)
     x = Axis(label="P(stable) [-]", low=-0.02, high=1.02)
     y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=names)
-    return Panel(title=_title(name), x=x, y=y, marks=tuple(found))
+    signs = [sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()]
+    signs.append(sign("", GREY, "95 % interval", line="-"))
+    signs.append(sign("", GREY, "probabilities of 0.5 and 0.9", line=":"))
+    signs.append(sign("", GREY, f"{MARK} extrapolated beyond the tests"))
+    return Figure(
+        rows=((Panel(title=f"Drawn bearings in {answer.environment}", x=x, y=y, marks=tuple(found)),),),
+        heading=figure_heading(answer, f"seed {answer.seed}"),
+        alt=PICTURE,
+        height=0.75 + 0.25 * len(names),
+        legend=tuple(signs),
+    )
 
 
 def _hover(row: Part) -> str:

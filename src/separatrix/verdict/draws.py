@@ -14,7 +14,7 @@ best at powers of two (Owen 2022, "On dropping the first Sobol' point").
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import exp, expm1, sqrt
 from typing import NamedTuple
@@ -29,6 +29,7 @@ from separatrix.chain.solution import Solution, solve
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
+from separatrix.study.candidates import environment_of
 from separatrix.study.distribution import Distribution, LogNormal
 from separatrix.study.keys import Setter, setter, settled_in, study_numbers, value_of
 from separatrix.study.study import BallModel, Friction, Study
@@ -45,10 +46,9 @@ MOST_VARIANCE = 100.0
 
 
 class Case(NamedTuple):
-    """A candidate in an environment; "" for the mean friction over all."""
+    """A candidate in the bearing's own environment."""
 
     candidate: str
-    environment: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +94,7 @@ def uncertain_inputs(
 ) -> tuple[UncertainInput, ...]:
     """Every uncertain number of a study: those with a distribution, then the frictions of the candidates.
 
-    `frictions` are those of the candidates that were measured, by default as the study states them.
+    `frictions` are those measured in the bearing's own environment, by default as the study states them.
 
     Raises
     ------
@@ -111,16 +111,21 @@ def uncertain_inputs(
 def stated_frictions(study: Study) -> dict[Case, Friction]:
     """Measured friction of each case, as the study states it."""
     return {
-        Case(candidate.name, environment): friction
+        Case(candidate.name): friction
         for candidate in (study.ranking.candidates if study.ranking else ())
-        for environment, friction in candidate.friction.items()
-        if friction is not None
+        if (friction := candidate.friction.get(own_environment(study))) is not None
     }
+
+
+def own_environment(study: Study) -> str:
+    """Return the environment of the bearing; empty where the study has none."""
+    return (study.ranking and environment_of(study.ranking)) or ""
 
 
 def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[UncertainInput]:
     """Measured frictions without a distribution in the study, log-normal, as the fit to tests assumes."""
-    for (candidate, environment), friction in frictions.items():
+    environment = own_environment(study)
+    for (candidate,), friction in frictions.items():
         key = f"ranking.{candidate}.{environment}"
         if key in study.distributions:
             continue
@@ -211,7 +216,6 @@ def sobol_points(samples: int, dimensions: int, *seed: int) -> Array:
     return points + 2.0 ** -(BITS + 1)
 
 
-Change = Callable[[int, MovingCage], MovingCage]  # from the cage of a bearing, by its place, to another
 Solutions = Mapping[str, Solution]  # by the name of the candidate
 
 
@@ -248,8 +252,7 @@ class DrawnBearings:
 
     def central_friction(self, case: Case) -> Ratio:
         """Stated friction of a case with every input at its central value."""
-        own = [self.stated[one].mean for one in self.stated if one.candidate == case.candidate]
-        return self.stated[case].mean if case.environment else float(np.mean(own))
+        return self.stated[case].mean
 
     def ensemble(
         self,
@@ -257,10 +260,9 @@ class DrawnBearings:
         kicks: Sequence[MetrePerSecond],
         places: Iterable[int],
         runner: Runner,
-        change: Change | None = None,
         ball: BallModel | None = None,
     ) -> Ensemble:
-        """Run the bearings at these places once from each kick [m/s], perhaps each with a changed cage.
+        """Run the bearings at these places once from each kick [m/s].
 
         `Interrupted` if the work was interrupted before the last run.
         """
@@ -268,7 +270,6 @@ class DrawnBearings:
         for place in places:
             own = self.solved[place][case.candidate]
             cage = moving_cage(own, float(self.friction[case][place]), ball)
-            cage = cage if change is None else change(place, cage)
             asked.append(Runs(cage, own.study.stability, self.runs[place], 1))
         return runner.ensemble_of(asked, kicks)
 
@@ -328,7 +329,7 @@ def frictions_to_draw(study: Study, central: Solutions | None = None) -> dict[Ca
         if friction.law is None:
             continue
         solution = (central or _solutions(study))[case.candidate]
-        seen = solution.frictions[case.environment] or friction
+        seen = solution.frictions[own_environment(study)] or friction
         of_tests = isinstance(friction.law, TestedFriction)
         found[case] = seen if of_tests else replace(friction, extrapolation=seen.extrapolation)
     return found
@@ -343,25 +344,12 @@ def _solutions(study: Study) -> Solutions:
 def _pocket_frictions(
     stated: Mapping[Case, Friction], central: Solutions, made: Sequence[tuple[int, Study, Solutions]]
 ) -> dict[Case, Array]:
-    """Pocket friction of each case and made bearing; the mean over the environments as case ""."""
-    found: dict[Case, Array] = {}
-    for name in central:
-        own = [case for case in stated if case.candidate == name]
-        for case in own:
-            drawn = [_mean(one, case) for _, one, _ in made]
-            found[case] = np.array(drawn) * _moved(stated[case], name, central, made)
-        if own:
-            found[Case(name, "")] = np.mean([found[case] for case in own], axis=0)
-    return found
-
-
-def _mean(study: Study, case: Case) -> Ratio:
-    """Mean friction of a case in a drawn study."""
-    candidates = study.ranking.candidates if study.ranking else ()
-    friction = next(one.friction[case.environment] for one in candidates if one.name == case.candidate)
-    if friction is None:
-        raise LookupError(case)
-    return friction.mean
+    """Pocket friction of each case in each bearing that was made."""
+    drawn = [stated_frictions(one) for _, one, _ in made]
+    return {
+        case: np.array([one[case].mean for one in drawn]) * _moved(friction, case.candidate, central, made)
+        for case, friction in stated.items()
+    }
 
 
 def _moved(

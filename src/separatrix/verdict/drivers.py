@@ -1,4 +1,4 @@
-r"""What decides whether a bearing settles, and which input to measure next.
+r"""What decides whether a bearing settles.
 
 The runs of a case are described by a regression
 
@@ -8,24 +8,18 @@ with the draws :math:`z_i` as standard normal numbers. The inputs are independen
 input i adds to the variance of the logit, beside the :math:`\pi^2/3` of a logistic variable that is the
 chance of the single run: its disturbance and the leads of its balls. The regression is tested on bearings
 that it was not fitted to.
-
-A measurement reduces the lack of knowledge of an input, a share of its variance: all of a thickness, but of
-the friction of a new cage only the error of its mean. Its result is not known beforehand, so P(settles) of
-each case is predicted by the regression for equally likely results.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import expit, ndtri, stdtrit, xlogy
+from scipy.special import expit, stdtrit, xlogy
 
 from separatrix.ground.units import Array, Ratio
-from separatrix.study.study import Friction, Study
-from separatrix.verdict.draws import Case, UncertainInput
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,25 +34,14 @@ class Share:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drivers:
-    """Which inputs decide whether a bearing of one case settles."""
+    """Which inputs decide whether a bearing with a candidate's cage settles."""
 
     name: str  # of the candidate
-    environment: str  # of the case
     shares: tuple[Share, ...]
     """Of the variance of the logit of P(settles), largest first, chance last; empty where `reason` states
     why."""
     reason: str  # why there are no shares; empty otherwise
     skill: Ratio | None  # part of the deviance that the fit removes, on bearings left out
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TestGain:
-    """How many undecided cases measuring one input settles on average, and which with what probability."""
-
-    name: str  # the input to measure
-    settled: Ratio  # mean number of cases that get a verdict
-    cases: tuple[str, ...]  # that may get one
-    chances: tuple[Ratio, ...]  # probability that it does, for each case
 
 
 PRIOR = 3.0  # standard deviation of the coefficients beforehand: a separation by one input alone stays finite
@@ -69,8 +52,8 @@ CHANCE = "chance of the single run"
 CHANCE_VARIANCE = math.pi**2 / 3.0
 
 
-def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> Drivers:
-    """Shares of the inputs in the variance of a case's logit, with the skill on bearings left out.
+def drivers(name: str, names: Sequence[str], scores: Array, settled: Array) -> Drivers:
+    """Shares of the inputs in the variance of a candidate's logit, with the skill on bearings left out.
 
     `names` are the inputs, `scores` their draws as standard normal numbers, shape (bearing, input); `settled`
     is 1 where the bearing settles, shape (bearing,).
@@ -85,8 +68,7 @@ def drivers(case: Case, names: Sequence[str], scores: Array, settled: Array) -> 
         shares = _shares(names, scores, settled) if skill >= LEAST_SKILL else ()
         reason = f"the inputs explain {max(0.0, 100.0 * skill):.1f} % of the deviance only"
     return Drivers(
-        name=case.candidate,
-        environment=case.environment,
+        name=name,
         shares=shares,
         reason="" if shares else reason,
         skill=skill,
@@ -147,80 +129,3 @@ def _parts(b: Array) -> Array:
     """Shares of the inputs and of chance in the variance of the logit."""
     parts = np.append(b[1:] ** 2, CHANCE_VARIANCE)
     return np.asarray(parts / parts.sum())
-
-
-RESULTS = 64  # equally likely results of a measurement
-NODES = 17  # equally likely values of what a measurement leaves open
-SETTLED: Ratio = 0.95  # a case is settled where P(settles) is at least this, or at most one less it
-LEAST_CHANCE: Ratio = 0.01  # probability of settling a case below which the case is not listed
-LEAST_UNKNOWN: Ratio = 0.5
-"""Share of a stated friction's variance that tests could take away at least: as after one test."""
-
-
-def next_tests(
-    inputs: Sequence[UncertainInput], known: Mapping[str, Ratio], cases: Mapping[str, tuple[Array, Array]]
-) -> tuple[TestGain, ...]:
-    """What measuring each input would settle, the best first; those that would settle nothing are left out.
-
-    The inputs are in the order of the scores. `known` has the share of each friction's variance that tests
-    could take away, by its key; of other inputs it is all. `cases` have, by the words of an undecided case,
-    the coefficients of its regression, shape (1 + input,), and the scores of its bearings, shape (bearing,
-    input).
-    """
-    found = []
-    for i, one in enumerate(inputs):
-        chances = {
-            case: _chance(b, scores, i, known.get(one.key, 1.0)) for case, (b, scores) in cases.items()
-        }
-        likely = {case: chance for case, chance in chances.items() if chance >= LEAST_CHANCE}
-        if likely:
-            order = sorted(likely, key=lambda case: -likely[case])
-            found.append(
-                TestGain(
-                    name=one.key,
-                    settled=float(sum(chances.values())),
-                    cases=tuple(order),
-                    chances=tuple(likely[case] for case in order),
-                )
-            )
-    return tuple(sorted(found, key=lambda test: -test.settled))
-
-
-def _chance(b: Array, scores: Array, i: int, known: Ratio) -> Ratio:
-    """Probability that the result of measuring input i settles a case."""
-    if b[1 + i] == 0.0 or known <= 0.0:
-        return 0.0
-    rest = b[0] + scores @ b[1:] - scores[:, i] * b[1 + i]
-    results = ndtri((np.arange(RESULTS) + 0.5) / RESULTS) * np.sqrt(known)
-    left = ndtri((np.arange(NODES) + 0.5) / NODES) * np.sqrt(1.0 - known)
-    settles = np.array([expit(rest[:, None] + b[1 + i] * (y + left)).mean() for y in results])
-    return float(np.mean((settles >= SETTLED) | (settles <= 1.0 - SETTLED)))
-
-
-def reducible_shares(study: Study, inputs: Sequence[UncertainInput]) -> dict[str, Ratio]:
-    """For each friction, the share of its variance that more tests of the material could take away.
-
-    The friction of a new cage scatters as single tests do, and their mean has an error of its own:
-    that part is lack of knowledge, 1/(n + 1) after n tests, and so is what the scatter was widened by for
-    conditions that were not tested. Where the tests are unknown it is what lies beyond the default scatter
-    of single tests, and a half at least, as after one test.
-    """
-    places, ranking = {one.key: one for one in inputs}, study.ranking
-    if ranking is None:
-        return {}
-    return {
-        key: _reducible(friction, places[key], ranking.friction_scatter)
-        for one in ranking.candidates
-        for environment, friction in one.friction.items()
-        if friction is not None and (key := f"ranking.{one.name}.{environment}") in places
-    }
-
-
-def _reducible(friction: Friction, known: UncertainInput, scatter: Ratio) -> Ratio:
-    deviation, error = friction.standard_deviation, friction.standard_error
-    if known.source == "study" or deviation is None:
-        single = scatter * known.distribution.mean
-        return max(LEAST_UNKNOWN, 1.0 - (single / known.distribution.standard_deviation) ** 2)
-    if error is None:
-        return 1.0 / (friction.count + 1) if friction.count else 0.0
-    return (error**2 + friction.widening**2) / (error**2 + deviation**2)

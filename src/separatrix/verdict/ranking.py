@@ -114,6 +114,7 @@ class _Question:
     factors: Sequence[Ratio]  # restitution factors of the curves
     pockets: Mapping[str, Pocket]
     reference: Pocket
+    environment: str  # the bearing's own
     wide: Limit | None  # on a land that leaves the reference cage to its pockets, if its own does not
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
@@ -252,6 +253,7 @@ def _question(
         factors=threshold_factors(study.stability),
         pockets=pockets,
         reference=reference,
+        environment=required_environment(study, asked),
         wide=Limit(reference, WIDE * reference.clearance) if is_by_land and not is_paper else None,
         drawn=drawn,
         keys=keys,
@@ -341,7 +343,7 @@ def _ranked(
 ) -> tuple[Row, ...]:
     """Rows of one environment, best first; the order of the study within a rank."""
     known = {name: friction for name, friction in table.items() if friction is not None}
-    rows = [_row(question, found, Case(n, environment), f) for n, f in known.items()]
+    rows = [_row(question, found, n, environment, f) for n, f in known.items()]
     judged = [row for row in rows if isinstance(row, Ranked)]
     interval = margin_interval if question.is_paper else safety_interval
     places = ranks(
@@ -356,12 +358,14 @@ def _ranked(
     )
 
 
-def _row(question: _Question, found: Findings, case: Case, friction: MeanFriction) -> Ranked | NotFinished:
+def _row(
+    question: _Question, found: Findings, name: str, environment: str, friction: MeanFriction
+) -> Ranked | NotFinished:
     """One candidate, not yet ranked."""
-    pocket = question.pockets[case.candidate]
+    pocket = question.pockets[name]
     eta = question.cages[pocket].restitution.restitution_factor
     row = NotFinished(
-        name=case.candidate,
+        name=name,
         friction=friction.mean,
         friction_error=friction.error,
         friction_deviation=friction.deviation,
@@ -379,7 +383,8 @@ def _row(question: _Question, found: Findings, case: Case, friction: MeanFrictio
         return row
     if broken := not_finite(judgement):
         return replace(row, reason=broken)
-    row = replace(row, judgement=judgement, over_inputs=found.get(case))
+    is_own = environment == question.environment
+    row = replace(row, judgement=judgement, over_inputs=found.get(Case(name)) if is_own else None)
     threshold = _threshold(question, found, pocket, friction)
     limit = _limit_of(question, found, pocket)
     by_paper = Asked(pocket, friction.mean, True)

@@ -1,13 +1,11 @@
-"""A study with its uncertain inputs drawn: verdicts, what decides them, and what would have to be better.
+"""A study with its uncertain inputs drawn: verdicts in its own environment, and what decides them.
 
-A case is counted no longer than its verdict is open. For the friction that a new material may have,
-P(settles) is followed with the same counts and the same search as the critical friction of one cage
-(`crossing`), at the share of bearings that may fail.
+A case is counted no longer than its verdict is open.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
 
@@ -19,20 +17,17 @@ from separatrix.chain.pocket_friction import with_scatter
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio, Rows
 from separatrix.study.candidates import ranking_question, reference_candidate, required_environment
-from separatrix.study.distribution import LogNormal, described
+from separatrix.study.distribution import described
 from separatrix.study.study import BallModel, Study
 from separatrix.verdict.beyond_models import (
     NOT_FINISHED,
     Moved,
-    Pocket,
     beyond_motion,
     not_finite,
     not_measured,
-    pocket_of,
 )
-from separatrix.verdict.crossing import SEARCHED_FRICTION, Count, Response, Side, ends_of, outermost
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
-from separatrix.verdict.drivers import Drivers, TestGain, drivers, fitted, next_tests, reducible_shares
+from separatrix.verdict.drivers import Drivers, drivers
 from separatrix.verdict.judgement import (
     CLEAR,
     FEW,
@@ -46,7 +41,7 @@ from separatrix.verdict.judgement import (
     wilson_interval,
 )
 from separatrix.verdict.long_jobs import Load, Runner, joined, scattered
-from separatrix.verdict.ranking_records import MeanFriction, NotMeasured, overall
+from separatrix.verdict.ranking_records import NotMeasured, measured
 
 FEWEST = 64  # bearings below which no probability is worth a table
 BLOCK = 64  # bearings after which a case is judged
@@ -54,8 +49,6 @@ RISK: Ratio = 1e-3
 """Probability, at each judgement, that a case is ended whose true share lies on the other side of a limit."""
 
 NORMAL = 3.2905  # normal quantile of that probability, on both sides together
-PROBABILITY: Ratio = 0.95  # wanted share of bearings that settle
-RUNS = 128  # scale of the bearings counted for an allowed friction
 Counted = tuple[Judgement, Ensemble]
 
 
@@ -73,7 +66,7 @@ class InputRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UncertainMaterial:
-    """One measured candidate in one environment, or over all of them."""
+    """One measured candidate."""
 
     name: str  # of the candidate
     friction: Ratio  # mean of the friction of a new cage
@@ -89,32 +82,10 @@ class UncertainMaterial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NotDrawn(NotMeasured):
-    """A candidate without a measured friction in this environment."""
+    """A candidate without a measured friction in the bearing's environment."""
 
 
 UncertainRow = UncertainMaterial | NotDrawn
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UncertainEnvironment:
-    """The candidates in one environment, best first; those not measured come last."""
-
-    name: str  # medium and counterface
-    materials: Annotated[tuple[UncertainRow, ...], Rows("material", "material_", label="name")]
-    """A row for each candidate, best first."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AllowedFriction:
-    """Largest pocket friction of a new material at which a bearing settles with a probability."""
-
-    names: tuple[str, ...]  # candidates whose pockets it is for
-    probability: Ratio  # wanted, to settle
-    scatter: Ratio  # assumed of a new cage, as a share of the mean
-    friction: Ratio | None  # largest mean friction; null where `reason` states why
-    friction_low: Ratio | None  # lower end of the 95 % interval
-    friction_high: Ratio | None  # upper end of the 95 % interval
-    reason: str  # why there is no limit; empty if there is
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,17 +96,12 @@ class UncertainStudy:
     failed: int  # of these, that do not make a bearing
     stopped_risk: Ratio  # largest probability that an ended case would decide otherwise
     default_scatter: Ratio  # of an unrepeated friction test, as a share of the mean
-    environment: str  # the bearing's own
+    environment: str  # the bearing's own, of all rows
     inputs: Annotated[tuple[InputRow, ...], Rows("input", "input_", label="name")]
     """A row for each uncertain input."""
-    environments: Annotated[tuple[UncertainEnvironment, ...], Rows("environment", label="name")]
-    """The candidates in each."""
-    overall: Annotated[tuple[UncertainRow, ...], Rows("material", "overall_", label="name")]
-    """With the mean friction over all environments."""
+    materials: Annotated[tuple[UncertainRow, ...], Rows("material", "material_", label="name")]
+    """A row for each candidate, best first; those not measured come last."""
     drivers: tuple[Drivers, ...]  # inputs that decide each case
-    undecided: tuple[str, ...]  # cases without a verdict
-    next_tests: tuple[TestGain, ...]  # best first
-    allowed_friction: tuple[AllowedFriction, ...]  # of a new material
     kicks: Annotated[tuple[MetrePerSecond, ...], ("kick",)]
     runs: int  # of each bearing, from each disturbance
     notes: tuple[str, ...]  # what was left out and why, a sentence each
@@ -155,54 +121,29 @@ def uncertain_study(study: Study, bearings: int, *, runner: Runner | None = None
     Interrupted
         With the answer to what was finished, if anything was.
     """
-    ranking_question(study)
+    required_environment(study, ranking_question(study))
     if bearings < FEWEST:
         cure = "Powers of two spread most evenly: 512."
         raise InputError("--samples", f"must be at least {FEWEST}", got=str(bearings), cure=cure)
     drawn, runner = drawn_bearings(study, bearings), runner or Runner()
-    alike: dict[Pocket, list[str]] = {}
-    for name in dict.fromkeys(case.candidate for case in drawn.friction):
-        alike.setdefault(pocket_of(drawn.central[name]), []).append(name)
-    pieces: list[Case | Pocket] = scattered([*drawn.friction, *alike])
-
-    def compute(piece: Case | Pocket) -> Counted | AllowedFriction:
-        if isinstance(piece, Case):
-            return counted(drawn, piece, runner)
-        return allowed_friction(drawn, alike[piece], runner)
-
-    def answer(found: Mapping[Case | Pocket, Counted | AllowedFriction]) -> UncertainStudy:
-        judged = {case: one for case in drawn.friction if isinstance(one := found.get(case), tuple)}
-        allowed = [one for pocket in alike if isinstance(one := found.get(pocket), AllowedFriction)]
-        complete = len(found) == len(pieces)
-        return replace(_answer(study, drawn, judged, allowed, bearings), complete=complete)
-
-    def load(piece: Case | Pocket) -> Load:
-        """Work of a piece, in runs: for a pocket a search from each kick."""
-        return Load(len(drawn.kicks) * (len(drawn.runs) if isinstance(piece, Case) else 2 * RUNS))
-
-    return runner.work_out(compute, pieces, into=answer, load=load)
+    return runner.work_out(
+        lambda case: counted(drawn, case, runner),
+        scattered(drawn.friction),
+        into=lambda judged: _answer(drawn, judged, bearings),
+        load=lambda _: Load(len(drawn.kicks) * len(drawn.runs)),
+    )
 
 
-def _answer(
-    study: Study,
-    drawn: DrawnBearings,
-    judged: Mapping[Case, Counted],
-    allowed: Sequence[AllowedFriction],
-    asked: int,
-) -> UncertainStudy:
-    """Record of what was computed, as if nothing was left out."""
+def _answer(drawn: DrawnBearings, judged: Mapping[Case, Counted], asked: int) -> UncertainStudy:
+    """Record of what was computed."""
     ranking = ranking_question(drawn.study)
-    decided = {case: _drivers(drawn, case, one) for case, one in judged.items() if case.environment}
-    undecided = [case for case in decided if judged[case][0].verdict is Verdict.UNDECIDED]
-    environment = required_environment(study, ranking)
-    own = _rows(drawn, environment, judged)
+    rows = _rows(drawn, judged)
     moved = [
         Moved(row.name, found.largest_contact_force, found.largest_offset, found.by_kick)
-        for row in own
+        for row in rows
         if isinstance(row, UncertainMaterial) and (found := row.judgement)
     ]
-    central = drawn.central[reference_candidate(study, ranking).name]
-    open_cases = {case: judged[case] for case in undecided if decided[case].shares}
+    central = drawn.central[reference_candidate(drawn.study, ranking).name]
     failed = len(drawn.failures)
     notes = (
         [f"{failed} of {asked} draws make no bearing and are left out: {drawn.failures[0]}"] if failed else []
@@ -213,7 +154,7 @@ def _answer(
         failed=failed,
         stopped_risk=RISK,
         default_scatter=ranking.friction_scatter,
-        environment=environment,
+        environment=required_environment(drawn.study, ranking),
         inputs=tuple(
             InputRow(
                 name=one.key,
@@ -225,44 +166,27 @@ def _answer(
             )
             for one in drawn.inputs
         ),
-        environments=tuple(
-            UncertainEnvironment(name=place, materials=_rows(drawn, place, judged))
-            for place in ranking.environments
-        ),
-        overall=_rows(drawn, "", judged),
-        drivers=tuple(decided.values()),
-        undecided=tuple(map(_words, undecided)),
-        next_tests=_next_tests(drawn, open_cases),
-        allowed_friction=tuple(allowed),
+        materials=rows,
+        drivers=tuple(_drivers(drawn, case, judged[case]) for case in drawn.friction if case in judged),
         kicks=drawn.kicks,
         runs=sum(ensemble.outcome.size for _, ensemble in judged.values()),
         notes=(*chain, *notes, *beyond_motion(central, moved)),
-        complete=True,
+        complete=len(judged) == len(drawn.friction),
     )
 
 
-def _rows(drawn: DrawnBearings, environment: str, judged: Mapping[Case, Counted]) -> tuple[UncertainRow, ...]:
-    """Rows of an environment: verdicts first that are better, then the larger P(stable)."""
+def _rows(drawn: DrawnBearings, judged: Mapping[Case, Counted]) -> tuple[UncertainRow, ...]:
+    """A row for each candidate: verdicts first that are better, then the larger P(stable)."""
     ranking = ranking_question(drawn.study)
-    means: dict[str, MeanFriction | None] = {}
-    for candidate in ranking.candidates:
-        places = (environment,) if environment else ranking.environments
-        cases = [Case(candidate.name, place) for place in places]
-        known = [drawn.stated[case] for case in cases if case in drawn.stated]
-        means[candidate.name] = overall(with_scatter(one, ranking.friction_scatter) for one in known)
-    measured = {name: one for name, one in means.items() if one is not None}
-    rows = [_row(drawn, Case(n, environment), f, judged) for n, f in measured.items()]
-    others = (NotDrawn(name=n, reason=not_measured(environment)) for n in means if n not in measured)
-    return (*sorted(rows, key=_best_first), *others)
+    rows = [_row(drawn, case, judged) for case in drawn.stated]
+    reason = not_measured(required_environment(drawn.study, ranking))
+    others = (one.name for one in ranking.candidates if Case(one.name) not in drawn.stated)
+    return (*sorted(rows, key=_best_first), *(NotDrawn(name=one, reason=reason) for one in others))
 
 
-def _row(
-    drawn: DrawnBearings,
-    case: Case,
-    mean: MeanFriction,
-    judged: Mapping[Case, Counted],
-) -> UncertainMaterial:
-    """One candidate in one environment."""
+def _row(drawn: DrawnBearings, case: Case, judged: Mapping[Case, Counted]) -> UncertainMaterial:
+    """One measured candidate."""
+    mean = measured(with_scatter(drawn.stated[case], ranking_question(drawn.study).friction_scatter))
     factors = [one[case.candidate].restitution.restitution_factor for one in drawn.solved]
     eta, eta_low, eta_high = np.quantile(factors, (0.5, 0.05, 0.95)).tolist()
     judgement = judged[case][0] if case in judged else None
@@ -288,37 +212,16 @@ def _best_first(row: UncertainMaterial) -> tuple[int, float, float]:
     return order[row.judgement.verdict], -row.judgement.probability_stable, row.friction
 
 
-def _columns(drawn: DrawnBearings, case: Case) -> list[int]:
-    """Inputs that may matter to a case: all but the frictions and materials of others."""
-    own = (f"ranking.{case.candidate}.{case.environment}", f"ranking.{case.candidate}.material.")
-    return [
+def _drivers(drawn: DrawnBearings, case: Case, found: Counted) -> Drivers:
+    """What decides a case, by a regression of its runs on all inputs but those of other candidates."""
+    own = f"ranking.{case.candidate}."
+    columns = [
         i
         for i, one in enumerate(drawn.inputs)
-        if not one.key.startswith("ranking.") or one.key == own[0] or one.key.startswith(own[1])
+        if not one.key.startswith("ranking.") or one.key.startswith(own)
     ]
-
-
-def _drivers(drawn: DrawnBearings, case: Case, found: Counted) -> Drivers:
-    """What decides a case, by a regression of its runs."""
-    settled, columns = settles(found[1], found[0]), _columns(drawn, case)
-    names = [drawn.inputs[i].key for i in columns]
-    return drivers(case, names, drawn.scores[: settled.size, columns], settled)
-
-
-def _next_tests(drawn: DrawnBearings, cases: Mapping[Case, Counted]) -> tuple[TestGain, ...]:
-    """What measuring each input would settle of these cases."""
-    asked = {}
-    for case, (judged, found) in cases.items():
-        settled, columns = settles(found, judged), _columns(drawn, case)
-        scores = drawn.scores[: settled.size]
-        b = np.zeros(1 + len(drawn.inputs))
-        b[[0, *(1 + i for i in columns)]] = fitted(scores[:, columns], settled)
-        asked[_words(case)] = (b, scores)
-    return next_tests(drawn.inputs, reducible_shares(drawn.study, drawn.inputs), asked)
-
-
-def _words(case: Case) -> str:
-    return f"{case.candidate} in {case.environment}"
+    settled, names = settles(found[1], found[0]), [drawn.inputs[i].key for i in columns]
+    return drivers(case.candidate, names, drawn.scores[: settled.size, columns], settled)
 
 
 def counted(bearings: DrawnBearings, case: Case, runner: Runner) -> Counted:
@@ -385,45 +288,3 @@ def settles(found: Ensemble, judged: Judgement) -> Array:
     """1 for each bearing that settles or rolls from the worst kick, else 0; shape (bearing,)."""
     at = found.kicks.tolist().index(judged.worst_kick)
     return is_calm(found.outcome[at]).astype(np.float64)
-
-
-def allowed_friction(bearings: DrawnBearings, names: Sequence[str], runner: Runner) -> AllowedFriction:
-    """Largest mean friction of a new material, with the default scatter, in the pockets of some candidates.
-
-    From the worst kick the share of bearings that do not settle then passes what may fail.
-    """
-    own = next(case for case in bearings.friction if case.candidate == names[0])
-    scatter, total = ranking_question(bearings.study).friction_scatter, len(bearings.runs)
-    shares = np.ones(total)
-    if scatter > 0.0:
-        random = np.random.default_rng((bearings.study.stability.seed, total))
-        law = LogNormal(mean=1.0, standard_deviation=scatter)
-        shares = law.quantile((random.permutation(total) + 0.5) / total)
-
-    def response(kick: MetrePerSecond) -> Response:
-        def look(friction: Ratio, first: int, runs: int) -> Count:
-            def changed(place: int, cage: MovingCage) -> MovingCage:
-                return replace(cage, ball_cage_friction=friction * float(shares[place]))
-
-            places = [place % total for place in range(first, first + runs)]
-            ran = bearings.ensemble(own, (kick,), places, runner, changed)
-            return Count(int(np.count_nonzero(~is_calm(ran.outcome))), runs)
-
-        return Response(look, RUNS)
-
-    responses = {kick: response(kick) for kick in bearings.kicks}
-    found, _ = outermost(responses, 1.0 - PROBABILITY, RUNS, 0.1)
-    value, low, high = ends_of(found)
-    reasons = {
-        Side.ABOVE: "fewer settle even without pocket friction",
-        Side.BELOW: f"more settle at every friction up to {SEARCHED_FRICTION:g}",
-    }
-    return AllowedFriction(
-        names=tuple(names),
-        probability=PROBABILITY,
-        scatter=scatter,
-        friction=value,
-        friction_low=low,
-        friction_high=high,
-        reason=reasons[found] if isinstance(found, Side) else "",
-    )
