@@ -140,12 +140,10 @@ def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
     assert "Did you mean cryogenic-turbopump?" in refusal("cryogenic_turbopump")
 
 
-@pytest.mark.parametrize(
-    "path", ["", "a\0b", "x" * 5000, "no/such/folder/x.toml", "two\nlines.toml", "\x1b[31m.toml"]
-)
-def test_a_strange_path_is_refused_in_one_line(path):
+def test_a_strange_path_is_refused_in_one_line():
     """Empty, with a NUL, too long, or with control characters."""
-    refusal(path)
+    for path in ("", "a\0b", "x" * 5000, "no/such/folder/x.toml", "two\nlines.toml", "\x1b[31m.toml"):
+        refusal(path)
 
 
 def test_everything_wrong_is_reported_at_once(tmp_path):
