@@ -58,13 +58,12 @@ def rtec(
     *,
     speed_rpm: float = 120.0,
     steps: Sequence[int] | None = None,
-    metadata: bool = True,
     total: str = "00:01:08.25",
 ) -> bytes:
     """Rtec MFT: a line of keys over one of values, headers and rows that end in a comma, and a total time."""
     one = np.ones_like(time)
     number = one if steps is None else np.asarray(steps, float)
-    head = ["Sample,Operator,Recipe", "disk 7,nobody,pin on disk"] if metadata else []
+    head = ["Sample,Operator,Recipe", "disk 7,nobody,pin on disk"]
     header = "Step, Timestamp, RecipeStep, DAQ.Fz (N),DAQ.Fx (N),DAQ.COF (),"
     header += "Rotary.Velocity (rpm),XYZ.Z Depth (mm),"
     columns = [number, time, number, 10.0 * one, friction * 10.0, friction, speed_rpm * one, time * 1e-4]
@@ -94,13 +93,11 @@ def umt(friction, time, *, reciprocating: bool = False, steps: int = 1, unit: st
     return encoded(lines, "utf-8", "\r\n")
 
 
-def compend(friction, time, *, fast_data_every: int = 0, coefficient: bool = True) -> bytes:
+def compend(friction, time, *, fast_data_every: int = 0) -> bytes:
     """Phoenix Compend: rows that begin and end with a tab, with lines naming files of fast data between."""
     load = np.full_like(time, 20.0)
-    names = ["Test Time (s)", "Load (N)", "Friction (N)", "Total Cycles", "Contact Potential (mV)"]
-    columns = [time, load, friction * load, np.floor(time * 2), 0 * time]
-    if coefficient:
-        names, columns = [*names, "CoF"], [*columns, friction]
+    names = ["Test Time (s)", "Load (N)", "Friction (N)", "Total Cycles", "Contact Potential (mV)", "CoF"]
+    columns = [time, load, friction * load, np.floor(time * 2), 0 * time, friction]
     text = ["\t" + line + "\t" for line in rows(columns, "\t", 6, "")]
     if fast_data_every:
         for n, i in enumerate(range(len(text) - 1, 0, -fast_data_every)):

@@ -95,17 +95,12 @@ def case(tmp_path):
     return written(tmp_path, STUDY, "case.toml")
 
 
-@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind in SOLIDS for name in LIBRARY.names(kind)])
-def test_every_solid_can_be_built(kind, name):
-    """Values in SI, source and confidence as text, a temperature for every number."""
-    material = LIBRARY.material(kind, name)
-    assert 1e8 < material.elastic_modulus < 4e11
-    assert "modulus: " in material.confidence
-    assert "modulus: " in material.source
-    assert material.source.isprintable()
-    for data in material.record["data"].values():
-        assert all(datum["temperature"] for datum in data)
-        assert all(datum["range"] is None or datum["range"][0] <= datum["value"] for datum in data)
+def test_every_number_of_a_solid_has_a_temperature():
+    """And the value is in its range."""
+    solids = [LIBRARY.material(kind, name) for kind in SOLIDS for name in LIBRARY.names(kind)]
+    for datum in (one for solid in solids for data in solid.record["data"].values() for one in data):
+        assert datum["temperature"]
+        assert datum["range"] is None or datum["range"][0] <= datum["value"]
 
 
 def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses():

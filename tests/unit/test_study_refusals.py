@@ -66,7 +66,6 @@ TABLE = 'friction = "pin-on-disk-77K"\nmaterials = ["Armalon", "Vespel SP 211"]\
 
 EDITS = r"""
 model = "free" => model = "jones" :: "outer race control" ; got "jones"
-bore = "50 mm" => axial_load = "3 N" :: line 10 ; [bearing] axial_load ; belongs in [operation]
 title = "A valid study" => runs = 3 :: line 1 ; runs ; is not a key of a study. It belongs in [stability]
 [operation] => [[operation]] :: line 14: [[operation]] ; one section, headed [operation]
 inner_conformity = 0.52 => inner_conformity = 0,52 :: line 8 ; not valid TOML ; Write a decimal point: 0.52.
@@ -75,8 +74,6 @@ model = "free" => model = free :: line 19 ; Put text in quotes.
 ball_count = 13 => ball_count = 19 :: line 6 ; [bearing] ball_count must be at most 18 ; got 19
 "65 mm" => "10 mm" :: ball_count ; too large for the pitch circle
 race_friction = 0.1 => race_friction = 0 :: [film] race_friction must be > 0 ; race control
-contact_angle = "25 deg" => contact_angle = "25 deg"\nradial_clearance = "10 um"
-    :: radial_clearance and contact_angle exclude each other
 "50 mm" => "60 mm" :: [bearing] bore must be smaller ; 53.89 mm
 ball_material = "440C" => ball_material = "404C"
     :: line 11 ; [bearing] ball_material ; Did you mean 440C? ; 52100
@@ -87,15 +84,8 @@ material = "PTFE transfer film"\n =>  :: [film] material is missing
 "0.6 mm" => "5 mm"
     :: [cage] pocket_clearance must be smaller than the gap between balls, 4.443 mm ; got "5 mm"
 guidance = "outer"\n =>  :: [cage] land_clearance needs guidance ; guidance =
-0.95] => 1.0] :: [stability] restitution_factors ; < 1
-[0.05, => [0.99, :: [stability] restitution_factors must be strictly increasing
 "Vespel SP 211" => "Armalon" :: [ranking] candidates ; "Armalon" twice
 TABLE =>  :: [ranking] lacks: friction (or candidates)
-TABLE => TABLEIN_PLACE :: exclude each other
-[ranking]\nTABLE => IN_PLACE[[ranking.candidates]]\nnam = "B"
-    :: line 45 ; candidates[2].nam ; Did you mean name?
-[kinematics] => [bearing]\n[kinematics] :: line 18 ; a second time
-race_friction = 0.1 => race_friction = 2024-01-01 :: [film] race_friction ; 2024-01-01
 bore = => "" = 1\nbore = :: [bearing] "" is not a valid key
 "A valid study" => "A\u001b[31m study" :: line 1: title ; printable
 title = "A valid study" => extends = "study.toml" :: line 1: extends ; leads back
@@ -107,7 +97,6 @@ bore = => DOTTED = 1\nbore = :: line 10 ; [bearing] a
 ball_count = 13 => ball_count = NINES :: study.toml
 race_friction = 0.1 => race_friction = 0xNINES :: 60 digits
 ball_count = 13 => ball_count = 0xNINES :: 60 digits
-"50 mm" => NINES :: needs a unit of length
 """
 """An edit of VALID, and the words that its refusal must have."""
 LONG = {
@@ -140,12 +129,10 @@ def test_a_folder_a_pipe_and_a_missing_file_are_refused_at_once(tmp_path):
     assert "Did you mean cryogenic-turbopump?" in refusal("cryogenic_turbopump")
 
 
-@pytest.mark.parametrize(
-    "path", ["", "a\0b", "x" * 5000, "no/such/folder/x.toml", "two\nlines.toml", "\x1b[31m.toml"]
-)
-def test_a_strange_path_is_refused_in_one_line(path):
+def test_a_strange_path_is_refused_in_one_line():
     """Empty, with a NUL, too long, or with control characters."""
-    refusal(path)
+    for path in ("", "a\0b", "x" * 5000, "no/such/folder/x.toml", "two\nlines.toml", "\x1b[31m.toml"):
+        refusal(path)
 
 
 def test_everything_wrong_is_reported_at_once(tmp_path):

@@ -50,6 +50,16 @@ def test_with_a_column_map_it_fits_and_takes_the_end_of_running_in(folder):
     assert found.fit.of("Armalon", "air, 440C").at().mean == pytest.approx(test.friction)
 
 
+def test_logs_of_one_name_in_two_folders_are_two_tests_each_with_its_own_conditions(folder):
+    """The end of running-in that the map states for one of them is not that of the other."""
+    for place, name in (("one", "a2.csv"), ("two", "a10.csv")):
+        (folder / place).mkdir()
+        (folder / name).rename(folder / place / "a.csv")
+    stated = column_map({"files": {"one/*.csv": {"run_in_end": "60 s"}}})
+    first, second = separatrix.tribometer([folder / "one", folder / "two"], column_map=stated).tests
+    assert (first.run_in_method, second.run_in_method == "given") == ("given", False)
+
+
 def test_the_speed_of_a_turning_disk_is_that_of_the_steady_part(tmp_path):
     """60 rpm, then 120 rpm behind the end of running-in, on a radius of the map: 0.251 m/s."""
     rows = "".join(f"{i},{0.1 + 0.001 * (i % 3)},{60 if i < 150 else 120}\n" for i in range(300))

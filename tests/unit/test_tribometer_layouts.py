@@ -222,20 +222,16 @@ def test_strokes_of_one_test_are_joined_by_their_header(strokes, capsys):
     assert test["cycles"] == 6
 
 
-def test_strokes_of_one_file_are_told_and_joined_if_asked(strokes, capsys):
-    """Alone they are two tests with a note; --join makes them one, and --out refuses them apart."""
-    found = document(capsys, "tribometer", "wear/disk-1.csv")
-    assert len(found["tests"]) == 2
-    assert "one of 2 parts of one test by the header: --join counts them as one" in found["files"][0]["notes"]
-    assert len(document(capsys, "tribometer", "wear/disk-1.csv", "--join")["tests"]) == 1
-    line = refused(capsys, "tribometer", "wear/disk-1.csv", "--out", "f.toml")
-    assert "is one of 2 strokes or parts of one test by the header. Add --join" in line
+def test_strokes_of_one_file_are_one_test(strokes, capsys):
+    """As those of several files are."""
+    (test,) = document(capsys, "tribometer", "wear/disk-1.csv")["tests"]
+    assert test["friction"] == pytest.approx(0.8, abs=0.02)
 
 
 def test_parts_under_other_loads_are_not_one_test(strokes, capsys):
     """A step at twice the load: the header keeps them apart, and --join refuses."""
     (strokes / "wear" / "disk-9.csv").write_text(umt(9, set_force=-400))
-    assert len(document(capsys, "tribometer", "wear")["tests"]) == 3
+    assert len(document(capsys, "tribometer", "wear")["tests"]) == 2
     line = refused(capsys, "tribometer", "wear", "--join")
     assert "cannot be one test: their normal force differs" in line
 

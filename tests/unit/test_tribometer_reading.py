@@ -120,7 +120,7 @@ BARE_HEAD = ["Samples;200;200", "X0;0.0;0.0", "Delta;0.5;0.5", "Unit;N;N"]
 ONE = np.ones(ROWS)
 FORCES = {"tangential_force": {"name": "Fx", "unit": "N"}, "normal_force": {"name": "Fz", "unit": "N"}}
 BY_NUMBER = {"columns": {"time": {"name": 1, "unit": "s"}, "friction": 2}}
-FORMAT = {"separator": ";", "decimal": ",", "header_line": 2, "units_line": 4}
+FORMAT = {"separator": ";", "decimal": ",", "header_line": 2, "units_below": True}
 
 MORE = {"time [s]": TIME, "COF": FRICTION, "Fz [N]": FRICTION + 10.0}
 DIALECTS = [",.", "|.", ";.", ";,", "\t.", "\t,", "   .", "  ,", " \t ."]
@@ -183,8 +183,8 @@ THE_SAME = {  # a log, or a log and its map
         csv({"time [s]": TIME, "COF": FRICTION * 9, "Fx [N]": FRICTION, "Fz [N]": ONE}),
         {"columns": {"tangential_force": "Fx"}},
     ),
-    "lines of names and units by their numbers": (
-        lines("first remark\nZeit;Reibwert\nother remark\ns;-", "{T};{F}"),
+    "lines of names and units by their place": (
+        lines("first remark\nZeit;Reibwert\ns;-", "{T};{F}"),
         {"format": FORMAT},
     ),
     "the second of two frictions by the map": (

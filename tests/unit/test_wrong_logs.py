@@ -39,7 +39,6 @@ BOTH = np.where(np.arange(20) % 2 == 0, 10.0, -10.0)
 WRONG = {
     "an empty file": (b"", "log.txt is empty."),
     "a header only": (lines("time [s],COF"), "has no table of numbers with two columns or more"),
-    "one row only": (lines("time [s],COF", "0.0,0.1"), "line 2 is the only row"),
     "a binary file": (bytes(range(256)) * 20, "is not a text file (it has NUL or control characters)"),
     "an old Excel file": (b"\xd0\xcf\x11\xe0" + b"\0" * 600, "is an old Excel workbook, not text. Save it as .xlsx"),
     "a compressed file": (b"\x1f\x8b\x08" + b"a" * 99, "is compressed (gzip), not text. Unpack it first."),
@@ -90,7 +89,6 @@ WRONG_MAPS = {
     "a unit of something else": ({"columns": {"time": {"name": "a", "unit": "mm"}}}, "[columns] time.unit must be a unit such as s, ms"),
     "a sign of two": ({"columns": {"normal_force": {"name": "a", "sign": 2}}}, "sign must be 1 or -1; got 2"),
     "an unknown separator": ({"format": {"separator": ":"}}, '[format] separator must be "tab" or ";" or "," or "|" or "blanks"; got ":"'),
-    "a line of units without one of names": ({"format": {"units_line": 2}}, "[format] units_line needs header_line"),
     "a column without a name": ({"columns": {"time": 0.5}}, "[columns] time.name must be the name or the number of a column; got 0.5. Write friction ="),
     "a column that is not there": ({"columns": {"time": "Zeit"}}, 'has an open question: no column "Zeit", which the column map names as time'),
     "one column for two meanings": ({"columns": {"time": "time [s]", "cycles": 1}}, 'column "time [s]" is both time and cycles in the column map'),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -79,7 +78,7 @@ def tribometer(
     pool = ThreadPoolExecutor(jobs)
     try:
         logs = _each(pool, lambda path: read_log(path, chosen), files, progress, 0)
-        tests = _tests_of(list(zip(files, logs, strict=True)), join=join, complete=complete)
+        tests = _tests_of(list(zip(files, logs, strict=True)), join=join)
         reduced = _each(pool, lambda test: _reduced(*test, chosen, cut), tests, progress, 500)
     finally:  # nothing new is begun once the work is interrupted
         pool.shutdown(wait=True, cancel_futures=True)
@@ -157,10 +156,8 @@ def _with_others(wrong: Sequence[InputError]) -> InputError:
     return first
 
 
-def _tests_of(
-    files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool, complete: bool
-) -> list[tuple[Path, RawLog]]:
-    """Logs of tests, each with its first file: parts joined on request, or as their headers state.
+def _tests_of(files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool) -> list[tuple[Path, RawLog]]:
+    """Logs of tests, each with its first file: parts joined as their headers state, or all of a folder.
 
     The same content in two files is refused: it would count as a repeated test.
     """
@@ -171,29 +168,11 @@ def _tests_of(
             cure = "A test counts once; leave one of them out."
             raise InputError(printable(str(path), 200), rule, cure=cure)
         first[log.checksum] = path
-    home = {log.source: path for path, logs in files for log in logs}
-    if join:
-        folders: dict[Path, list[RawLog]] = {}
-        for path, logs in files:
-            folders.setdefault(path.absolute().parent, []).extend(logs)
-        return [(home[parts[0].source], joined(parts)) for parts in folders.values()]
-    series: dict[tuple[str, int], list[RawLog]] = {}
-    for i, log in enumerate(log for _, logs in files for log in logs):
-        series.setdefault((log.series, 0 if log.series else i), []).append(log)
-    tests = []
-    for parts in series.values():  # those of one series in several files are one test
-        several = len({part.checksum for part in parts}) > 1
-        tests += [(home[parts[0].source], joined(parts))] if several else [(home[p.source], p) for p in parts]
-    counts = Counter(log.series for _, log in tests if log.series)
-    found = []
-    for path, log in tests:
-        count = counts[log.series]
-        if count > 1 and complete:
-            rule = f"is one of {count} strokes or parts of one test by the header"
-            raise InputError(log.source, rule, cure="Add --join: a test counts once.")
-        note = f"one of {count} parts of one test by the header: --join counts them as one"
-        found.append((path, replace(log, notes=(*log.notes, note)) if count > 1 else log))
-    return found
+    tests: dict[object, list[tuple[Path, RawLog]]] = {}
+    for path, log in ((path, log) for path, logs in files for log in logs):
+        key = path.absolute().parent if join else log.series or (path, log.source)
+        tests.setdefault(key, []).append((path, log))
+    return [(parts[0][0], joined([log for _, log in parts])) for parts in tests.values()]
 
 
 def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Cut | None) -> Reduction:

@@ -73,7 +73,6 @@ class TextFormat:
         | None
     ) = key(default=None)
     header_line: int | None = key(LAST, default=None)
-    units_line: int | None = key(LAST, default=None, needs=("header_line", "its place is not known"))
     units_below: bool = key(default=False)
     """Whether the line below the names is that of the units."""
 

@@ -44,18 +44,32 @@ class Conditions:
     """Name of the test."""
 
     temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
+    """Of the test."""
+
     slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
+    """Of the test."""
+
     pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
     """Mean contact pressure."""
 
     normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
+    """Of the test."""
+
     cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
     """Of one revolution or of one stroke there and back."""
 
     contact_area: SquareMetre | None = key(positive(1e-18, 1e3), default=None)
+    """Of a flat pin."""
+
     pin_diameter: Metre | None = key(positive(1e-9, 1e2), default=None)
+    """Of a flat round pin."""
+
     track_radius: Metre | None = key(positive(1e-9, 1e2), default=None)
+    """Of the pin from the axis of the disk."""
+
     rotational_speed: RadianPerSecond | None = key(positive(1e-9, 1e6), default=None)
+    """Of the disk."""
+
     run_in_end: Place | None = key(default=None, read=lambda raw, *_: place(raw, ""))
     """Where running-in ends."""
 

@@ -111,7 +111,8 @@ def draft_of(content: tables.Content, given: ColumnMap, why: UnfitError | None) 
     firsts = ((part.sheet, _first_block(part, given)) for part in content.parts)
     drafts = [(sheet, _draft(given, has_load, *one)) for sheet, one in firsts if one is not None]
     if not drafts:
-        raise _no_table(content)
+        cure = "It needs a line of column names above at least two rows; a column map can state where."
+        raise InputError(content.name, "has no table of numbers with two columns or more", cure=cure)
     name, chosen = next(((one, draft) for one, draft in drafts if not draft.questions), drafts[0])
     if len(drafts) > 1 and chosen.questions and not given.format.tables:
         listed = ", ".join(as_toml(one) for one, _ in drafts)
@@ -120,17 +121,6 @@ def draft_of(content: tables.Content, given: ColumnMap, why: UnfitError | None) 
         question = f"the map of this layout does not fit: {why.question}"
         chosen.form.insert(0, chosen.ask(f"# {given.name}", question))
     return chosen
-
-
-def _no_table(content: tables.Content) -> InputError:
-    cure = "It needs a line of column names above at least two rows; a column map can state where."
-    for part in content.parts:
-        signs = ((i, line, tables.separator_of([line])[0]) for i, line in enumerate(part.lines[:500]))
-        rows = [i for i, line, sign in signs if sign and tables.is_row(tables.fields_of(line, sign))]
-        if len(rows) == 1:
-            where = f"{content.name}: {part.word} {rows[0] + 1}"
-            return InputError(where, "is the only row", cure="A log has at least two.")
-    return InputError(content.name, "has no table of numbers with two columns or more", cure=cure)
 
 
 # --- the table ------------------------------------------------------------------------------------

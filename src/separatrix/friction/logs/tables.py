@@ -410,12 +410,12 @@ def heads_in(part: Part, form: TextFormat, needed: Needed, separator: str) -> It
     """Where tables begin: at the line that the map names, else at each line with the names needed."""
     lines = part.lines
     if form.header_line is not None:
-        first = max(form.header_line, form.units_line or 0)
+        first = form.header_line + form.units_below
         if first >= len(lines):
             where = f"{part.source}: header_line = {form.header_line}"
             raise InputError(where, "must be a line above the rows", f"a file of {len(lines)} lines")
         names = _names_in(lines, form.header_line - 1, separator, lines[first:]) or [""]
-        below = fields_of(lines[form.units_line - 1], separator) if form.units_line else []
+        below = fields_of(lines[first - 1], separator) if form.units_below else []
         yield Heads(form.header_line - 1, names, (below + [""] * len(names))[: len(names)], first)
         return
     if not needed:
