@@ -93,11 +93,12 @@ NOT_RESULTS = (
     *("study", "cage", "provenance", "separatrix_version", "verb", "name", "title", "seed", "warnings"),
     *("units", "complete", "reason", "static_reason", "outcome_sentence", "paper_statement", "words"),
     *("ball_reason", "extrapolation", "cause_sentence", "convergence", "clouds", "race", "notes"),
+    "by_kick",
 )
-"""Inputs, sentences that follow from numbers, and single drawn bearings."""
+"""Inputs, sentences that follow from numbers, single drawn bearings, and the runs behind a share."""
 
-LABELS = ("case", "kick", "restitution_factor")
-GRIDS = ("curve", "linear_limit", "by_kick")
+LABELS = ("case", "restitution_factor")
+GRIDS = ("curve", "linear_limit")
 """Numbers that name a row, and lists whose rows need not be at the same values in two answers."""
 
 DECISIONS = ("verdict", "paper_verdict", "uncertain_verdict", "decision", "outcome", "rank")
