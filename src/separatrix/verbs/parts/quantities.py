@@ -238,7 +238,8 @@ for _name in ("load", "contact_angle", "spin_roll_ratio", "max_pressure", "slope
     for _race, _end in (("inner", "in"), ("outer", "out")):
         _of = QUANTITIES[_name]
         _label, _head = f"{_of.label} at the {_race} race", f"{_of.head or _of.label} {_end}"
-        QUANTITIES[f"{_name}_{_race}"] = replace(_of, symbol="", label=_label, head=_head)
+        _symbol = f"Q_{_race[0]}" if _name == "load" else ""
+        QUANTITIES[f"{_name}_{_race}"] = replace(_of, symbol=_symbol, label=_label, head=_head)
 for _name in ("race_damping", "damping_ratio", "restitution_factor"):
     _label = f"{QUANTITIES[_name].label} if the ball may spin"
     QUANTITIES[f"{_name}_free_spin"] = replace(QUANTITIES[_name], label=_label, symbol="")
