@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 from commands import COMMAND, document, pieces, refused
 
-import separatrix
 from separatrix.chain.solution import solve
 from separatrix.front import main
 from separatrix.ground.errors import InputError
@@ -166,17 +165,6 @@ def test_a_film_without_thickness_is_bare_races(capsys):
     bare = replace(study, film=replace(study.film, material=None, thickness=None))
     assert coated[0.0] == solve(bare).restitution.restitution_factor
     assert coated[0.0] != coated[2.5e-6]
-
-
-def test_the_dataset_has_axes_and_points(capsys):
-    """The axes with their units; a row for each point, as in the document."""
-    clearance = "cage.pocket_clearance=0.2..1mm:3"
-    found = mapped(capsys, "--x", clearance, "--points", "2", "--runs", "2", "--out", "m")
-    data = separatrix.load("m/map.json")
-    assert data["x_values"].attrs == {"units": "m"}
-    for name in ("x", "y", "probability_whirl", "decision"):
-        assert data[f"point_{name}"].dims == ("point",)
-        assert data[f"point_{name}"].values.tolist() == [point[name] for point in found["points"]]
 
 
 def test_a_second_call_takes_finished_runs_and_says_so(capsys):

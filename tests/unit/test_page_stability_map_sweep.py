@@ -125,3 +125,4 @@ def test_an_envelope_has_a_curve_for_each_value_of_the_other_inputs():
     grid.values["parameters"].pop()
     first, frequencies = envelope_figure(grid).panels
     assert [one.x.label for one in (first, frequencies)] == ["case [-]"] * 2
+    assert [one.marker for one in envelope_figure(swept(1)).panels[0].marks[:1]] == ["o"]

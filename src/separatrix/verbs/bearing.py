@@ -110,7 +110,8 @@ def balls_figure(answer: Part) -> Figure:
             marks.append(Trace(x=[ball.azimuth for ball in balls], y=known, hover=hover, width=0.8, **look))
             every += [one for one in known if one is not None]
         x = axis("azimuth", "rad", [ball.azimuth for ball in balls])
-        panels.append(Panel(title=title, x=x, y=axis(name, balls[0].unit(key), every), marks=tuple(marks)))
+        y = axis(name, balls[0].unit(key), every, low=0.0 if name == "load" else None)
+        panels.append(Panel(title=title, x=x, y=y, marks=tuple(marks)))
     return figure(answer, tuple(panels), alt=AROUND)
 
 

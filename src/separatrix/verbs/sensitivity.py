@@ -180,7 +180,8 @@ def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
         assumed = "its scatter from sample to sample was not measured: {default_scatter} of the mean is "
         yield Note(fill(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
     if words := dict.fromkeys(text for row in own for text in row.extrapolation):
-        yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend")
+        yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend", Level.LONG)
+        yield Note(f"{MARK} extrapolated beyond the tests: see `--full`.", "legend", Level.BRIEF)
 
 
 def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:

@@ -211,7 +211,7 @@ def envelope_figure(answer: Part) -> Figure:
         key = ", ".join(at(one, one.name, case.get(one.name)) for one in others)
         curves.setdefault(key, []).append(case)
     ways = [[case.get(first.name) for case in each] for each in curves.values()]
-    name, is_line = first.name, all(a < b for way in ways for a, b in pairwise(way))
+    name, is_line = first.name, all(way[1:] and all(a < b for a, b in pairwise(way)) for way in ways)
     if len(curves) > len(CYCLE) or not is_line or has(answer, "time_share"):
         name, curves, is_line = "case", {"": answer.cases}, False
         x = Axis(label="case [-]", low=-0.6, high=len(answer.cases) - 0.4)
@@ -247,7 +247,7 @@ def _curves(
         label = quantity(name).label if names[1:] else ""
         look: dict[str, Any] = {"colour": CYCLE[i if key else j], "name": "" if key and j else key or label}
         look |= {"line": LINES[j]} if is_line else {}
-        look |= {} if is_line and LINES[j] else {"marker": MARKERS[j]}
+        look |= {} if is_line and LINES[j] and len(cases) > SHOWN else {"marker": MARKERS[j]}
         yield marks(rows, x, name, hover=partial(_hover, answer, name), size=3.0, **look)
     yield from (Across(at=one, axis="y", line=":", colour=GREY) for one in BOUNDS.get(names[0], ()))
 

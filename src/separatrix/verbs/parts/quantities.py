@@ -28,7 +28,7 @@ QUANTITIES: dict[str, Quantity] = {
     "max_pressure": Q(label="maximum Hertz pressure", head="pressure", symbol="p_0", digits=4),
     "approach": Q(label="mutual approach", digits=4),
     "rolling_speed": Q(label="rolling speed", digits=4),
-    "spin_roll_ratio": Q(label="pivoting to rolling ratio", head="spin/roll", digits=4),
+    "spin_roll_ratio": Q(label="pivoting to rolling ratio", head="spin/roll", form=".4f"),
     "pressure": Q(label="pressure", symbol="p"),
     "creep_spin": Q(label="creep by spin, s", digits=4),
     "creep_curvature": Q(label="creep by curvature, q", digits=4),
@@ -236,7 +236,8 @@ for _name in ("load", "contact_angle", "spin_roll_ratio", "max_pressure", "slope
     for _race, _end in (("inner", "in"), ("outer", "out")):
         _of = QUANTITIES[_name]
         _label, _head = f"{_of.label} at the {_race} race", f"{_of.head or _of.label} {_end}"
-        QUANTITIES[f"{_name}_{_race}"] = replace(_of, symbol="", label=_label, head=_head)
+        _symbol = f"Q_{_race[0]}" if _name == "load" else ""
+        QUANTITIES[f"{_name}_{_race}"] = replace(_of, symbol=_symbol, label=_label, head=_head)
 for _name in ("race_damping", "damping_ratio", "restitution_factor"):
     _label = f"{QUANTITIES[_name].label} if the ball may spin"
     QUANTITIES[f"{_name}_free_spin"] = replace(QUANTITIES[_name], label=_label, symbol="")
