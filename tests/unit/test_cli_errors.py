@@ -131,7 +131,7 @@ USAGE = {
     "a folder for a study": (["check", "folder.toml"], "folder"),
     "the nearest shipped study": (["rank", "cryogenic-turbopmp"], "cryogenic-turbopump"),
     "out that is a file": (["rank", "cryogenic-turbopump", "--out", "taken.toml"], "--out"),
-    "out below a file": (["rank", "cryogenic-turbopump", "--out", "taken/below"], "--out"),
+    "out below a file": (["rank", "cryogenic-turbopump", "--out", "taken.toml/below"], "--out"),
     "default folder that is a file": (["bearing", "study.toml"], "--out"),
     "out from an unset variable": (["bearing", "le7", "--out", ""], "--out"),
     "out longer than a file system takes": (["check", "le7", "--out", "a" * 300], "--out"),
