@@ -90,6 +90,18 @@ def test_importing_the_package_is_light():
     assert done.returncode == 0, done.stderr
 
 
+def test_a_short_verb_loads_what_it_needs():
+    """`bearing` answers without the large libraries: its start is most of its time."""
+    code = (
+        "import sys; from separatrix.front import main\n"
+        "main(['bearing', 'ball-218', '--json', '--quiet'])\n"
+        "heavy = {'scipy.optimize', 'pandas', 'matplotlib', 'xarray', 'pydantic'}\n"
+        "sys.exit(', '.join(heavy & set(sys.modules)) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_every_public_name_can_be_imported():
     """Each name in `separatrix.__all__` is there, and an unknown one is refused as Python does."""
     for name in separatrix.__all__:
