@@ -113,6 +113,16 @@ def _folder(page):
     return page.app.state.root
 
 
+def test_a_fault_of_the_base_has_no_line_here(page):
+    """Its message names the file; a fault of its own has its line."""
+    (_folder(page) / "base.toml").write_text(COMMENTED.replace("25 g", "25 mm"))
+    text = 'extends = "base.toml"\n[cage]\nguidance = "none of these"\n'
+    (_folder(page) / "variant.toml").write_text(text)
+    faults = draft.check(_folder(page) / "variant.toml", _folder(page)).faults
+    found = {one.key: (one.line, one.section) for one in faults if one.section == "cage"}
+    assert (found["mass"], found["guidance"]) == ((0, "cage"), (3, "cage"))
+
+
 def test_the_form_follows_the_text(page):
     """The other way round."""
     text = SMALL.replace("[cage]", '[cage]\nmass = "31 g"')

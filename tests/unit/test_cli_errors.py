@@ -121,13 +121,13 @@ USAGE = {
     "study with control characters": (["bearing", "a\x1b[31m\nb"], ""),
     "a folder for a study": (["check", "folder.toml"], "folder"),
     "the nearest shipped study": (["rank", "cryogenic-turbopmp"], "cryogenic-turbopump"),
-    "out that is a file": (["rank", "cryogenic-turbopump", "--out", "taken"], "--out"),
-    "out below a file": (["rank", "cryogenic-turbopump", "--out", "taken/below"], "--out"),
+    "out that is a file": (["rank", "cryogenic-turbopump", "--out", "taken.toml"], "--out"),
+    "out below a file": (["rank", "cryogenic-turbopump", "--out", "taken.toml/below"], "--out"),
     "default folder that is a file": (["bearing", "study.toml"], "--out"),
     "out from an unset variable": (["bearing", "le7", "--out", ""], "--out"),
     "out longer than a file system takes": (["check", "le7", "--out", "a" * 300], "--out"),
     "a wrong study, before its folder is made": (["bearing", "empty.toml", "--out", "deep/folder"], "empty"),
-    "new over a file": (["new", "taken"], "exists"),
+    "new over a file": (["new", "taken.toml"], "exists"),
     "new over a folder": (["new", "folder.toml"], "folder"),
     "new without its folder": (["new", "nowhere/mine.toml"], "nowhere"),
 }
@@ -139,11 +139,11 @@ def test_wrong_usage_is_refused_in_one_line(case, capsys):
     Path("folder.toml").mkdir()
     Path("study.toml").write_text(VALID)
     Path("empty.toml").write_text("")
-    for taken in ("taken", "study"):
+    for taken in ("taken.toml", "study"):
         Path(taken).write_text("mine")
     arguments, said = USAGE[case]
     assert said in refused(capsys, *arguments)
-    assert Path("taken").read_text() == Path("study").read_text() == "mine"
+    assert Path("taken.toml").read_text() == Path("study").read_text() == "mine"
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import webbrowser
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -108,6 +107,8 @@ def _page(given: Given) -> int:
     server = Server(place.resolve(), port=port or 0)
     answer(f"The page of {place.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
     if given["open"]:
+        import webbrowser
+
         webbrowser.open(server.link)
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
         server.serve_until_ended()

@@ -7,6 +7,7 @@ import contextvars
 import ctypes
 import math
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -28,6 +29,9 @@ Answer = TypeVar("Answer")
 
 LINE_EVERY: Second = 20.0
 """Time between two lines where standard error is not a terminal."""
+
+REDRAWN_EVERY: Second = 0.2
+"""Time between two writings of the line where it is one."""
 
 FIRST_PART = 0.1
 """Share of the work after which the time of all is estimated."""
@@ -192,18 +196,11 @@ class Pace:
 
 
 class Life(Pace):
-    """How far a verb is, in words. Its title is verb and study; `shows` is called when it is further."""
+    """How far a verb is, in words. Its title is verb and study."""
 
-    def __init__(self, title: str, *, quiet: bool = False) -> None:
+    def __init__(self, title: str) -> None:
         super().__init__()
-        self.title, self.started = title, time.monotonic()
-        self.compiled = quiet  # which prints nothing, as `--quiet` requires
-        self.shows: Callable[[], object] = lambda: None
-
-    def __call__(self, done: float, total: float) -> None:
-        """Take in how far the work is."""
-        super().__call__(done, total)
-        self.shows()
+        self.title, self.started, self.compiled = title, time.monotonic(), False
 
     def compiling(self) -> None:
         """Say once that kernels are compiled, which the next command finds done."""
@@ -211,67 +208,49 @@ class Life(Pace):
             self.compiled = True
             complain(f"{self.title}: compiling once on this machine, {COMPILATION} in all.")
 
-    @property
-    def rest(self) -> str:
-        """Time that is left, in words; empty if it is not known."""
-        return "" if self.left is None else f"about {in_words(self.left)} left"
-
     def line(self) -> str:
         """Return how far the work is after which time."""
         passed = in_words(time.monotonic() - self.started)
         if not self.share:
             return f"{self.title}: at work for {passed}"
-        parts = f"{self.title}: {math.floor(100.0 * self.share)} % after {passed}", self.rest
-        return ", ".join(filter(None, parts))
+        left = "" if self.left is None else f", about {in_words(self.left)} left"
+        return f"{self.title}: {math.floor(100.0 * self.share)} % after {passed}{left}"
 
 
 @contextlib.contextmanager
 def progress_bar(title: str, *, quiet: bool) -> Iterator[Life]:
-    """Yield what shows how far the work is: on a terminal a bar that disappears at the end, else lines."""
+    """Yield what shows how far the work is, by the clock: the work may report nothing for long.
+
+    On a terminal it is one line that is written again and disappears at the end, else a line now and then.
+    """
+    life, over = Life(title), threading.Event()
     if quiet or sys.stderr is None:
-        yield Life(title, quiet=True)
+        yield life
         return
     from separatrix.ground.compiling import COMPILING
 
-    life = Life(title)
-    COMPILING.heard.append(life.compiling)
-    try:
-        with _bar(life) if sys.stderr.isatty() else _lines(life):
-            yield life
-    finally:
-        COMPILING.heard.remove(life.compiling)
+    is_terminal, width = sys.stderr.isatty(), shutil.get_terminal_size().columns - 1
 
-
-@contextlib.contextmanager
-def _bar(life: Life) -> Iterator[None]:
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
-
-    left = TextColumn("{task.fields[left]}")
-    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), left
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(escape(harmless(life.title)), total=None, left="")
-        life.shows = lambda: bar.update(task, completed=life.share, total=1.0, left=life.rest)
-        yield
-
-
-@contextlib.contextmanager
-def _lines(life: Life) -> Iterator[None]:
-    """Print a line now and then, from a separate thread: the work may report nothing for long."""
-    over = threading.Event()
+    def show(text: str) -> None:
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.write(f"\r{text[:width]:<{width}}\r")
+            sys.stderr.flush()
 
     def speak() -> None:
-        while not over.wait(LINE_EVERY):
-            complain(life.line())
+        while not over.wait(REDRAWN_EVERY if is_terminal else LINE_EVERY):
+            show(one_line(life.line())) if is_terminal else complain(life.line())
 
     speaker = threading.Thread(target=speak, daemon=True)
+    COMPILING.heard.append(life.compiling)
     speaker.start()
     try:
-        yield
+        yield life
     finally:
+        COMPILING.heard.remove(life.compiling)
         over.set()
         speaker.join()
+        if is_terminal:
+            show("")
 
 
 def in_words(seconds: Second) -> str:

@@ -105,14 +105,6 @@ def plot(page: Page, name: str | None = None) -> Canvas:
     raise InputError(page.title, f"has no picture {name or 'of this answer'}")
 
 
-def png(spec: Figure) -> bytes:
-    """Return a figure as PNG."""
-    buffer = io.BytesIO()
-    with mpl.rc_context(STYLE):
-        _drawn(spec).savefig(buffer, format="png", metadata=NOTHING[".png"])
-    return buffer.getvalue()
-
-
 class Drawing(NamedTuple):
     """A figure as SVG with its size [points], and the places that a reader can point at: x, y, and a text."""
 
