@@ -22,6 +22,7 @@ from separatrix.chain.grooved_ball import (
     STATIC,
     STEEPEST,
     Problem,
+    balls_in_balance,
     contact_table,
     eliminate,
     problem,
@@ -194,7 +195,7 @@ def orbit_by_diameter(
         )
         states, slopes = at.states.copy(), np.zeros((len(at.states), 6, 2))
         push = np.zeros((len(states), 6))
-        reached, ball = solve_balls(one, at.grooves.copy(), states, kind, ring.force, push, slopes)
+        reached, ball = balls_in_balance(one, at.grooves.copy(), states, kind, ring.force, push, slopes)
         if reached > SMOOTHING:
             message = (
                 f"Ball {ball + 1}: its motion did not settle with a diameter {100 * (ratio - 1):+.2g} %."
