@@ -22,7 +22,6 @@ from separatrix.chain.grooved_ball import (
     STATIC,
     STEEPEST,
     Problem,
-    balls_in_balance,
     contact_table,
     eliminate,
     problem,
@@ -167,6 +166,14 @@ def equilibrium(
     """
     p, ring, at = _solved(bearing, operation, model, race_friction, cross_moment)
     return _finished(p, ring, model, at)
+
+
+@kernel
+def balls_in_balance(
+    p: Problem, A: Array, u: Array, model: int, force: float, push: Array, by_rings: Array
+) -> tuple[float, int]:
+    """`solve_balls` for a caller that is not compiled."""
+    return solve_balls(p, A, u, model, force, push, by_rings)
 
 
 def orbit_by_diameter(

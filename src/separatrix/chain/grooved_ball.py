@@ -579,14 +579,6 @@ def solve_balls(
 
 
 @kernel
-def balls_in_balance(
-    p: Problem, A: Array, u: Array, model: int, force: float, push: Array, by_rings: Array
-) -> tuple[float, int]:
-    """`solve_balls` for a caller that is not compiled."""
-    return solve_balls(p, A, u, model, force, push, by_rings)
-
-
-@kernel
 def contact_table(p: Problem, A: Array, u: Array) -> Array:
     """Angle, load, semi-major axis and grip of every ball at the inner and outer race, (ball, race, 4).
 
