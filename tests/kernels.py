@@ -25,7 +25,7 @@ def chain() -> None:
     """A bearing from its loads to the mobility of its balls, exact contacts, and a cage among such balls."""
     study = separatrix.read_study("cryogenic-turbopump")
     solution = separatrix.solve(study)
-    _ = solution.restitution, solution.mobility
+    _ = solution.restitution, solution.mobility, solution.orbit_by_diameter
     exact = TractionSettings(model=TractionModel.EXACT)
     _ = separatrix.solve(replace(study, traction=exact)).traction
     run_ensemble(moving_cage(solution, 0.05, BallModel.FREE), MOMENT)

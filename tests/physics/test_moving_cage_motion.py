@@ -11,13 +11,8 @@ from random_cages import random_cage
 from space_program import SmallSteps
 
 from separatrix.cage import MovingCage, outcome, run_ensemble, simulate
-from separatrix.cage.disturbance import ball_places, random_starts, start_states
-from separatrix.cage.ensemble import Stop, run_rows
-from separatrix.cage.motion import rates
 from separatrix.cage.numbers import look_time, numbers_of
-from separatrix.cage.rows import LANES, VX, VY
 from separatrix.chain.ball_traction import BallTraction
-from separatrix.ground.compiled import inlined
 from separatrix.study.study import Guidance, MotionModel, PocketShape, StabilitySettings
 
 LAW = BallTraction(mass=6.5e-3, slope=207.0, speed=0.435)
@@ -155,25 +150,3 @@ def test_random_cages_end_and_close_their_ledger(space):
         for name in ("end_energy", "largest_offset", "whirl_frequency", "largest_contact_force", "followed"):
             assert np.all(np.isfinite(getattr(found, name))), name
         assert np.all(found.energy_imbalance < 1e-2)
-
-
-@inlined
-def braked(s, d, of_balls, rates_of, a, p, places, strips, ball, space, level, lobe_number):
-    """The equations of motion, and a brake of 50 1/s on the centre of the cage."""
-    rates(s, d, of_balls, rates_of, a, p, places, strips, ball, space, level, lobe_number)
-    for lane in range(LANES):
-        d[VX + lane] -= np.float32(50.0) * s[VX + lane]
-        d[VY + lane] -= np.float32(50.0) * s[VY + lane]
-
-
-def test_a_force_is_added_without_touching_the_package():
-    """A cage in free flight slows down as exp(-50 t) by a term that a test adds; rounding of 500 steps."""
-    cage = replace(AT_REST, pocket_clearance=0.2, cage_speed=0.0)
-    settings = replace(SETTINGS, ball_scatter=0.0)
-    starts, numbers = random_starts(cage, settings, 0, 1), numbers_of(cage, 0.5, 0.01)
-    states, places = start_states(cage, 0.5, starts), ball_places(cage, starts)
-    record = np.zeros((11, 4 + states.shape[1] + 8 + cage.ball_count))
-    how = {"record": record, "every": numbers.kind.steps // 10, "equations": braked}
-    raw = run_rows(numbers.kind, [numbers], states, places, Stop(), **how)
-    time, speed = raw.record[:, 0], np.hypot(raw.record[:, 1 + VX // LANES], raw.record[:, 1 + VY // LANES])
-    np.testing.assert_allclose(speed, 0.5 * np.exp(-50.0 * time), rtol=1e-4)

@@ -79,6 +79,38 @@ def _sizes(tree: ast.AST) -> list[int]:
     return sizes
 
 
+def compiled(tree: ast.Module) -> dict[str, str]:
+    """Return how each compiled function of a module is compiled, by name."""
+    decorated = {n.name: {ast.unparse(one) for one in n.decorator_list} for n in functions(tree)}
+    return {name: how.pop() for name, how in decorated.items() if how & {"kernel", *PARTS}}
+
+
+def functions(tree: ast.Module) -> list[ast.FunctionDef]:
+    """Return the functions of a module and the methods of its classes."""
+    bodies = [tree.body, *(one.body for one in tree.body if isinstance(one, ast.ClassDef))]
+    return [one for body in bodies for one in body if isinstance(one, ast.FunctionDef)]
+
+
+PARTS = {"part", "inlined", "unfolded"}
+
+
+def test_python_calls_kernels_and_no_parts_of_them():
+    """A part that Python calls is compiled at each start: only a kernel is kept. `queue` makes a kernel."""
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in MODULES}
+    names = {path: ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts) for path in MODULES}
+    kinds = {names[path]: compiled(tree) for path, tree in trees.items()}
+    for path, tree in trees.items():
+        imports = [one for one in ast.walk(tree) if isinstance(one, ast.ImportFrom)]
+        taken = [(kinds.get(one.module or "", {}).get(a.name), a.name) for one in imports for a in one.names]
+        parts = {
+            name
+            for how, name in (*taken, *((how, n) for n, how in kinds[names[path]].items()))
+            if how in PARTS
+        }
+        plain = [one for one in functions(tree) if one.name not in (*kinds[names[path]], "queue")]
+        assert not {(one.name, called) for one in plain for called in calls(one) & parts}, path
+
+
 def test_importing_the_package_is_light():
     """`import separatrix` and the command line's own modules load neither numpy nor matplotlib nor xarray."""
     code = (

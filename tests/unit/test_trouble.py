@@ -47,13 +47,6 @@ ANSWERED = {
     "races that grip the balls": "[film]\nrace_friction = 2",
 }
 
-REFUSED = {  # others: test_study_cage
-    "no friction on the races": (
-        "[film]\nrace_friction = 0",
-        "race_friction must be > 0 for traction [-]; got 0. Without friction the races hold no ball.",
-    ),
-}
-
 SETTINGS = {
     "run of a week": ('duration = "168 h"', "duration must be <= 10000 s; got"),
     "run of an hour": ('duration = "1 h"', "for this cage; got 3600 s. Shorten the run"),
@@ -80,14 +73,6 @@ def test_an_odd_cage_is_answered(case, capsys):
     found = json.loads(out)
     assert (err, found["outcome"] in RunOutcome.__members__) == ("", True)
     assert found["outcome_sentence"]
-
-
-@pytest.mark.parametrize("verb", ["simulate", "map"])
-@pytest.mark.parametrize("case", REFUSED)
-def test_a_cage_that_cannot_be_is_refused_in_one_line(case, verb, capsys):
-    """The same line whoever asks."""
-    text, said = REFUSED[case]
-    assert said in refused(capsys, verb, study(text))
 
 
 @pytest.mark.parametrize("verb", ["simulate", "stability", "rank", "map"])

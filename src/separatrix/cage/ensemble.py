@@ -266,9 +266,8 @@ def run_rows(
     *,
     record: Array | None = None,
     every: int = 1,
-    equations: Callable[..., None] | None = None,
 ) -> Raw:
-    """Put runs of one kind through the queue; by other `equations` than those of `motion` if given."""
+    """Put runs of one kind through the queue."""
     count = len(numbers)
     most = int(max(max(one.limits[outcome.MOST], one.limits[outcome.LEAST]) for one in numbers))
     raw = Raw(
@@ -280,7 +279,7 @@ def run_rows(
     )
     raw.evidence[:, run.OUTCOME] = outcome.UNKNOWN
     values, strips, waves, limits = (np.stack(each) for each in list(zip(*numbers, strict=True))[1:])
-    follow_queue = run.queue(kind.ball, kind.space, kind.level, real, equations)
+    follow_queue = run.queue(kind.ball, kind.space, kind.level, real)
     follow_queue(
         states, values, places, strips, waves, limits, kind.steps, raw.looks, raw.evidence, raw.hits,
         raw.heat, kind.lobes, raw.record, every, stop.flag,

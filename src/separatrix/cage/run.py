@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from types import FunctionType
 
 import numpy as np
 
@@ -291,19 +290,15 @@ def write_row(row, time, s, of_balls, a, p, places, space):
 
 
 @cache
-def queue(
-    ball: int,
-    space: bool,
-    level: bool = False,
-    real: type = np.float32,
-    equations: Callable[..., None] | None = None,
-) -> Callable[..., None]:
+def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) -> Callable[..., None]:
     """Compiled queue of runs of a cage among balls of this level, in the plane or in space.
 
-    It closes over plain numbers only, so that its code can be kept; other `equations` than those of `motion`
-    are compiled each time. `start` ... `limits`: a row a run (`numbers.Numbers`, `disturbance`); `looks`,
-    `evidence`, `hits_of`, `heat_of`: what it writes, a row a run; `record`: rows of the first run, one
-    `every` so many steps; `stop`: a flag.
+    It closes over plain numbers only, so that its code can be kept, each kind under its own name: of two
+    processes that write to one index at once, one might take the code of the other.
+
+    `start` ... `limits`: a row a run (`numbers.Numbers`, `disturbance`); `looks`, `evidence`, `hits_of`,
+    `heat_of`: what it writes, a row a run; `record`: rows of the first run, one `every` so many steps;
+    `stop`: a flag.
     """
     states, one = LANES * cage_states(space=space), LANES * ball_states(ball, space=space)
     speed = (2 if space else 1) * LANES
@@ -391,7 +386,5 @@ def queue(
                 if has_ended:
                     look[l], live = -1, live - 1
 
-    if equations is None:
-        return kernel(run_queue)
-    own = {**run_queue.__globals__, "rates": equations}
-    return part(FunctionType(run_queue.__code__, own, closure=run_queue.__closure__))
+    run_queue.__qualname__ = f"queue_{ball}_{space:d}{level:d}_{real.__name__}"
+    return kernel(run_queue)

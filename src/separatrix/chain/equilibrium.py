@@ -168,6 +168,14 @@ def equilibrium(
     return _finished(p, ring, model, at)
 
 
+@kernel
+def balls_in_balance(
+    p: Problem, A: Array, u: Array, model: int, force: float, push: Array, by_rings: Array
+) -> tuple[float, int]:
+    """`solve_balls` for a caller that is not compiled."""
+    return solve_balls(p, A, u, model, force, push, by_rings)
+
+
 def orbit_by_diameter(
     bearing: BallBearing, operation: Operation, model: KinematicModel, race_friction: Ratio
 ) -> PerSecond:
@@ -194,7 +202,7 @@ def orbit_by_diameter(
         )
         states, slopes = at.states.copy(), np.zeros((len(at.states), 6, 2))
         push = np.zeros((len(states), 6))
-        reached, ball = solve_balls(one, at.grooves.copy(), states, kind, ring.force, push, slopes)
+        reached, ball = balls_in_balance(one, at.grooves.copy(), states, kind, ring.force, push, slopes)
         if reached > SMOOTHING:
             message = (
                 f"Ball {ball + 1}: its motion did not settle with a diameter {100 * (ratio - 1):+.2g} %."

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from separatrix.ground.compiled import kernel, part
+from separatrix.ground.compiled import kernel
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Metre, Newton, NewtonPerMetre, Pascal, PerMetre, Radian
 from separatrix.study.study import BallBearing, Material, Race
@@ -145,7 +145,7 @@ def ellipse_of_curvatures(
     return ellipse_of_axes(load, turned.semi_major, turned.semi_minor, modulus)
 
 
-@part
+@kernel
 def elliptic_integrals(k: float) -> tuple[float, float, float]:
     """K(m), (K - E)/m and (E - k^2 K)/m for m = 1 - k^2 from k in (0, 1]: AGM, without cancellation."""
     # K = pi/(2 agm); K - E = K S, S = sum 2^(n-1) c_n^2, c_0^2 = m; terms are divided by m = (1-k)(1+k).
@@ -185,7 +185,7 @@ def ellipse_shape(ratio: float, guess: float) -> tuple[float, float, float]:
     return k, K, D
 
 
-@part
+@kernel
 def approach_coefficient(
     curvature_rolling: float, curvature_transverse: float, modulus: float, guess: float
 ) -> tuple[float, float, float]:
