@@ -11,6 +11,7 @@ from scipy.special import ndtr
 
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError
+from separatrix.study.candidates import environment_of
 from separatrix.study.distribution import Normal, Samples, Uniform
 from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction, RankingQuestion
@@ -77,12 +78,12 @@ def test_every_draw_lies_in_its_distribution(samples, seed):
 
 
 def test_inputs_are_those_of_the_study_then_the_measured_frictions():
-    """First what the file says, in its order; then each measured friction with its scatter."""
+    """First what the file says, in its order; then each friction of the bearing's environment."""
     inputs = uncertain_inputs(UNCERTAIN)
     assert tuple(one.key for one in inputs[:3]) == tuple(LAWS)
     assert [one.source for one in inputs[:3]] == ["study"] * 3
     frictions = inputs[3:]
-    measured = [f for c in BASE.ranking.candidates for f in c.friction.values() if f is not None]
+    measured = [one.friction[environment_of(BASE.ranking)] for one in BASE.ranking.candidates]
     assert len(frictions) == len(measured)
     for one, friction in zip(frictions, measured, strict=True):
         assert one.key.startswith("ranking.")

@@ -55,7 +55,7 @@ def mapped(**more):
     x = {"parameter": "film.thickness", "unit": "m", "values": [1e-6, 2e-6], "here": 1.2e-6}
     y = {"parameter": "film.race_friction", "unit": "-", "values": [0.1, 0.3], "here": 0.25}
     found = {"x": x, "y": y, "points": points, "changes": [change], "kick": 0.5, "title": "A map"}
-    return part_of({**found, "study": {}, "units": {"kick": "m/s"}, **more})
+    return part_of({**found, "study": {"film": {"is_bare": True}}, "units": {"kick": "m/s"}, **more})
 
 
 def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
@@ -95,7 +95,9 @@ def swept(count=3, **more):
     found = {"cases": cases, "worst": worst, "margins": False, "verdicts": False, "title": "A sweep"}
     units = {"cases": {"film.thickness": "m", "restitution_factor": "-", "shaft_frequency": "Hz"}}
     parameters = [{"name": "film.thickness", "unit": "m"}]
-    return part_of({**found, "parameters": parameters, "study": {}, "units": units, **more})
+    return part_of(
+        {**found, "parameters": parameters, "study": {"film": {"is_bare": True}}, "units": units, **more}
+    )
 
 
 def test_a_long_sweep_is_cut_to_its_worst_cases():

@@ -114,7 +114,7 @@ def test_the_most_loaded_ball_is_compared(tmp_path):
         ("film.thickness", 5e-7, 3e-7)
     ]
     words = text(compare.page(part_of(found)))
-    assert "most loaded ball  load on the inner race" in words
+    assert "most loaded ball  load at the inner race" in words
     assert "500 nm  300 nm" in words
     again = compared_answers({"bearing": ANSWER}, {"bearing": ANSWER}, names=("a", "b"))
     assert "The two answers are equal in every result." in text(compare.page(part_of(again)))

@@ -109,7 +109,7 @@ def page(answer: Part) -> Page:
         facts(*unchanged(answer)),
         *(
             all_numbers(name, (), ((one,) for one in answer.get(name) or ()))
-            for name in ("points", "changes")
+            for name in (("points", "changes") if answer.complete else ())  # else there is no workbook
         ),
     )
 

@@ -253,7 +253,7 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
     columns = (
         TEST,
         *(_word(name, of) for name in PAIR),
-        *(column(name, of=of, head=_plain(name)) for name in ("temperature", "slip_speed", "pressure")),
+        *(column(name, of=of, head=_plain(name)) for name in ("slip_speed", "pressure")),
         Column("friction", _friction),
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
         text_column("notes", numbers),
@@ -273,8 +273,9 @@ def _numbers(tests: Sequence[Part]) -> Table:
     """Return what the friction of each test was made from, and what else its log shows."""
     names = ("standard_error", "degrees_of_freedom", "standard_deviation", "effective_count", "drift_rate")
     until = Column("steady until", lambda one: _along(one, "steady_end"))
-    columns = TEST, *map(column, names), until, *map(column, ("steady_rows", "rows", "cycles"))
-    return Table("numbers", columns, tuple(tests), NUMBERS, Level.LONG)
+    heat = column("temperature", of=attrgetter("conditions"))
+    columns = TEST, heat, *map(column, names), until, *map(column, ("steady_rows", "rows", "cycles"))
+    return Table("numbers", known_columns(columns, tests), tuple(tests), NUMBERS, Level.LONG)
 
 
 def _fits(answer: Part) -> Iterator[Block]:
@@ -290,8 +291,6 @@ def _fits(answer: Part) -> Iterator[Block]:
     yield Note(FIT_LEGEND, "legend")
     for one in answer.fits:
         yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
-    share = show(answer, "default_scatter")
-    yield Note(f"Without a repeated test a material is assumed to scatter by {share} of its mean, a guess.")
 
 
 def _slopes(fit: Part) -> Iterator[str]:

@@ -211,10 +211,6 @@ QUANTITIES: dict[str, Quantity] = {
     "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),
     "skill": Q(label="part of the deviance explained", head="skill", unit="%", form=".0f"),
     "bearings": Q(label="bearings", form=".0f"),
-    "settled": Q(label="cases settled on average", head="cases settled", digits=2),
-    "chances": Q(label="chance that it gets a verdict", unit="%", form=".0f"),
-    "probability": Q(label="wanted probability to settle", unit="%"),
-    "scatter": Q(label="scatter of a new cage's friction", unit="%"),
     "settles": Q(label="whether the cage settles", form=".0f"),
     #
     # Logs, materials and comparisons.
