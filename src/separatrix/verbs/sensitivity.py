@@ -155,7 +155,6 @@ def verdicts(rows: Sequence[Part]) -> list[Block]:
     columns = (
         text_column("material", lambda row: row.name),
         column("friction", head="friction of a new cage", mark=friction_mark),
-        column("friction_deviation", head="s.d."),
         column("probability_stable", of=judged),
         text_column("verdict", verdict),
         motion_column(),
