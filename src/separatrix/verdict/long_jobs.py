@@ -109,17 +109,22 @@ class Work:
         """Work done and all that is expected [s], of these threads; a place keeps one busy, no more."""
         with self._lock:
             done = sum(spent for spent, _ in self._spent.values())
-            made, left, spent_there = 0.0, [0.0], 0.0
+            made, spent_there = 0.0, 0.0
             for place, load in self.loads.items():
                 spent, runs = self._spent.get(place, (0.0, 0.0))
-                if place not in self._finished:
-                    left.append(load.dear * max(load.runs - runs, LEAST_LEFT * load.runs))
                 if place not in self._kept:
                     whole = load.runs if place in self._finished else UNDER_WAY * min(runs, load.runs)
                     made, spent_there = made + load.dear * whole, spent_there + spent
             if spent_there == 0.0:
                 return done, math.inf
-            return done, done + spent_there / made * max(sum(left), threads * max(left))
+            pace, left = spent_there / made, [0.0]
+            for place, load in self.loads.items():
+                spent, runs = self._spent.get(place, (0.0, 0.0))
+                if place not in self._finished:
+                    own = spent / runs if runs and place not in self._kept else 0.0
+                    rest = max(load.runs - runs, LEAST_LEFT * load.runs)
+                    left.append(max(own, pace * load.dear) * rest)
+            return done, done + max(sum(left), threads * max(left))
 
 
 def scattered(places: Iterable[Place]) -> list[Place]:
