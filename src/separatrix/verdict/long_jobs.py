@@ -286,7 +286,7 @@ class Runner:
         # threads that wait for their runs let others work, so that many runs go side by side
         turns, waiting = Turns(self.jobs), 1 if self.executor is not None else WAITING
         pool = ThreadPoolExecutor(max_workers=waiting * self.jobs)
-        self._gathered = Gathered(turns, self.jobs, self.stop)
+        self._gathered = Gathered(turns, self.jobs, self.stop, pool)
 
         def in_turn(place: Place) -> Result:
             with turns:

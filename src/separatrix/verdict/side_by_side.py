@@ -6,11 +6,12 @@ questions of a few runs each cost as little as one long one.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import threading
 from collections import deque
 from collections.abc import Sequence
-from concurrent.futures import Future, wait
+from concurrent.futures import Executor, Future, wait
 
 import numpy as np
 
@@ -63,10 +64,13 @@ class Turns:
 
 
 class Gathered:
-    """Runs that threads ask for, followed together; a thread that waits for its own lets others work."""
+    """Runs that threads ask for, followed together; a thread that waits for its own lets others work.
 
-    def __init__(self, turns: Turns, jobs: int, stop: Stop) -> None:
-        self._turns, self._jobs, self._stop = turns, jobs, stop
+    Threads of the pool that have nothing else to do follow runs of those that have.
+    """
+
+    def __init__(self, turns: Turns, jobs: int, stop: Stop, pool: Executor) -> None:
+        self._turns, self._jobs, self._stop, self._pool = turns, jobs, stop, pool
         self._lock = threading.Lock()
         self._waiting: list[tuple[Piece, Future[Followed]]] = []
 
@@ -76,6 +80,9 @@ class Gathered:
         futures = [future for _, future in mine]
         with self._lock:
             self._waiting += mine
+        for _ in range(self._jobs - 1):
+            with contextlib.suppress(RuntimeError):  # a pool that an interrupt has shut
+                self._pool.submit(self._help)
         while not all(future.done() for future in futures):
             self._turns.give()
             self._turns.take()
@@ -86,6 +93,12 @@ class Gathered:
         found = [future.result() for future in futures]
         evidence = {name: np.concatenate([one[name] for one, _ in found]) for name in found[0][0]}
         return evidence, sum(spent for _, spent in found)
+
+    def _help(self) -> None:
+        """Follow runs of other threads as long as some wait."""
+        with self._turns:
+            while not self._stop.is_set and self._follow_some():
+                pass
 
     def _follow_some(self) -> bool:
         """Follow pieces that wait, alike as the engine needs them; False if none does."""
@@ -101,14 +114,13 @@ class Gathered:
                 count += len(batch[-1][0].states)
             taken = set(map(id, batch))
             self._waiting = [one for one in self._waiting if id(one) not in taken]
-        found: Evidence | None = None
         begun = COMPILING.clock()
         try:
             found = follow_alike(kind, [piece for piece, _ in batch], self._stop)
-        finally:
-            if found is None:  # the error is raised here; those that wait for these runs must not wait on
-                for _, future in batch:
-                    future.set_exception(RuntimeError("runs that were followed together with these failed"))
+        except BaseException as error:  # those that wait for these runs must not wait on
+            for _, future in batch:
+                future.set_exception(error)
+            raise
         at, spent = 0, (COMPILING.clock() - begun) / count
         for piece, future in batch:
             last = at + len(piece.states)
