@@ -120,14 +120,14 @@ def fredholm(coated, load, points=64):
 def test_coated_sphere(ratio, h):
     """Rigid sphere: radius, approach and pressure at the centre as by the method that has no grid.
 
-    0.1 % in approach and pressure, extrapolated; the radius is that of the pressed area, with half a cell to
-    spare.
+    0.03 % in approach and pressure: extrapolated, the worst of the 14 cases is off by 0.009 %, the coarser
+    grid alone by 0.05 % or more. The radius is that of the pressed area, of which half a cell is 2 %.
     """
     coated, load, top = coated_sphere(ratio, h)
     a, d, p0 = fredholm(coated, load)
     found = spheres_on_two_grids(ratio, h, a)
     approach, centre, _ = (4.0 * found[1] - found[0]) / 3.0
-    assert (approach, centre) == pytest.approx((d, p0 / top), rel=1e-3)
+    assert (approach, centre) == pytest.approx((d, p0 / top), rel=3e-4)
     assert found[1][2] == pytest.approx(a, rel=0.02)
 
 

@@ -110,7 +110,8 @@ def test_a_ball_with_creep_in_two_contacts():
     S, D = inner + outer, inner - outer
     slopes = -np.array(((S, radius * D), (radius * D, radius**2 * S)))
     found = modes(slopes, np.diag((mass, 0.4 * mass * radius**2)))
-    assert found.rates.real == pytest.approx((32460.24, 194593.50), rel=1e-6)
+    assert found.rates.real == pytest.approx((32460.24, 194593.50), rel=1e-6)  # the digits of the notes
+    # a sum of two shares: rounding
     assert 1.0 / found.relaxed == pytest.approx(0.25 * (1.0 / inner + 1.0 / outer), rel=1e-12)
 
 

@@ -96,6 +96,18 @@ def test_a_real_job_tells_its_end_within_a_factor_of_two(path, monkeypatch):
     assert all(0.5 < one < 2.0 for one in told), (min(told), max(told), told[:5])
 
 
+def test_a_slow_place_under_way_is_left_at_its_own_pace():
+    """Two places took 1 s each; the third has made its runs in 10 s: at least a fifth of that is left."""
+    work = Work()
+    work.loads.update(dict.fromkeys("abc", Load(10.0)))
+    for place, spent in (("a", 1.0), ("b", 1.0), ("c", 10.0)):
+        work.spend(place, spent, 10.0)
+    for place in "ab":
+        work.finish(place)
+    done, total = work.so_far(1)
+    assert (done, total - done) == (12.0, pytest.approx(2.0))  # rounding
+
+
 def test_unknown_work_has_neither_share_nor_time():
     """Of a total that is not known yet, and of none."""
     pace = Pace()

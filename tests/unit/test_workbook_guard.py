@@ -5,11 +5,12 @@ import struct
 import zipfile
 
 import pytest
-from minimal_xlsx import zipped
+from minimal_xlsx import workbook, zipped
 
 from separatrix.ground import sheet as workbook_files
 from separatrix.ground.errors import InputError
 from separatrix.ground.sheet import MOST_BYTES, MOST_RATIO, refuse_unsafe
+from separatrix.study.reading import read_study
 
 MEMBERS = {"one.xml": b"<a>first</a>" * 50, "folder/two.xml": bytes(range(256)) * 40}
 
@@ -122,3 +123,12 @@ def test_too_many_parts_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(workbook_files, "MOST_PARTS", 1)
     with pytest.raises(InputError, match="at most 1 parts; got 2"):
         refuse_unsafe(written(tmp_path / "many.xlsx", GOOD))
+
+
+def test_a_fault_of_ours_is_not_one_of_the_workbook(tmp_path, monkeypatch):
+    """A TypeError in our own code is raised; the same from inside of a damaged workbook is a refusal."""
+    path = tmp_path / "study.xlsx"
+    path.write_bytes(workbook({"bearing": [["key", "value"], ["ball_count", 13]]}))
+    monkeypatch.setattr("separatrix.ground.workbook.COLUMNS", None)
+    with pytest.raises(TypeError):
+        read_study(path)

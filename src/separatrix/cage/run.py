@@ -297,7 +297,7 @@ def queue(ball: int, space: bool, level: bool = False, real: type = np.float32) 
     processes that write to one index at once, one might take the code of the other.
 
     `start` ... `limits`: a row a run (`numbers.Numbers`, `disturbance`); `looks`, `evidence`, `hits_of`,
-    `heat_of`: what it writes, a row a run; `record`: rows of the first run, one `every` so many steps;
+    `heat_of`: what it writes, a row a run; `record`: rows of the first run, after each `every` steps;
     `stop`: a flag.
     """
     states, one = LANES * cage_states(space=space), LANES * ball_states(ball, space=space)

@@ -57,8 +57,7 @@ def read_sheets(schema: Any, path: Path) -> Document:
     try:
         data, numbers = parsed("".join(f"{text}\n" for text, _ in lines), made.label, schema.FILE)
     except InputError as error:
-        number = re.search(r", line (\d+)$", error.path)
-        raise error.at(lines[int(number[1]) - 1][1] if number else made.label) from None
+        raise error.at(lines[error.line - 1][1] if error.line else made.label) from None
     places = {key: lines[number - 1][1] for key, number in numbers.items()}
     listed = ", ".join(made.formulas[:5]) + (", ..." if len(made.formulas) > 5 else "")
     note = f"{made.label}: the saved values of formulas are used, nothing is recomputed: {listed}."

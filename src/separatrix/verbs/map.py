@@ -37,7 +37,7 @@ FRICTION, RESTITUTION, KICK = "ball_cage_friction", "restitution_factor", "kick"
 KINDS = ("STABLE", "UNSTABLE", "UNDECIDED", "refused", "not_run")
 
 SHOWN = 9
-"""Changes in the table: of more, so many are chosen."""
+"""Most changes in the table."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -110,11 +110,8 @@ def uncertain_inputs(
 
 def stated_frictions(study: Study) -> dict[Case, Friction]:
     """Measured friction of each case, as the study states it."""
-    return {
-        Case(candidate.name): friction
-        for candidate in (study.ranking.candidates if study.ranking else ())
-        if (friction := candidate.friction.get(own_environment(study))) is not None
-    }
+    candidates, own = study.ranking.candidates if study.ranking else (), own_environment(study)
+    return {Case(one.name): found for one in candidates if (found := one.friction.get(own)) is not None}
 
 
 def own_environment(study: Study) -> str:
