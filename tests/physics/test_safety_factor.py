@@ -11,18 +11,18 @@ from separatrix.cage.disturbance import settings_for
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.study.study import BallModel, CageModel, MotionModel, PocketShape, StabilitySettings
 from separatrix.verdict.beyond_models import Pocket
+from separatrix.verdict.crossing import Side
 from separatrix.verdict.long_jobs import Runner
-from separatrix.verdict.ranking import Limit, _limits
+from separatrix.verdict.ranking import Knot, Limit, _knots, _limits
 from separatrix.verdict.safety_factor import (
     CageLimit,
     SafetyFactor,
-    between,
     cage_limit,
     hand_estimate,
     safety_factor,
     spread,
 )
-from separatrix.verdict.stability_curve import critical_friction
+from separatrix.verdict.stability_curve import CriticalFriction, critical_friction
 
 SHIPPED = separatrix.read_study("cryogenic-turbopump")
 LIMIT = CageLimit(
@@ -65,16 +65,28 @@ def test_between_two_stiffnesses_the_critical_friction_is_a_power():
     stiff = replace(
         LIMIT, own_critical_friction=0.5, own_critical_friction_low=0.4, critical_ball="one state"
     )
-    found = between(LIMIT, stiff, 0.5)
+    found = LIMIT.between(stiff, 0.5)
     assert found.own_critical_friction == pytest.approx(math.sqrt(0.25 * 0.5))
     assert found.own_critical_friction_low == pytest.approx(math.sqrt(0.2 * 0.4))
     assert (found.own_critical_friction_high, found.critical_ball) == (
         pytest.approx(0.3),
         "free and one state",
     )
-    assert between(LIMIT, stiff, 0.0).own_critical_friction == pytest.approx(0.25)
+    assert LIMIT.between(stiff, 0.0).own_critical_friction == pytest.approx(0.25)
     for nothing in (None, 0.0):
-        assert between(LIMIT, replace(stiff, own_critical_friction=nothing), 0.5) is None
+        assert LIMIT.between(replace(stiff, own_critical_friction=nothing), 0.5) is None
+
+
+def test_between_two_stiffnesses_a_point_of_the_curve_is_a_power():
+    """Of two points without a crossing on one side the point in between has none either; else it is open."""
+    soft = CriticalFriction(restitution_factor=0.5, critical_friction=0.2, scatter_low=0.0, scatter_high=0.4)
+    stiff = replace(soft, critical_friction=0.8, scatter_low=0.1)
+    found = soft.between(stiff, 0.5)
+    assert (found.critical_friction, found.scatter_low) == (pytest.approx(0.4), 0.0)
+    none = CriticalFriction(restitution_factor=0.5, side=Side.BELOW)
+    assert none.between(replace(none, notes=("a",)), 0.5).height == 1.0
+    assert none.between(replace(none, side=Side.ABOVE), 0.5) is None
+    assert none.between(soft, 0.5) is None
 
 
 def test_of_pockets_that_differ_in_stiffness_alone_the_ends_are_computed():
@@ -87,6 +99,10 @@ def test_of_pockets_that_differ_in_stiffness_alone_the_ends_are_computed():
     assert _limits(asked, dict.fromkeys(ends, LIMIT)) == ends
     open_end = {**dict.fromkeys(ends, LIMIT), ends[1]: replace(LIMIT, own_critical_friction=None)}
     assert _limits(asked, open_end) == [Limit(one) for one in (soft, middle, stiff, heavy)]
+    asked.reference, asked.factors = middle, (0.5,)
+    assert {*_knots(asked, {})} == {Knot(one, 0.5) for one in (soft, middle, stiff, heavy)}
+    asked.reference = heavy
+    assert {*_knots(asked, {})} == {Knot(one, 0.5) for one in (soft, stiff, heavy)}
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])

@@ -8,11 +8,12 @@ first run on, and the next runs are counted where the target most likely is.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import inf
 from operator import itemgetter
+from typing import Any
 
 import numpy as np
 
@@ -343,3 +344,15 @@ def outermost(
     ends = [(way * one.value, way * kick) for kick, one in found.items() if isinstance(one, Crossing)]
     first = way * (min(ends)[1] if ends else max(way * kick for kick in found))
     return found[first], first
+
+
+def powers_between(soft: object, stiff: object, share: Ratio, names: Sequence[str]) -> dict[str, Any]:
+    """Return amounts between those of two pockets, a power of stiffness each; None where an end has none.
+
+    `share` of the way between the logarithms of stiffness.
+    """
+    ends = {name: (getattr(soft, name), getattr(stiff, name)) for name in names}
+    return {
+        name: None if low is None or high is None else low ** (1.0 - share) * high**share
+        for name, (low, high) in ends.items()
+    }

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 from math import log
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
@@ -52,7 +53,6 @@ from separatrix.verdict.ranking_records import (
 from separatrix.verdict.safety_factor import (
     WIDE,
     CageLimit,
-    between,
     cage_limit,
     safety_factor,
     spread,
@@ -96,6 +96,8 @@ class Limit:
 Piece = Asked | Knot | Limit | Case
 """What is computed in one go, a case for a verdict on drawn bearings."""
 
+PieceOfPocket = TypeVar("PieceOfPocket", Knot, Limit)
+
 Findings = Mapping[Piece, Any]
 """What was computed: a `Judgement`, a `CriticalFriction` of a knot, a `CageLimit` of a limit."""
 
@@ -130,8 +132,7 @@ class _Question:
         verdicts = [*scattered(self.keys), *scattered(self.beside)]
         cases = scattered(self.drawn.friction) if self.drawn else []
         own = Knot(self.reference, None)
-        knots = [Knot(pocket, eta) for pocket in self.cages for eta in self.factors]
-        return [*_limits(self, {}), own, *verdicts, *cases, *knots]
+        return [*_limits(self, {}), own, *verdicts, *cases, *_knots(self, {})]
 
 
 def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
@@ -187,14 +188,14 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             **_on_a_wide_land(question, found),
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
-            complete={*pieces, *_limits(question, found)} <= {*found},
+            complete={*pieces, *_between(question, found)} <= {*found},
         )
 
     return question.runner.work_out(
         partial(_computed, question),
         pieces,
         into=ranking,
-        more=lambda _, found: _limits(question, found),
+        more=lambda _, found: _between(question, found),
         load=partial(_load, question),
     )
 
@@ -262,20 +263,41 @@ def _question(
     )
 
 
-def _limits(question: _Question, found: Findings) -> list[Limit]:
-    """Critical frictions that are wanted: of pockets that differ in stiffness alone those of the ends.
+def _between(question: _Question, found: Findings) -> list[Piece]:
+    """Critical frictions that are wanted, by the study's model and on the paper's curves."""
+    return [*_limits(question, found), *_knots(question, found)]
 
-    If the ends say nothing of those between them, all. The reference cage's on a wide land too, if its land
-    stops it before its pockets do.
+
+def _limits(question: _Question, found: Findings) -> list[Limit]:
+    """Critical frictions that are wanted by the study's model.
+
+    The reference cage's on a wide land too, if its land stops it before its pockets do.
     """
     if question.is_paper:
         return []
-    wanted = [question.wide] if question.wide else []
+    wide = [question.wide] if question.wide else []
+    return [*wide, *_not_between(question, found, Limit)]
+
+
+def _knots(question: _Question, found: Findings) -> list[Knot]:
+    """Points of the paper's curves that are wanted: all of the reference cage's."""
+    own = [Knot(question.reference, eta) for eta in question.factors]
+    others = (
+        _not_between(question, found, partial(Knot, restitution_factor=eta)) for eta in question.factors
+    )
+    return [*own, *itertools.chain.from_iterable(others)]
+
+
+def _not_between(
+    question: _Question, found: Findings, piece: Callable[[Pocket], PieceOfPocket]
+) -> list[PieceOfPocket]:
+    """Pieces of pockets that differ in stiffness alone: of the ends; of all, if these say nothing of them."""
+    wanted: list[PieceOfPocket] = []
     for alike in sorted({_alike(question, one) for one in question.cages}):
         ends = dict.fromkeys((alike[0], alike[-1]))
-        soft, stiff = found.get(Limit(alike[0])), found.get(Limit(alike[-1]))
-        is_open = soft is not None and stiff is not None and between(soft, stiff, 0.5) is None
-        wanted += [Limit(one) for one in (alike if is_open else ends)]
+        soft, stiff = found.get(piece(alike[0])), found.get(piece(alike[-1]))
+        is_open = soft is not None and stiff is not None and soft.between(stiff, 0.5) is None
+        wanted += map(piece, alike if is_open else ends)
     return wanted
 
 
@@ -285,14 +307,14 @@ def _alike(question: _Question, pocket: Pocket) -> tuple[Pocket, ...]:
     return tuple(sorted(alike))
 
 
-def _limit_of(question: _Question, found: Findings, pocket: Pocket) -> CageLimit | None:
-    """Critical friction of a pocket, its own or that between those of the ends; None if not finished."""
+def _of_pocket(question: _Question, found: Findings, piece: Callable[[Pocket], Piece], pocket: Pocket) -> Any:
+    """What was found of a pocket, its own or that between those of the ends; None if not finished."""
     alike = _alike(question, pocket)
-    soft, own, stiff = (found.get(Limit(one)) for one in (alike[0], pocket, alike[-1]))
+    soft, own, stiff = (found.get(piece(one)) for one in (alike[0], pocket, alike[-1]))
     if own is not None or soft is None or stiff is None:
         return own
     share = log(pocket.stiffness / alike[0].stiffness) / log(alike[-1].stiffness / alike[0].stiffness)
-    return between(soft, stiff, share)
+    return soft.between(stiff, share)
 
 
 def _load(question: _Question, piece: Piece) -> Load:
@@ -323,8 +345,9 @@ def _computed(question: _Question, piece: Piece) -> object:
 
 def _points(question: _Question, found: Findings, pocket: Pocket) -> list[CriticalFriction]:
     """Finished points of the curve of a pocket, rising restitution factors first."""
-    knots = (Knot(pocket, eta) for eta in question.factors)
-    return [found[knot] for knot in knots if knot in found]
+    pieces = (partial(Knot, restitution_factor=eta) for eta in question.factors)
+    points = (_of_pocket(question, found, piece, pocket) for piece in pieces)
+    return [point for point in points if point is not None]
 
 
 def _curve(question: _Question, found: Findings) -> StabilityCurve | None:
@@ -386,7 +409,7 @@ def _row(
     is_own = environment == question.environment
     row = replace(row, judgement=judgement, over_inputs=found.get(Case(name)) if is_own else None)
     threshold = _threshold(question, found, pocket, friction)
-    limit = _limit_of(question, found, pocket)
+    limit = _of_pocket(question, found, Limit, pocket)
     by_paper = Asked(pocket, friction.mean, True)
     papers = judgement if question.is_paper else found.get(by_paper)
     is_missing = papers is None and by_paper in question.beside

@@ -15,7 +15,14 @@ from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
 from separatrix.ground.units import Metre, MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
-from separatrix.verdict.crossing import SEARCHED_FRICTION, GrowthCounter, Side, ends_of, outermost
+from separatrix.verdict.crossing import (
+    SEARCHED_FRICTION,
+    GrowthCounter,
+    Side,
+    ends_of,
+    outermost,
+    powers_between,
+)
 from separatrix.verdict.judgement import ENOUGH, NORMAL_95, transmitted_force, whirl_share
 from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.reasons import ball_words
@@ -62,6 +69,15 @@ class CageLimit:
     def own(self) -> dict[str, Any]:
         """Critical friction with the ends of its interval, by their names."""
         return {name: getattr(self, name) for name in POWERS[:3]}
+
+    def between(self, stiff: CageLimit, share: Ratio) -> CageLimit | None:
+        """That of a pocket a share of the way to the stiffer one of `stiff`; None if one has no value."""
+        values = powers_between(self, stiff, share, POWERS)
+        if not all(values.values()):
+            return None
+        balls = dict.fromkeys((self.critical_ball, stiff.critical_ball))
+        nearer = stiff if share > 0.5 else self
+        return replace(nearer, critical_ball=" and ".join(balls), notes=(), **values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,24 +143,6 @@ def hand_estimate(cage: MovingCage) -> Ratio:
     """Critical friction by the closed law, 0.42 sqrt(2 k M/Z)/C with C of a slow push [-]."""
     stiff = 2.0 * cage.ball_cage_stiffness * moving_mass(cage) / cage.ball_count
     return HAND * math.sqrt(stiff) / cage.slow_damping
-
-
-def between(soft: CageLimit, stiff: CageLimit, share: Ratio) -> CageLimit | None:
-    """Critical friction between two pocket stiffnesses, a power of stiffness; None if an end has no value.
-
-    `share` of the way between the logarithms of stiffness.
-    """
-    ends = {name: (getattr(soft, name), getattr(stiff, name)) for name in POWERS}
-    if not all(low and high for low, high in ends.values()):
-        return None
-    balls = dict.fromkeys((soft.critical_ball, stiff.critical_ball))
-    nearer = stiff if share > 0.5 else soft
-    return replace(
-        nearer,
-        critical_ball=" and ".join(balls),
-        notes=(),
-        **{name: low ** (1.0 - share) * high**share for name, (low, high) in ends.items()},
-    )
 
 
 def spread(drawn: Sequence[Solution]) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from separatrix.cage.closed_forms import drift_rate_law, drifts, linear_critical_friction
@@ -24,6 +24,7 @@ from separatrix.verdict.crossing import (
     cage_at,
     ends_of,
     outermost,
+    powers_between,
 )
 from separatrix.verdict.long_jobs import Load, Runner
 
@@ -68,6 +69,15 @@ class CriticalFriction:
         if self.critical_friction is not None:
             return self.critical_friction
         return 0.0 if self.side is Side.ABOVE else SEARCHED_FRICTION
+
+    def between(self, stiff: CriticalFriction, share: Ratio) -> CriticalFriction | None:
+        """That of a pocket a share of the way to the stiffer one of `stiff`; None if only one has a value.
+
+        Without the band.
+        """
+        if self.side is not stiff.side:
+            return None
+        return replace(self, notes=(), **powers_between(self, stiff, share, _VALUES[0]))
 
 
 _VALUES = (
