@@ -93,13 +93,14 @@ def test_of_pockets_that_differ_in_stiffness_alone_the_ends_are_computed():
     """Another mass or clearance is another cage; all are, where an end has no value to go between."""
     soft, middle, stiff = (Pocket(0.02, k, 3e-4, 4e-4) for k in (1e6, 2e6, 3e6))
     heavy = soft._replace(mass=0.03)
-    asked = SimpleNamespace(is_paper=False, wide=None, cages=dict.fromkeys((stiff, heavy, middle, soft)))
+    asked = SimpleNamespace(is_paper=False, effects={}, cages=dict.fromkeys((stiff, heavy, middle, soft)))
     ends = [Limit(one) for one in (soft, stiff, heavy)]
     assert _limits(asked, {}) == ends
     assert _limits(asked, dict.fromkeys(ends, LIMIT)) == ends
     open_end = {**dict.fromkeys(ends, LIMIT), ends[1]: replace(LIMIT, own_critical_friction=None)}
     assert _limits(asked, open_end) == [Limit(one) for one in (soft, middle, stiff, heavy)]
-    asked.reference, asked.factors = middle, (0.5,)
+    asked.reference, asked.factors, asked.effects = middle, (0.5,), {"fluid": None}
+    assert _limits(asked, {}) == [*ends, Limit(middle, "fluid")]
     assert {*_knots(asked, {})} == {Knot(one, 0.5) for one in (soft, middle, stiff, heavy)}
     asked.reference = heavy
     assert {*_knots(asked, {})} == {Knot(one, 0.5) for one in (soft, stiff, heavy)}

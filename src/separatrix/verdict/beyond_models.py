@@ -34,6 +34,7 @@ from separatrix.study.study import (
     PocketShape,
     Study,
 )
+from separatrix.verdict.effects import MOVED
 from separatrix.verdict.judgement import Judgement, KickCount, Verdict, transmitted_force
 from separatrix.verdict.stability_curve import RestitutionThreshold
 
@@ -43,9 +44,6 @@ STRONG: Ratio = 1.0
 BEYOND_LAND: Ratio = 1.2
 """Offset over the land clearance beyond which the land's spring is the question, not the cage."""
 
-
-MOVED: Ratio = 0.05
-"""Added mass of the fluid in a land's gap over the cage's from which a sentence says so."""
 
 STIFF: Ratio = 3.0
 """First bending frequency of a ring over that of the whirl from which it counts as rigid."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 from math import log
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 from separatrix.cage.moving_cage import moving_cage
 from separatrix.chain.impact_restitution import SOLID_LUBRICATION_LIMIT
 from separatrix.chain.solution import Solution, solve
-from separatrix.ground.units import Metre, Ratio
+from separatrix.ground.units import Ratio
 from separatrix.study.candidates import (
     other_than_candidates,
     ranking_question,
@@ -33,6 +33,7 @@ from separatrix.verdict.beyond_models import (
 )
 from separatrix.verdict.crossing import GrowthCounter
 from separatrix.verdict.draws import Case, DrawnBearings, drawn_bearings
+from separatrix.verdict.effects import Change, Effect, effects_on
 from separatrix.verdict.judgement import judge_solution, transmitted_force
 from separatrix.verdict.long_jobs import Load, Runner, scattered
 from separatrix.verdict.ranking_records import (
@@ -51,7 +52,6 @@ from separatrix.verdict.ranking_records import (
     same_rank,
 )
 from separatrix.verdict.safety_factor import (
-    WIDE,
     CageLimit,
     cage_limit,
     safety_factor,
@@ -87,10 +87,10 @@ class Knot:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Critical friction of a pocket's cage by the study's model; with another land clearance, if given."""
+    """Critical friction of a pocket's cage by the study's model, or with an effect on it."""
 
     pocket: Pocket
-    land_clearance: Metre | None = None
+    effect: str = ""
 
 
 Piece = Asked | Knot | Limit | Case
@@ -117,7 +117,7 @@ class _Question:
     pockets: Mapping[str, Pocket]
     reference: Pocket
     environment: str  # the bearing's own
-    wide: Limit | None  # on a land that leaves the reference cage to its pockets, if its own does not
+    effects: Mapping[str, Change]  # on the reference cage, by name
     drawn: DrawnBearings | None
     keys: Sequence[Asked]  # of all verdicts by the study's model
     beside: Sequence[Asked]  # of those by the paper's, in the bearing's own environment
@@ -185,7 +185,7 @@ def rank(study: Study, *, runner: Runner | None = None) -> Ranking:
             duration=question.settings.duration,
             ball_model=reference.design.ball_model,
             motion_model=reference.design.motion_model,
-            **_on_a_wide_land(question, found),
+            effects=tuple(_effects(question, found)),
             capacity=transmitted_force(reference),
             notes=_notes(study, asked, question, found, ranked[environment]),
             complete={*pieces, *_between(question, found)} <= {*found},
@@ -238,7 +238,6 @@ def _question(
     counters = {
         pocket: GrowthCounter(moving_cage(one, 0.0), study.stability, runner) for pocket, one in paper.items()
     }
-    is_by_land = 0.0 < reference.land < reference.clearance
     drawn = drawn_bearings(study, study.stability.runs) if study.distributions else None
     spreads = {}
     if drawn and not is_paper:
@@ -255,7 +254,7 @@ def _question(
         pockets=pockets,
         reference=reference,
         environment=required_environment(study, asked),
-        wide=Limit(reference, WIDE * reference.clearance) if is_by_land and not is_paper else None,
+        effects={} if is_paper else effects_on(cages[reference], moving_cage(cages[reference], 0.0)),
         drawn=drawn,
         keys=keys,
         beside=[] if is_paper else sorted(own),
@@ -269,14 +268,13 @@ def _between(question: _Question, found: Findings) -> list[Piece]:
 
 
 def _limits(question: _Question, found: Findings) -> list[Limit]:
-    """Critical frictions that are wanted by the study's model.
-
-    The reference cage's on a wide land too, if its land stops it before its pockets do.
-    """
+    """Critical frictions that are wanted by the study's model, those with effects too."""
     if question.is_paper:
         return []
-    wide = [question.wide] if question.wide else []
-    return [*wide, *_not_between(question, found, Limit)]
+    return [
+        *_not_between(question, found, Limit),
+        *(Limit(question.reference, effect) for effect in question.effects),
+    ]
 
 
 def _knots(question: _Question, found: Findings) -> list[Knot]:
@@ -337,7 +335,11 @@ def _computed(question: _Question, piece: Piece) -> object:
     if isinstance(piece, Limit):
         solution = question.cages[piece.pocket]
         highest = max(key.friction for key in question.keys)
-        return cage_limit(solution, settings, runner, highest=highest, land_clearance=piece.land_clearance)
+        if not piece.effect:
+            return cage_limit(solution, settings, runner, highest=highest)
+        few = replace(settings, runs=max(1, settings.runs // 2))
+        change = question.effects[piece.effect].values
+        return cage_limit(solution, few, runner, highest=highest, change=change)
     solved = question.paper if piece.is_paper else question.cages
     run = partial(runner.whole_ensemble, settings=settings)
     return judge_solution(solved[piece.pocket], piece.friction, run)
@@ -437,12 +439,11 @@ def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> d
     return own | asdict(safety_factor(limit, friction.mean, friction.interval(), spread))
 
 
-def _on_a_wide_land(question: _Question, found: Findings) -> dict[str, Any]:
-    """Critical friction on a land that leaves the cage to its pockets, as fields; none if not asked."""
-    if question.wide is None or question.wide not in found:
-        return {}
-    values = {name.replace("own", "wide_land"): value for name, value in found[question.wide].own.items()}
-    return {"wide_land_clearance": question.wide.land_clearance, **values}
+def _effects(question: _Question, found: Findings) -> Iterator[Effect]:
+    """Yield the critical frictions of the reference cage with what else moves them."""
+    for name, change in question.effects.items():
+        if limit := found.get(Limit(question.reference, name)):
+            yield Effect(name=name, change=change.words, **limit.own)
 
 
 def _threshold(

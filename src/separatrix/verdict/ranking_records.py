@@ -19,6 +19,7 @@ from separatrix.ground.units import (
     Second,
 )
 from separatrix.study.study import BallModel, Friction, MotionModel
+from separatrix.verdict.effects import Effect
 from separatrix.verdict.judgement import Judgement, Verdict
 from separatrix.verdict.stability_curve import StabilityCurve
 
@@ -125,12 +126,8 @@ class Ranking:
     duration: Second  # of a run
     ball_model: BallModel  # that the study asks for; a verdict states the one that decided
     motion_model: MotionModel  # plane or space
-    wide_land_clearance: Metre | None = None
-    """Land clearance at which the pockets of `candidate` stop its cage; null where they do at its own, and in
-    the paper's model."""
-    wide_land_critical_friction: Ratio | None = None  # of that cage there; null beyond the search
-    wide_land_critical_friction_low: Ratio | None = None  # of its 95 % interval
-    wide_land_critical_friction_high: Ratio | None = None  # upper end of it
+    effects: Annotated[tuple[Effect, ...], Rows("effect", "effect_", label="name")]
+    """What else moves the critical friction of the cage of `candidate`, as its inputs allow."""
     capacity: Newton  # most that the races can transmit to the most loaded ball
     notes: tuple[str, ...] = ()  # where the motion leaves the range of the model, a sentence each
     complete: bool  # false if an interrupt left something out

@@ -191,8 +191,11 @@ def not_finite(ensemble: Ensemble) -> str:
     return f"In {int(runs.sum())} of {runs.size} runs {CAUSES[Cause.NOT_FINITE]}."
 
 
-def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
-    """Return what the runs from the worst kick do; of unresolved ones also why."""
+def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int, *, is_sure: bool) -> str:
+    """Return what the runs from the worst kick do; of unresolved ones also why.
+
+    `is_sure` says that their share is neither that of a stable nor that of an unstable cage.
+    """
     count = counts[kick]
     parts = {"settle": count.settles, "roll": count.rolls, "whirl": count.whirls, "drift": count.drifts}
     said = ", ".join(f"{n} {word}" for word, n in parts.items() if n)
@@ -204,6 +207,11 @@ def mixed(ensemble: Ensemble, counts: tuple[KickCount, ...], kick: int) -> str:
         if most == Cause.LEFT_POCKET:
             seen = _first_left(ensemble)
         return f"Of {count.runs} runs from {count.kick:g} m/s {said}: {CAUSES[most]} ({seen})."
+    if is_sure:
+        return (
+            f"The start decides: of {count.runs} runs from {count.kick:g} m/s {said}; more runs would not "
+            "change that, less friction would."
+        )
     return f"No clear answer from {count.kick:g} m/s: of {count.runs} runs {said}."
 
 

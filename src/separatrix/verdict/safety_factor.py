@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 from separatrix.cage.closed_forms import moving_mass
 from separatrix.cage.moving_cage import MovingCage, moving_cage
 from separatrix.chain.solution import Solution
-from separatrix.ground.units import Metre, MetrePerSecond, Ratio
+from separatrix.ground.units import MetrePerSecond, Ratio
 from separatrix.study.study import BallModel, StabilitySettings
 from separatrix.verdict.crossing import (
     SEARCHED_FRICTION,
@@ -32,9 +32,6 @@ HAND: Ratio = 0.42
 
 AMPLE: Ratio = 1.5
 """Safety factor by balls of one state from which free balls are not asked."""
-
-WIDE: Ratio = 1.6
-"""Clearance of a wide land over that of the pocket: there the pockets stop the cage, not the land."""
 
 POWERS = (
     "own_critical_friction",
@@ -95,19 +92,18 @@ def cage_limit(
     runner: Runner,
     *,
     highest: Ratio = inf,
-    land_clearance: Metre | None = None,
+    change: Mapping[str, Any] | None = None,
 ) -> CageLimit:
     """Critical friction of a solved study's cage, by the ball that its model asks for.
 
     With the ball "auto", by balls of one state, which may be up to a quarter too low but not too high; by
     free balls where the friction of a whirl there exceeds a quarter of what the races hold, unless the
     critical friction is `AMPLE` times the `highest` friction that it will be compared with.
-    `land_clearance` replaces that of the cage.
+    `change` has other values of fields of the cage.
     """
 
     def cage(friction: Ratio, ball: BallModel | None = None) -> MovingCage:
-        found = moving_cage(solution, friction, ball)
-        return found if land_clearance is None else replace(found, land_clearance=land_clearance)
+        return replace(moving_cage(solution, friction, ball), **(change or {}))
 
     found = _limit(cage(0.0), settings, runner)
     if solution.design.ball_model is not BallModel.AUTO:
