@@ -91,6 +91,8 @@ class Equilibrium:
     rolling_speed_outer: Annotated[Array, "m/s", ("ball",)]  # the same at the outer race
     centrifugal_force: Annotated[Array, "N", ("ball",)]  # of a ball
     gyroscopic_moment: Annotated[Array, "N m", ("ball",)]  # of a ball
+    heat_inner: Annotated[Array, "W", ("ball",)]  # of friction in the contact
+    heat_outer: Annotated[Array, "W", ("ball",)]  # the same at the outer race
     race_control: Annotated[tuple[Race, ...], ("ball",)]
     """Race that controls the ball's spin by Jones's criterion."""
     axial_displacement: Metre
@@ -100,6 +102,8 @@ class Equilibrium:
     is_tilt_held: bool  # whether the rings are held, parallel or at a given tilt
     cross_tilt: Radian  # of the inner ring about the radial load
     moment: NewtonMetre
+    friction_torque: NewtonMetre
+    """Of balls on races: their heat over the difference of the speeds of the rings."""
     iterations: int  # steps of the solver
     residual: Newton  # unbalanced force on the inner ring
 
@@ -526,7 +530,7 @@ def _finished(p: Problem, ring: _Ring, model: KinematicModel, at: _Place) -> Equ
         raise outside
     if len(u) == 1:
         table, u = np.repeat(table, Z, axis=0), np.repeat(u, Z, axis=0)
-    angle, load, _, grip = np.moveaxis(table, -1, 0)
+    angle, load, _, grip, heat = np.moveaxis(table, -1, 0)
     normal_x, normal_r = np.sin(angle) * (-1.0, 1.0), np.cos(angle) * (-1.0, 1.0)
     m, spin_x, spin_r = (u[:, k, None] for k in range(2, 5))
     race = np.concatenate((1.0 - m, -m), axis=1)  # turning of the rings as the ball sees it
@@ -555,6 +559,8 @@ def _finished(p: Problem, ring: _Ring, model: KinematicModel, at: _Place) -> Equ
         rolling_speed_outer=0.25 * abs(p.speed) * np.abs(surfaces[:, 1]),
         centrifugal_force=0.5 * p.ball_mass * p.pitch_diameter * orbit**2,
         gyroscopic_moment=np.abs(p.ball_inertia * orbit * p.speed) * np.hypot(outward, along),
+        heat_inner=heat[:, 0],
+        heat_outer=heat[:, 1],
         race_control=tuple(
             Race.OUTER if outer * math.cos(turn) > inner else Race.INNER
             for (inner, outer), turn in zip(grip, angle[:, 0] - angle[:, 1], strict=True)
@@ -566,6 +572,7 @@ def _finished(p: Problem, ring: _Ring, model: KinematicModel, at: _Place) -> Equ
         is_tilt_held=4 not in ring.dofs,
         cross_tilt=float(at.q[3] / (0.5 * p.pitch_diameter)),
         moment=float(moment * 0.5 * p.pitch_diameter),
+        friction_torque=float(heat.sum() / abs(p.speed)) if p.speed != 0.0 else 0.0,
         iterations=at.iterations,
         residual=float(at.unbalance),
     )
