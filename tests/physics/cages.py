@@ -107,7 +107,7 @@ def followed(
 NOTHING = (
     *("largest_offset", "mean_offset", "offset_spread", "orbit_speed", "drift_rate", "end_energy"),
     *("whirl_frequency", "largest_land_force", "energy_imbalance", "pocket_power", "land_power"),
-    *("rubbing_force", "rubbing_speed", "strike_rate", "left_time"),
+    *("rubbing_force", "rubbing_speed", "strike_rate", "left_time", "pocket_sliding"),
 )
 KICKS = np.array([0.1, 0.5, 2.0, 4.0, 8.0])
 

@@ -150,3 +150,14 @@ def test_random_cages_end_and_close_their_ledger(space):
         for name in ("end_energy", "largest_offset", "whirl_frequency", "largest_contact_force", "followed"):
             assert np.all(np.isfinite(getattr(found, name))), name
         assert np.all(found.energy_imbalance < 1e-2)
+
+
+def test_sliding_in_the_pockets_is_force_times_surface_speed():
+    """A cage that its weight has laid on its balls: their surface slides at half a diameter times the spin."""
+    cage = replace(AT_REST, **SPIN, ball_cage_friction=0.05, gravity=9.81)
+    found = run(cage, 2.2, samples=20_000)
+    last = (found.time >= found.judged_from) & (found.time <= found.followed)
+    force = float(found.contact_force[last].sum(axis=1).mean())
+    assert force > 0.5 * cage.mass * cage.gravity
+    # what is left of the motion moves against 25 m/s of the surface
+    assert found.pocket_sliding == pytest.approx(force * cage.lever * math.hypot(*cage.spin), rel=0.01)

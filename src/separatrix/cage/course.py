@@ -96,6 +96,7 @@ class History:
     half_play: Annotated[Array, "m", ("ball",)]  # half the clearance of each pocket along the orbit
     pocket_impacts: Annotated[Array, "-", ("ball",)]
     pocket_rubbing: Annotated[Array, "J", ("ball",)]  # integral of force times sliding speed
+    pocket_sliding: Watt  # mean of force times sliding speed in all pockets at the end
     outcome: RunOutcome  # SETTLES, ROLLS, WHIRLS, DRIFTS or UNRESOLVED
     cause: Cause  # why the run is unresolved, or that friction on the land keeps it moving
     judged_from: Second  # the last part of the run, by which it was judged

@@ -79,6 +79,7 @@ class Ensemble:
     largest_land_force: Array  # of cage and land [N]
     pocket_impacts: Whole  # how often each pocket met its ball, shape (kick, run, ball)
     pocket_rubbing: Array  # integral of force times sliding speed, shape (kick, run, ball) [J]
+    pocket_sliding: Array  # mean of force times sliding speed in all pockets at the end [W]
     land_impacts: Whole  # how often the cage met its land
     strike_rate: Array  # impacts of all pockets at the end [1/s]
     energy_imbalance: Array  # what the works leave open, over the work done and the energy at the start [-]
@@ -330,6 +331,7 @@ def evidence_of(pieces: Sequence[Piece], raw: Raw) -> dict[str, Array]:
         "largest_land_force": most(rows.PEAK_LAND),
         "pocket_impacts": raw.hits.astype(np.int64),
         "pocket_rubbing": raw.heat,
+        "pocket_sliding": last(rows.RUBBING),
         "land_impacts": most(rows.LAND_STRIKES).astype(np.int64),
         "strike_rate": last(rows.STRIKES),
         "energy_imbalance": at[:, run.OPEN] / np.maximum(at[:, run.DONE] + start, 1e-300),

@@ -80,8 +80,8 @@ LEAD, GROOVE = _places(2)
 (
     ENERGY, OFFSET_MEAN, OFFSET_SQUARE, SWEPT, CURL, SPEED_SQUARE, PRESSED, HEATED, STRIKES,
     TILT_SQUARE, CONE, MEAN_X, MEAN_Y,
-    WORK_POCKET, WORK_LAND, WORK_PRESS, WORK_BALL, WORK_FRAME, LOOK_COLUMNS,
-) = _places(19)  # fmt: skip
+    WORK_POCKET, WORK_LAND, WORK_PRESS, WORK_BALL, WORK_FRAME, RUBBING, LOOK_COLUMNS,
+) = _places(20)  # fmt: skip
 WATCHED = WORK_POCKET  # those before are summed up step by step
 
 # What is watched of a run as an extreme or a count over all of it; after the sums, in one array.

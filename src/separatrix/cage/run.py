@@ -234,11 +234,14 @@ def write_look(found, at, w, s, kept, moments, steps, step, l):
 
 @part
 def count_impacts(hits, heat, places, step, l):
-    """Add impacts and heat of every pocket since the last look."""
+    """Add impacts and heat of every pocket since the last look; the sum of the latter over steps and pockets."""
+    total = 0.0
     for j in range(hits.size):
         hits[j] += places[j, HITS + l]
+        total += places[j, RUBBED + l]
         heat[j] += places[j, RUBBED + l] * step
         places[j, HITS + l] = places[j, RUBBED + l] = ZERO
+    return total
 
 
 @part
@@ -247,7 +250,7 @@ def end_look(n, look, moments, steps, books, w, s, places, kept, l):
     looks, evidence, hits_of, heat_of, numbers, limits = books
     found, at, step = looks[n, look], evidence[n], numbers[n, STEP // LANES]
     write_look(found, at, w, s, kept, moments, steps, step, l)
-    count_impacts(hits_of[n], heat_of[n], places, step, l)
+    found[RUBBING // LANES] = count_impacts(hits_of[n], heat_of[n], places, step, l) / moments
     if at[OUTCOME] == UNKNOWN:
         touched = w[PEAK_FORCE + l] + w[PEAK_LAND + l] > ZERO
         at[OUTCOME], at[CAUSE] = end_of_motion(looks[n], look, touched, moments < steps, limits[n])
