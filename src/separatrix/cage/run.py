@@ -234,7 +234,7 @@ def write_look(found, at, w, s, kept, moments, steps, step, l):
 
 @part
 def count_impacts(hits, heat, places, step, l):
-    """Add impacts and heat of every pocket since the last look; the sum of the latter over steps and pockets."""
+    """Add impacts and heat of every pocket since the last look; the heat of all, summed over steps."""
     total = 0.0
     for j in range(hits.size):
         hits[j] += places[j, HITS + l]

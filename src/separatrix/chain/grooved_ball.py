@@ -587,7 +587,7 @@ def _heat(p: Problem, side: float, t: Touch, u: Array) -> float:
     contact_friction(p, side, t, t.load, u, SMOOTHING * 0.25 * p.pitch_diameter, NODES, r)
     slip_coefficients(p, side, t, u, c, normal)
     power = c[0] * r[0, 0] + c[1] * r[1, 0] + c[2] * r[2, 0] + c[3] * r[3, 0]
-    return p.friction * t.load * abs(p.speed) * power
+    return float(p.friction * t.load * abs(p.speed) * power)
 
 
 @kernel

@@ -58,6 +58,8 @@ Pascal = Annotated[float, "Pa"]
 Kelvin = Annotated[float, "K"]
 PerKelvin = Annotated[float, "m/m/K"]
 Joule = Annotated[float, "J"]
+CubicMetre = Annotated[float, "m3"]
+SpecificWear = Annotated[float, "m3/(N m)"]
 Watt = Annotated[float, "W"]
 
 
@@ -96,12 +98,16 @@ QUANTITIES = {
     "J/kg/K": "heat capacity",
     "kg m": "unbalance",
     "kg m2": "moment of inertia",
+    "m3": "volume",
+    "m3/(N m)": "wear coefficient",
 }
 """What each SI unit measures, in a user's words."""
 
 UNITS: dict[str, dict[str, str]] = {
     "m": {"m": "1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6", "nm": "1e-9", "in": "0.0254"},
     "m2": {"m2": "1", "cm2": "1e-4", "mm2": "1e-6"},
+    "m3": {"m3": "1", "cm3": "1e-6", "mm3": "1e-9"},
+    "m3/(N m)": {"m3/(N m)": "1", "mm3/(N m)": "1e-9", "m2/N": "1"},
     "s": {"s": "1", "ms": "1e-3", "us": "1e-6", "min": "60", "h": "3600"},
     # The scales of angles and rotational speeds are in turns of pi wherever the text ends in "pi".
     "rad": {"rad": "1", "mrad": "1e-3", "deg": "1/180 pi", "°": "1/180 pi", "arcmin": "1/10800 pi"},

@@ -64,6 +64,7 @@ from separatrix.study.film import TractionSettings as TractionSettings
 from separatrix.study.film import Wear as Wear
 from separatrix.study.film import Worn as Worn
 from separatrix.study.pocket_shape import PocketShape as PocketShape
+from separatrix.study.wear_rates import WearRates as WearRates
 
 LEAST_KICK: MetrePerSecond = 1e-9
 """Kicks are larger: the energy of a weaker one is lost in rounding."""
@@ -247,6 +248,7 @@ class Study:
     ranking: RankingQuestion | None = key(default=None, read=read_ranking, form=RankingSection)
     cage: CageDesign | None = key(default=None)
     stability: StabilitySettings = key(default=StabilitySettings())
+    wear: WearRates | None = key(default=None)
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
 
@@ -311,7 +313,7 @@ check(Study, after=_SIZES)(cage_body.body_that_can_be)
 check(Study)(cage_body.pockets_for_balls)
 
 
-ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking")
+ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking", "wear")
 """Sections as a reader likes them."""
 
 SECTIONS: dict[str, type] = {name: keys_of(Study)[name].hint for name in ORDER if name != "ranking"}

@@ -32,6 +32,7 @@ VERBS = {
     "rank": "Rank the cage materials: verdict, margin, reason.",
     "sensitivity": "Verdicts over uncertain inputs, and which input decides them.",
     "sweep": "Chain and verdict of many cases: one table.",
+    "life": "When the cage becomes unstable as film and pockets wear.",
 }
 """Modules of this package, each a question to a study, in the order of the chain -> its line of help."""
 

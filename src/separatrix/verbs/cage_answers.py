@@ -21,6 +21,7 @@ from separatrix.verdict.stability_curve import StabilityCurve
 from separatrix.verdict.stability_map import StabilityMap
 from separatrix.verdict.swept_cases import Sweep
 from separatrix.verdict.uncertain_study import NotDrawn, UncertainMaterial, UncertainStudy
+from separatrix.verdict.wear_life import Life
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,6 +84,13 @@ class SensitivityAnswer(OfCage):
     """The uncertain study, and the cage of its reference candidate."""
 
     uncertain: UncertainStudy  # verdicts over the uncertain inputs, and what decides them
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeAnswer(OfCage):
+    """The life, and the cage that it is of."""
+
+    life: Life  # when it becomes unstable, what ends it, and the table behind that
 
 
 # How these records, and those in them, are arranged otherwise than field by field.

@@ -19,7 +19,7 @@ from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 
 VERBS = (
-    *("rank", "sensitivity", "stability", "map", "sweep", "simulate"),
+    *("rank", "sensitivity", "life", "stability", "map", "sweep", "simulate"),
     *("mobility", "restitution", "traction", "bearing", "check"),
 )
 """Verbs of a study; of two folders with several, the first that both have is compared."""

@@ -274,6 +274,11 @@ class Response:
         low, high = (math.exp(quantile(place, weight, q)) for q in ENDS_95)
         return Crossing(math.exp(centre), low, min(high, SEARCHED_FRICTION))
 
+    def steepness(self, friction: Ratio, target: Ratio) -> float:
+        """Slope of logit P in ln f near a crossing [-]."""
+        centre = math.log(friction)
+        return steepness(self._near(centre), centre + PLACES, target)
+
     def _near(self, centre: float) -> dict[float, Count]:
         """Counts around a logarithm of friction."""
         return {
@@ -301,16 +306,25 @@ def cell_of(friction: Ratio) -> int:
 
 def posterior(counts: Mapping[float, Count], place: Array, target: Ratio) -> Array:
     """Probability that P passes the target at each place, from counts against ln f; shape (place,) [-]."""
-    if not counts:
-        return np.full(place.size, 1.0 / place.size)
+    weight = _likelihood(counts, place, target).sum(axis=-1)
+    return np.asarray(weight / weight.sum())
+
+
+def steepness(counts: Mapping[float, Count], place: Array, target: Ratio) -> float:
+    """Slope of logit P in ln f by the same counts: the mean of what they leave possible [-]."""
+    weight = _likelihood(counts, place, target).sum(axis=0)
+    return float(SLOPES @ weight / weight.sum())
+
+
+def _likelihood(counts: Mapping[float, Count], place: Array, target: Ratio) -> Array:
+    """Likelihood of each place with each of `SLOPES`, shape (place, slope), over the largest [-]."""
     x = np.array(list(counts))
     whirling = np.array([count.whirling for count in counts.values()], dtype=np.float64)
     runs = np.array([count.runs for count in counts.values()], dtype=np.float64)
     logit = math.log(target / (1.0 - target)) + SLOPES[:, None] * (x - place[:, None])[:, None, :]
     likelihood = whirling * logit - runs * np.logaddexp(0.0, logit)
     total = likelihood.sum(axis=-1)
-    weight = np.exp(total - total.max()).sum(axis=-1)
-    return np.asarray(weight / weight.sum())
+    return np.asarray(np.exp(total - total.max()))
 
 
 def quantile(place: Array, weight: Array, share: Ratio) -> float:

@@ -343,7 +343,7 @@ def decide(
     if wilson_interval(count.runs, count.runs)[0] <= FEW:
         return Verdict.UNDECIDED, reasons.too_few(count.runs)
     if not is_clear(count.calm + count.drifts, count.runs):
-        is_sure = FEW < count.probability_low and count.probability_high < CLEAR
+        is_sure = count.probability_low > FEW and count.probability_high < CLEAR
         return Verdict.UNDECIDED, reasons.mixed(ensemble, counts, at, is_sure=is_sure)
     if (ensemble.cause == Cause.NOT_FINITE).any():
         return Verdict.UNDECIDED, reasons.not_finite(ensemble)

@@ -172,7 +172,7 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
     if not found or not low or not high or high.startswith("."):
         raise InputError(where, "needs a range LOW..HIGH", got=shown(text), cure=EXAMPLE)
     if parameter.unit in ("-", ""):
-        ends = _plain_number(low, where), _plain_number(high, where)
+        ends = plain_number(low, where), plain_number(high, where)
     else:
         unit = _NUMBER.sub("", high, count=1).strip()
         own = f"{low} {unit}" if _NUMBER.fullmatch(low) else low
@@ -186,7 +186,7 @@ def _range(text: str, parameter: Parameter, where: str) -> tuple[float, float]:
     return ends
 
 
-def _plain_number(text: str, where: str) -> float:
+def plain_number(text: str, where: str) -> float:
     """Value of a number without a unit."""
     if _NUMBER.fullmatch(text) is None:
         cure = "Write a decimal point." if "," in text else ""
@@ -304,7 +304,7 @@ def _value(head: Parameter | None, cell: str, place: str) -> float:
     """Value of a cell; the head of a share of time is None."""
     unit = "s" if head is None else head.unit
     is_plain = _is_plain(cell) if head is None else unit in ("-", "")
-    value = _plain_number(cell, place) if is_plain else parse(cell, unit, place)
+    value = plain_number(cell, place) if is_plain else parse(cell, unit, place)
     if head is None and value < 0.0:
         raise InputError(place, "must be >= 0", got=shown(cell))
     if head is not None and head.is_whole and value != int(value):

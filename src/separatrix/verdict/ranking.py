@@ -435,7 +435,7 @@ def _safety(limit: CageLimit | None, friction: MeanFriction, spread: float) -> d
     """Critical friction and safety factor, as fields of a row; none without a limit."""
     if limit is None:
         return {}
-    own = {f.name: getattr(limit, f.name) for f in fields(limit) if f.name != "notes"}
+    own = {f.name: getattr(limit, f.name) for f in fields(limit) if f.name not in ("notes", "steepness")}
     return own | asdict(safety_factor(limit, friction.mean, friction.interval(), spread))
 
 

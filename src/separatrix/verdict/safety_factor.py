@@ -60,6 +60,7 @@ class CageLimit:
     critical_kick: MetrePerSecond  # disturbance from which the critical friction is lowest
     critical_ball: str  # that decided the critical friction
     estimated_critical_friction: Ratio  # by the closed law, to check the order
+    steepness: float | None = None  # slope of the logit of P(whirl) in ln f there
     notes: tuple[str, ...] = ()  # on runs that do not show where they end
 
     @property
@@ -125,6 +126,7 @@ def _limit(
     if isinstance(found, Side):
         value, low, high = (0.0, 0.0, 0.0) if found is Side.ABOVE else (None, SEARCHED_FRICTION, None)
     return CageLimit(
+        steepness=responses[kick].steepness(value, 0.5) if value else None,
         own_critical_friction=value,
         own_critical_friction_low=low or 0.0,
         own_critical_friction_high=high,

@@ -1,0 +1,50 @@
+"""How film and cage wear in slow time: what `life` needs besides the study of a verdict."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from separatrix.friction.prediction import FRICTION_LIMIT
+from separatrix.ground.schema import all_or_none, between, key, positive, record
+from separatrix.ground.units import CubicMetre, Metre, Ratio, SpecificWear
+
+_WEAR = positive(1e-24, 1e-6)
+
+
+@record
+class WearRates:
+    """Archard's coefficients of film and cage, and what is known of film and pockets as they wear.
+
+    A coefficient is worn volume over load and sliding distance, from a test at the pressure, the speed and in
+    the medium of the bearing: run-in wear of a tribometer is up to a thousand times that of endurance.
+    """
+
+    RULES: ClassVar = (all_or_none("worn_pocket_friction", "worn_pocket_depth"),)
+
+    film_wear: SpecificWear = key(_WEAR, example='"5e-9 mm3/(N m)"')
+    """Of the film between ball and race."""
+
+    cage_wear: SpecificWear = key(_WEAR, example='"1e-6 mm3/(N m)"')
+    """Of the cage's pockets on the balls."""
+
+    bare_friction: Ratio = key(between(0.0, FRICTION_LIMIT, open_low=True), example="0.35")
+    """Of ball on race where the film is gone."""
+
+    coverage_thickness: Metre = key(positive(1e-10, 1e-4), default=1e-7)
+    """Thickness at which a film covers 63 % of its track."""
+
+    transferred: Ratio = key(between(0.0, 1.0), default=0.0)
+    """Share of what is worn off the pockets that stays on tracks and balls."""
+
+    worn_pocket_friction: Ratio | None = key(
+        between(0.0, FRICTION_LIMIT), default=None, without="not given: as new"
+    )
+    """Friction of a pocket whose surface is worn off: fibres come out."""
+
+    worn_pocket_depth: Metre | None = key(positive(1e-9, 1e-2), default=None, without="not given: as new")
+    """Depth of wear by which friction has gone 63 % of that way."""
+
+    reservoir: CubicMetre | None = key(
+        positive(1e-15, 1e-3), default=None, without="not given: it never ends"
+    )
+    """Volume of the cage that may wear off before it gives no more film."""

@@ -1,0 +1,199 @@
+"""`life`: when the cage becomes unstable as film and pockets wear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+from separatrix.ground.document import Part
+from separatrix.ground.errors import InputError
+from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
+from separatrix.verbs.parts.answer_page import figure, page_of
+from separatrix.verbs.parts.quantity_text import all_numbers, axis, column, fill, quantity, show
+from separatrix.verbs.parts.refused import cage_motion, refused
+from separatrix.verbs.verb import Option, Verb
+
+if TYPE_CHECKING:
+    from separatrix.study.study import Study
+    from separatrix.verbs.cage_answers import LifeAnswer
+    from separatrix.verdict.long_jobs import Runner
+
+REVOLUTIONS, LEAST, MOST = 1e9, 1e3, 1e12
+"""Up to which draws are followed."""
+
+DRAWS, FEWEST, MOST_DRAWS = 4096, 64, 65_536
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """How far bearings are followed, and how many are drawn."""
+
+    revolutions: Annotated[
+        str | float, Option("Of ring against ring, up to which bearings are followed.", "N")
+    ] = REVOLUTIONS
+    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = DRAWS
+
+
+def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
+    """When the cage becomes unstable, over draws of what wears film and pockets."""
+    from separatrix.chain.solution import solve
+    from separatrix.study.candidates import reference_candidate
+    from separatrix.verbs.cage_answers import LifeAnswer
+    from separatrix.verbs.parts.cage_of_study import cage_of
+    from separatrix.verdict.life_table import life
+    from separatrix.verdict.parameter_axes import plain_number
+
+    revolutions = plain_number(str(options.revolutions), "--revolutions")
+    if not LEAST <= revolutions <= MOST:
+        rule = f"must lie between {LEAST:g} and {MOST:g}"
+        raise InputError("--revolutions", rule, got=f"{revolutions:g}")
+    samples = options.samples
+    if not FEWEST <= samples <= MOST_DRAWS or samples.bit_count() != 1:
+        rule = f"must be a power of two from {FEWEST} to {MOST_DRAWS}"
+        raise InputError("--samples", rule, got=str(samples), cure=f"Try {DRAWS}.")
+    found = life(study, revolutions=revolutions, draws=samples, runner=runner)
+    solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
+    return LifeAnswer(solution=solution, cage=cage_of(solution), life=found, notes=found.notes)
+
+
+def refusals(study: Study) -> Iterator[str]:
+    """Yield why there is no life."""
+    from separatrix.verdict.life_table import TEST
+
+    if study.wear is None:
+        yield f"The study has no [wear]. {TEST}"
+    elif study.cage is not None:
+        yield from refused(study, cage_motion)
+
+
+def page(answer: Part) -> Page:
+    """Return the page of `life`."""
+    rows = [one for place, one in enumerate(answer.course) if place % SHOWN == 0]
+    columns = tuple(map(column, COURSE))
+    drivers = (
+        text_column("input", lambda row: row.name),
+        column("correlation"),
+    )
+    return page_of(
+        answer,
+        Note(" ".join([*lead(answer), *why(answer)]), "lead"),
+        Heading(f"In the course of time, {answer.candidate}"),
+        Table("course", columns, tuple(rows)),
+        Note(LEGEND, "legend", Level.LONG),
+        Picture("life", lambda: life_figure(answer), CAPTION),
+        Heading("What the life follows"),
+        Table("drivers", drivers, tuple(answer.drivers[:LISTED]), DRIVEN),
+        Heading("Basis of this answer", Level.LONG),
+        facts(
+            ("Bearings drawn", show(answer, "draws")),
+            ("Unstable from the start", show(answer, "unstable_at_start")),
+            ("Never unstable", fill(answer, "{never_unstable}, up to {horizon} revolutions")),
+            ("Reservoir empty at the end", show(answer, "reservoir_empty")),
+            ("Deposit keeps half of the film", show(answer, "film_sustained")),
+            level=Level.LONG,
+        ),
+        all_numbers("all times", (), ((row,) for row in answer.course)),
+        draws=True,
+    )
+
+
+SHOWN, LISTED = 12, 6
+COURSE = (
+    *("revolutions", "probability_stable", "film_inner", "film_outer"),
+    *("race_friction", "pocket_friction", "pocket_clearance"),
+)
+LEGEND = (
+    "Films and frictions: medians of the drawn bearings; P(stable) with what lies between a tenth and nine."
+)
+CAPTION = (
+    "P(stable) against revolutions: mean of the drawn bearings, and the range between a tenth and nine in "
+    "ten of them; beside it the median film on both tracks."
+)
+DRIVEN = (
+    "Rank correlation of each drawn input with the life; the first is what a measurement narrows most. "
+    "Negative: more of it, a shorter life."
+)
+
+
+def lead(answer: Part) -> Iterator[str]:
+    """Yield after how many revolutions the cage is unstable."""
+    whose = f"of the cages of {answer.candidate}"
+    if "revolutions_50" in answer:
+        words = f"Half {whose} are unstable after {{revolutions_50}} revolutions"
+        words += ", a tenth after {revolutions_10}"
+        words += ", nine in ten after {revolutions_90}" * ("revolutions_90" in answer)
+        yield fill(answer, f"{words}.")
+    else:
+        yield fill(answer, f"Up to {{horizon}} revolutions {{never_unstable}} {whose} never become unstable.")
+    if answer.unstable_at_start > 0.0:
+        yield fill(answer, "{unstable_at_start} of them are unstable from the start.")
+
+
+WHY = {
+    "film_worn": "the film on the races is worn",
+    "pocket_opened": "the pockets have opened",
+    "friction_risen": "the friction of worn pockets has risen",
+}
+
+
+def why(answer: Part) -> Iterator[str]:
+    """Yield what ends it, and what to measure."""
+    shares = sorted(((getattr(answer, name), name) for name in WHY), reverse=True)
+    known = [f"{show(answer, name)} because {WHY[name]}" for share, name in shares if share >= 0.05]
+    if known:
+        yield f"Of those that become so, {', '.join(known)}."
+    if answer.drivers:
+        first = answer.drivers[0]
+        yield f"Measure first: {quantity(first.name).label} (rank correlation {show(first, 'correlation')})."
+
+
+def life_figure(answer: Part) -> Figure:
+    """Return P(stable) with its range, and the films, against revolutions."""
+    rows = answer.course
+    revolutions = [one.revolutions for one in rows]
+    x = axis("revolutions", "-", revolutions, is_log=True)
+
+    def each(name: str) -> list[float]:
+        return [getattr(one, name) for one in rows]
+
+    chance = Panel(
+        title=f"a  Cages of {answer.candidate}",
+        x=x,
+        y=axis("probability_stable", "-", [], low=-0.02, high=1.02),
+        marks=(
+            Across(at=0.5, axis="y", line=":"),
+            Band(
+                x=revolutions, low=each("probability_low"), high=each("probability_high"),
+                name="a tenth to nine in ten of the bearings",
+            ),
+            Trace(x=revolutions, y=each("probability_stable"), colour=BLUE, name="P(stable), mean"),
+        ),
+    )  # fmt: skip
+    films = each("film_inner") + each("film_outer")
+    film = Panel(
+        title="b  Film on the tracks, median",
+        x=x,
+        y=axis("film_inner", rows[0].unit("film_inner"), films, label="film", low=0.0),
+        marks=(
+            Trace(x=revolutions, y=each("film_inner"), colour=VERMILION, name="inner race"),
+            Trace(x=revolutions, y=each("film_outer"), colour=GREEN, line="--", name="outer race"),
+        ),
+    )
+    return figure(answer, (chance, film), alt=CAPTION, height=2.6)
+
+
+VERB = Verb(
+    name="life",
+    epilog="Needs [wear]: the wear coefficients of film and cage. A coefficient without a distribution "
+    "scatters by a factor of ten either way.",
+    compute=compute,
+    page=page,
+    options=Options,
+    needs=("cage",),
+    moves_a_cage=True,
+    has_full=True,
+    keeps_runs=True,
+    refusals=refusals,
+)

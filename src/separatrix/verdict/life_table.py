@@ -1,0 +1,299 @@
+"""The question of a life: the table of critical frictions by ensembles, the draws, and the answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ndtri
+
+from separatrix.cage.disturbance import settings_for
+from separatrix.cage.ensemble import Ensemble
+from separatrix.cage.moving_cage import moving_cage
+from separatrix.cage.outcome import RunOutcome
+from separatrix.chain.slip_work import track_work
+from separatrix.chain.solution import Solution, solve
+from separatrix.ground.errors import InputError
+from separatrix.ground.units import Array, Metre, Ratio, Watt
+from separatrix.study.candidates import reference_candidate
+from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study
+from separatrix.verdict.crossing import SEARCHED_FRICTION
+from separatrix.verdict.draws import Case, frictions_to_draw, sobol_points, uncertain_inputs
+from separatrix.verdict.judgement import is_calm
+from separatrix.verdict.long_jobs import Interrupted, Load, Runner
+from separatrix.verdict.parameter_axes import varied
+from separatrix.verdict.safety_factor import cage_limit
+from separatrix.verdict.stability_curve import expected_load
+from separatrix.verdict.wear_life import (
+    BearingWear,
+    Course,
+    Life,
+    LifeRow,
+    LifeTable,
+    Worn,
+    causes,
+    course,
+    driven_by,
+    lives,
+)
+
+RUNS = 32
+"""Runs of the table from each disturbance, at most: its critical frictions are good to a tenth."""
+
+FRICTIONS, WIDENINGS = 6, (1.0, 1.5, 2.5)
+"""Race frictions of the table, and its pocket clearances over that of a new pocket."""
+
+CALM, WHIRLING = 0.6, 1.5
+"""Pocket frictions over the critical one at which the work of calm and of whirling cages is taken."""
+
+WORK_RUNS = 16
+DECADE: Ratio = 10.0
+"""Factor either way, 95 %, by which a wear coefficient scatters that the study states without one: bearings
+agree with tests to a factor of ten (ESTL, 44th AMS 2018, pp. 518-524)."""
+
+STREAM = 0x11FE
+"""Separates the draws of a life from others with a study's seed."""
+
+TEST = (
+    "Measure the wear of film and cage at the pressure and speed of the bearing and in its medium: worn "
+    "volume over load and sliding distance. Then state film_wear, cage_wear and bare_friction."
+)
+
+
+class Node(NamedTuple):
+    """A place of the table."""
+
+    critical: Ratio
+    steepness: float
+    calm: Watt
+    whirl: Watt
+    notes: tuple[str, ...] = ()
+
+
+Place = tuple[int, int]
+
+
+def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None = None) -> Life:
+    """When the cage of a study becomes unstable, over draws of what wears it.
+
+    `revolutions` of one ring against the other is how far they are followed. The numbers do not depend on the
+    runner.
+
+    Raises
+    ------
+    InputError
+        The study has no [wear], no cage, or no friction of it.
+    Interrupted
+        Before the table was finished; its runs are kept.
+    """
+    if study.wear is None:
+        raise InputError(study.name, "lacks the section [wear]", cure=TEST)
+    candidate = reference_candidate(study, study.ranking) if study.ranking else None
+    solution, runner = solve(study, candidate), runner or Runner()
+    worn, inputs, fixed = _drawn(solution, candidate, draws)
+    frictions = np.geomspace(worn.film_friction.min(), max(worn.bare_friction.max(), 1e-3), FRICTIONS)
+    clearances = [factor * solution.stated_design.pocket_clearance for factor in WIDENINGS]
+    cage = moving_cage(solution, 0.0)
+    settings = settings_for(study.stability, cage)
+    settings = replace(settings, runs=min(RUNS, settings.runs))
+
+    def node(place: Place) -> Node:
+        values = {"film.race_friction": float(frictions[place[0]])}
+        values["cage.pocket_clearance"] = clearances[place[1]]
+        return _node(solve(varied(study, values), candidate), settings, runner)
+
+    def answer(found: Mapping[Place, Node]) -> Life:
+        if len(found) < len(places):
+            raise Interrupted
+        table = _table(found, frictions, np.array(clearances))
+        return _life(solution, table, worn, inputs, revolutions, [*_notes(found, fixed), *solution.notes])
+
+    places = [(i, j) for i in range(FRICTIONS) for j in range(len(clearances))]
+    return runner.work_out(
+        node,
+        places,
+        into=answer,
+        load=lambda _: Load(len(settings.kicks) * expected_load(settings, band=False).runs),
+    )
+
+
+def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> Node:
+    """Critical friction at a place, and the work of the pockets below and above it."""
+    limit = cage_limit(solution, settings, runner)
+    at = limit.own_critical_friction
+    critical = SEARCHED_FRICTION if at is None else max(at, 1e-3)
+    ball = BallModel.FREE if limit.critical_ball == "free" else None
+
+    def sliding(friction: Ratio, *, whirls: bool) -> Watt:
+        cage = moving_cage(solution, min(friction, SEARCHED_FRICTION), ball)
+        found = runner.ensemble(cage, settings, kicks=(limit.critical_kick,), runs=WORK_RUNS)
+        return _mean(found, whirls=whirls)
+
+    calm = sliding(CALM * critical, whirls=False)
+    whirl = sliding(WHIRLING * critical, whirls=True)
+    return Node(critical, limit.steepness or 10.0, calm, whirl or calm, limit.notes)
+
+
+def _mean(found: Ensemble, *, whirls: bool) -> Watt:
+    """Mean work of the pockets in the runs that whirl, or settle; in all where none does."""
+    kind = found.outcome == RunOutcome.WHIRLS if whirls else is_calm(found.outcome)
+    return float(found.pocket_sliding[kind if kind.any() else np.ones_like(kind)].mean())
+
+
+def _table(found: Mapping[Place, Node], frictions: Array, clearances: Array) -> LifeTable:
+    def each(name: str) -> Array:
+        return np.array(
+            [[getattr(found[i, j], name) for j in range(clearances.size)] for i in range(frictions.size)]
+        )
+
+    return LifeTable(
+        race_friction=frictions,
+        pocket_clearance=clearances,
+        critical_friction=each("critical"),
+        steepness=each("steepness"),
+        calm_sliding=each("calm"),
+        whirl_sliding=each("whirl"),
+    )
+
+
+def _drawn(
+    solution: Solution, candidate: Candidate | None, draws: int
+) -> tuple[Worn, dict[str, Array], list[str]]:
+    """Draws of what wear depends on, those that are uncertain by name, and uncertain inputs that stay."""
+    study, wear = solution.study, solution.study.wear
+    assert wear is not None  # `life` refuses a study without it
+    frictions = frictions_to_draw(study) if study.ranking else {}
+    known = {one.key: one.distribution for one in uncertain_inputs(study, frictions)}
+    own = next((key for key in known if candidate and key.startswith(f"ranking.{candidate.name}.")), "")
+    friction = solution.friction
+    if friction is None:
+        cure = "Give [cage] ball_cage_friction, or rank a measured material."
+        raise InputError("[cage] ball_cage_friction", "is not known", cure=cure)
+    mean = frictions[Case(candidate.name)].mean if candidate and own else friction.mean
+    values = {
+        "wear.film_wear": wear.film_wear,
+        "wear.cage_wear": wear.cage_wear,
+        "wear.transferred": wear.transferred,
+        "film.thickness": study.film.thickness or 0.0,
+        "wear.coverage_thickness": wear.coverage_thickness,
+        "film.race_friction": study.film.race_friction,
+        "wear.bare_friction": wear.bare_friction,
+        own or "pocket friction": mean,
+        "wear.worn_pocket_friction": mean if wear.worn_pocket_friction is None else wear.worn_pocket_friction,
+        "wear.worn_pocket_depth": math.inf if wear.worn_pocket_depth is None else wear.worn_pocket_depth,
+        "wear.reservoir": math.inf if wear.reservoir is None else wear.reservoir,
+    }
+    points = sobol_points(draws, len(values), STREAM, study.stability.seed)
+    columns, inputs = list[Array](), dict[str, Array]()
+    for place, (name, value) in enumerate(values.items()):
+        if name in known:
+            column = known[name].quantile(points[:, place])
+        elif name in ("wear.film_wear", "wear.cage_wear"):
+            column = value * np.exp(math.log(DECADE) / 1.96 * ndtri(points[:, place]))
+        else:
+            column = np.full(draws, value)
+        columns.append(column)
+        if np.ptp(column) > 0.0 if math.isfinite(value) else False:
+            inputs[name] = column
+    if wear.worn_pocket_friction is None:  # it stays that of each draw
+        columns[8] = columns[7]
+    fixed = [name for name in study.distributions if name not in values and not name.startswith("ranking.")]
+    return Worn(*columns), inputs, fixed
+
+
+def _notes(found: Mapping[Place, Node], fixed: list[str]) -> list[str]:
+    notes = [note for one in found.values() for note in one.notes]
+    if fixed:
+        notes.append(f"Uncertain inputs at their means: {', '.join(fixed)}.")
+    return list(dict.fromkeys(notes))
+
+
+def _life(
+    solution: Solution,
+    table: LifeTable,
+    worn: Worn,
+    inputs: Mapping[str, Array],
+    revolutions: float,
+    notes: list[str],
+) -> Life:
+    """Lead the draws along the table, and say what comes of them."""
+    study, state = solution.study, solution.bearing
+    speed = abs(study.operation.inner_speed - study.operation.outer_speed) / (2.0 * math.pi)
+    inner, outer = (track_work(study.bearing, study.operation, state, race) for race in Race)
+    bearing = BearingWear(
+        tracks=(inner, outer),
+        loads=(state.inner.load, state.outer.load),
+        ball_diameter=study.bearing.ball_diameter,
+        ball_count=study.bearing.ball_count,
+        clearance=solution.stated_design.pocket_clearance,
+    )
+    found = course(bearing, table, worn, revolutions / speed)
+    life = lives(found)
+    ends = np.isfinite(life)
+    moved = np.stack(causes(found, table, worn, life, bearing.clearance))
+    most = np.where(ends & (moved.max(axis=0) > 0.0), moved.argmax(axis=0), -1)
+    known = max(1, int(np.count_nonzero(ends & (life > 0.0))))
+    shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
+    at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
+    wide = float(np.mean(found.clearance[-1] > table.pocket_clearance[-1]))
+    if wide > 0.0:
+        notes = [
+            *notes,
+            f"In {100.0 * wide:.0f} % of the draws the pockets open beyond {WIDENINGS[-1]:g} times their "
+            "clearance by the end: from there on the table's last clearance holds.",
+        ]
+    return Life(
+        candidate=solution.candidate.name if solution.candidate else "the cage",
+        draws=life.size,
+        revolutions_10=at_10,
+        revolutions_50=at_50,
+        revolutions_90=at_90,
+        unstable_at_start=float(np.mean(life == 0.0)),
+        never_unstable=float(np.mean(~ends)),
+        horizon=revolutions,
+        speed=speed,
+        film_worn=shares[0],
+        pocket_opened=shares[1],
+        friction_risen=shares[2],
+        reservoir_empty=float(np.mean(found.volume[-1] >= worn.reservoir)),
+        film_sustained=float(np.mean(found.kept[-1] >= 0.5)),
+        course=tuple(_rows(found, speed)),
+        drivers=driven_by(inputs, np.minimum(life, 10.0 * revolutions / speed)),
+        table=table,
+        complete=True,
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def _quantile(life: Array, share: Ratio, speed: float) -> float | None:
+    """Revolutions at which a share of the draws have become unstable; None beyond the horizon."""
+    at = float(np.sort(life)[min(life.size - 1, math.ceil(share * life.size) - 1)])
+    return at * speed if math.isfinite(at) else None
+
+
+def _rows(found: Course, speed: float) -> list[LifeRow]:
+    def median(values: Array, place: int) -> Metre:
+        return float(np.median(values[place]))
+
+    rows = []
+    for place, time in enumerate(found.time):
+        stable = 1.0 - found.probability_unstable[place]
+        low, high = np.quantile(stable, (0.1, 0.9))
+        rows.append(
+            LifeRow(
+                time=float(time),
+                revolutions=float(time * speed),
+                probability_stable=float(stable.mean()),
+                probability_low=float(low),
+                probability_high=float(high),
+                film_inner=median(found.films[0], place),
+                film_outer=median(found.films[1], place),
+                race_friction=median(found.race_friction, place),
+                pocket_friction=median(found.pocket_friction, place),
+                pocket_clearance=median(found.clearance, place),
+            )
+        )
+    return rows

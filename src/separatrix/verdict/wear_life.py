@@ -1,0 +1,297 @@
+r"""Slow time: films and cage wear until the cage becomes unstable.
+
+The film on a track place balances wear and deposit, with the coverage that is left,
+
+.. math:: h' = D - W (1 - e^{-h/h_c}), \qquad \theta = 1 - e^{-h/h_c}, \qquad f_{BT} = \theta f_{film} +
+          (1 - \theta) f_{bare}
+
+with :math:`W = K_f\, I\, n` of the passes (`chain.slip_work`) and the deposit D of what the balls wear off
+the pockets (Archard, :math:`K_c \sum N v`). The pockets open by what is worn. Critical friction, and the work
+of the pockets of a calm and of a whirling cage, are tabulated over race friction and pocket clearance; every
+draw of the wear coefficients and frictions is led along that table. docs/theory/life.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+from scipy.special import expit
+
+from separatrix.chain.slip_work import TrackWork
+from separatrix.ground.units import Array, Metre, Ratio, Rows, Second, SquareMetre
+
+THICKEST: Metre = 3e-6
+"""Of a film by transfer: PTFE films of 1 to 3 um, discontinuous (ESTL, 44th AMS 2018, pp. 518-524)."""
+
+STEPS_A_DECADE = 16
+"""Of slow time: half of them move the life by less than 2 %."""
+
+HALF: Ratio = 0.5
+"""Probability of a whirl from which a cage counts as unstable."""
+
+LEAST: Ratio = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeTable:
+    """Critical friction of the cage, and the work of its pockets, over what wear moves.
+
+    Arrays have shape (race_friction, pocket_clearance). Where no friction that was searched is enough the
+    critical friction is the highest that was searched.
+    """
+
+    race_friction: Annotated[Array, "-", ("race_friction",)]
+    pocket_clearance: Annotated[Array, "m", ("pocket_clearance",)]
+    critical_friction: Annotated[Array, "-", ("race_friction", "pocket_clearance")]
+    steepness: Annotated[Array, "-", ("race_friction", "pocket_clearance")]
+    """Slope of the logit of P(whirl) against the logarithm of friction."""
+    calm_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]
+    """Force times sliding speed of all pockets of a cage that settles."""
+    whirl_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]  # the same of one that whirls
+
+    def at(self, race_friction: Array, clearance: Array) -> dict[str, Array]:
+        """What the table holds at these places, linear in logarithms between its own; held at its ends."""
+        ends = self.pocket_clearance[[0, -1]]
+        place = np.stack(
+            (
+                np.log(np.clip(race_friction, self.race_friction[0], self.race_friction[-1])),
+                np.log(np.clip(clearance, *ends)),
+            ),
+            axis=-1,
+        )
+        axes = np.log(self.race_friction), np.log(self.pocket_clearance)
+        names = ("critical_friction", "steepness", "calm_sliding", "whirl_sliding")
+        known = np.stack([np.log(np.maximum(getattr(self, name), LEAST)) for name in names], axis=-1)
+        found = np.exp(RegularGridInterpolator(axes, known)(place))
+        return dict(zip(names, np.moveaxis(found, -1, 0), strict=True))
+
+
+class Worn(NamedTuple):
+    """Draws of what wear depends on, each of shape (draw,)."""
+
+    film_wear: Array  # K of the film [m3/(N m)]
+    cage_wear: Array  # K of the pockets
+    transferred: Array  # share of what is worn off the pockets that stays on tracks and balls
+    thickness: Array  # of the film at the start [m]
+    coverage: Array  # thickness at which the film covers 63 % [m]
+    film_friction: Array  # of ball on a whole film
+    bare_friction: Array  # of ball on bare races
+    pocket_friction: Array  # at the start
+    worn_friction: Array  # of a pocket that is worn deep
+    worn_depth: Array  # by which its friction has gone 63 % of the way
+    reservoir: Array  # volume of the cage that may be worn off, infinite without one [m3]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingWear:
+    """What of a bearing wears: its tracks with their loads, its pockets."""
+
+    tracks: tuple[TrackWork, TrackWork]  # of the inner and of the outer race
+    loads: tuple[float, float]  # of the most loaded ball on them
+    ball_diameter: Metre
+    ball_count: int
+    clearance: Metre  # of a new pocket
+
+    @property
+    def area(self) -> SquareMetre:
+        """Area on which debris of the cage is spread: both tracks and half of every ball."""
+        balls = 0.5 * self.ball_count * math.pi * self.ball_diameter**2
+        return self.tracks[0].area + self.tracks[1].area + balls
+
+
+def film_after(thickness: Array, wear: Array, deposit: Array, coverage: Array, time: Second) -> Array:
+    """Thickness of films after a time of constant wear (of a whole film) and deposit [m/s]: exact.
+
+    exp(h/h_c) = q + (exp(h_0/h_c) - q) exp(-(W - D) t/h_c) with q = W/(W - D); at W = D it grows by W t/h_c.
+    """
+    apart = wear - deposit
+    is_even = np.abs(apart) <= LEAST * np.maximum(wear, deposit)
+    apart = np.where(is_even, 1.0, apart)
+    start, q, run = np.exp(np.minimum(thickness / coverage, 700.0)), wear / apart, apart * time / coverage
+    # of a film that grows, its growth is taken out of the logarithm
+    fall, rise = np.exp(-np.abs(run)), np.maximum(-run, 0.0)
+    inside = np.where(apart > 0.0, q + (start - q) * fall, (start - q) + q * fall)
+    even = np.log(start + wear * time / coverage)
+    found = coverage * np.where(is_even, even, rise + np.log(np.maximum(inside, 1.0)))
+    return np.minimum(np.maximum(found, 0.0), np.maximum(THICKEST, thickness))
+
+
+def worn_depth(volume: Array, ball_diameter: Metre) -> Array:
+    """Depth to which a ball has worn its own cap of this volume into a flat wall [m]: V = pi R w^2."""
+    return np.sqrt(volume / (math.pi * 0.5 * ball_diameter))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Course:
+    """States of all draws in slow time; arrays have shape (time, draw)."""
+
+    time: Array  # shape (time,) [s]
+    probability_unstable: Array
+    race_friction: Array
+    pocket_friction: Array
+    clearance: Array
+    films: tuple[Array, Array]  # mean thickness on the inner and the outer track
+    volume: Array  # worn off the cage [m3]
+    kept: Array  # deposit over the wear of a whole film, of the track that wears faster [-]
+
+
+def course(bearing: BearingWear, table: LifeTable, worn: Worn, horizon: Second) -> Course:
+    """Lead every draw along the table up to a time, in steps of equal ratios."""
+    first = min(1.0, 1e-3 * horizon)
+    time = np.geomspace(first, horizon, math.ceil(STEPS_A_DECADE * math.log10(horizon / first)) + 1)
+    draws, strips = worn.film_wear.size, bearing.tracks[0].across.size
+    films = [np.repeat(worn.thickness[:, None], strips, axis=1) for _ in bearing.tracks]
+    volume = np.zeros(draws)
+    share = np.array(bearing.loads) / sum(bearing.loads)
+    hold = worn.coverage[:, None]
+    rows: list[list[Array]] = []
+    before = 0.0
+    for now in time:
+        state = _state(bearing, table, worn, films, volume, share)
+        sliding = state.pop()
+        step = now - before
+        debris = worn.cage_wear * sliding * (volume < worn.reservoir)
+        deposit = (worn.transferred * debris / bearing.area)[:, None]
+        fastest = np.zeros(draws)
+        for i, track in enumerate(bearing.tracks):
+            wear = worn.film_wear[:, None] * track.work * track.passes
+            films[i] = film_after(films[i], wear, deposit, hold, step)
+            fastest = np.maximum(fastest, wear.max(axis=1))
+        volume = np.minimum(volume + debris * step, worn.reservoir)
+        state = _state(bearing, table, worn, films, volume, share)[:-1]
+        kept = np.divide(deposit[:, 0], fastest, out=np.full(draws, math.inf), where=fastest > 0.0)
+        rows.append([*state, *(film.mean(axis=1) for film in films), volume, kept])
+        before = now
+    found = [np.stack(each) for each in zip(*rows, strict=True)]
+    return Course(
+        time=time,
+        probability_unstable=found[0],
+        race_friction=found[1],
+        pocket_friction=found[2],
+        clearance=found[3],
+        films=(found[4], found[5]),
+        volume=found[6],
+        kept=found[7],
+    )
+
+
+def _state(
+    bearing: BearingWear, table: LifeTable, worn: Worn, films: Sequence[Array], volume: Array, share: Array
+) -> list[Array]:
+    """P(unstable), race friction, pocket friction, clearance and sliding of the pockets, of every draw."""
+    race = np.zeros(volume.size)
+    for of_load, track, film in zip(share, bearing.tracks, films, strict=True):
+        covered = (-np.expm1(-film / worn.coverage[:, None])) @ track.share
+        race += of_load * (covered * worn.film_friction + (1.0 - covered) * worn.bare_friction)
+    depth = worn_depth(volume / (2.0 * bearing.ball_count), bearing.ball_diameter)
+    gone = -np.expm1(-depth / worn.worn_depth)
+    pocket = worn.pocket_friction + gone * (worn.worn_friction - worn.pocket_friction)
+    clearance = bearing.clearance + 2.0 * depth
+    known = table.at(race, clearance)
+    unstable = expit(known["steepness"] * np.log(np.maximum(pocket, LEAST) / known["critical_friction"]))
+    sliding = (1.0 - unstable) * known["calm_sliding"] + unstable * known["whirl_sliding"]
+    return [unstable, race, pocket, clearance, sliding]
+
+
+def lives(found: Course) -> Array:
+    """Time at which each draw becomes unstable, shape (draw,) [s]: 0 from the start, infinite never."""
+    unstable = np.maximum.accumulate(found.probability_unstable, axis=0) >= HALF
+    first = unstable.argmax(axis=0)
+    time = np.concatenate(([0.0], np.sqrt(found.time[1:] * found.time[:-1])))
+    return np.where(unstable.any(axis=0), time[first], math.inf)
+
+
+class Cause(NamedTuple):
+    """What of the way to instability each change took, in logarithms of the safety factor, shape (draw,)."""
+
+    film_worn: Array
+    pocket_opened: Array
+    friction_risen: Array
+
+
+def causes(found: Course, table: LifeTable, worn: Worn, life: Array, clearance: Metre) -> Cause:
+    """Why each draw that becomes unstable does; 0 of the others."""
+    ends = np.isfinite(life)
+    at = np.searchsorted(found.time, np.where(ends, life, found.time[-1])).clip(max=found.time.size - 1)
+    each = np.arange(life.size)
+    race, pocket, wide = (
+        one[at, each] for one in (found.race_friction, found.pocket_friction, found.clearance)
+    )
+    whole = worn.film_friction
+    new = np.full(life.size, clearance)
+    start, worn_film, both = (
+        np.log(table.at(f, c)["critical_friction"]) for f, c in ((whole, new), (race, new), (race, wide))
+    )
+    moved = Cause(start - worn_film, worn_film - both, np.log(pocket / worn.pocket_friction))
+    return Cause(*(np.where(ends, np.maximum(one, 0.0), 0.0) for one in moved))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Driver:
+    """How strongly the life follows an input."""
+
+    name: str  # of the input
+    correlation: Ratio  # Spearman's, of the input and the life
+
+
+def driven_by(inputs: Mapping[str, Array], life: Array) -> tuple[Driver, ...]:
+    """Rank correlation of each drawn input with the life, the strongest first."""
+    from scipy.stats import rankdata
+
+    ranks = rankdata(life)
+    if ranks.min() == ranks.max():
+        return ()
+    found = [
+        Driver(name=name, correlation=float(np.corrcoef(rankdata(values), ranks)[0, 1]))
+        for name, values in inputs.items()
+        if values.min() < values.max()
+    ]
+    return tuple(sorted(found, key=lambda one: -abs(one.correlation)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeRow:
+    """The draws at one time; films and frictions are medians."""
+
+    time: Second
+    revolutions: float  # of one ring against the other
+    probability_stable: Ratio  # mean over the draws
+    probability_low: Ratio  # below it lies a tenth of the draws
+    probability_high: Ratio  # above it lies a tenth of the draws
+    film_inner: Metre  # mean over the track of the inner race
+    film_outer: Metre  # the same of the outer race
+    race_friction: Ratio
+    pocket_friction: Ratio
+    pocket_clearance: Metre
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Life:
+    """When a cage becomes unstable, over the draws of what wears it."""
+
+    candidate: str  # whose cage it is
+    draws: int
+    revolutions_10: (
+        float | None
+    )  # at which a tenth of the cages have become unstable; null beyond the horizon
+    revolutions_50: float | None  # the same of a half
+    revolutions_90: float | None  # the same of nine in ten
+    unstable_at_start: Ratio  # share of the draws
+    never_unstable: Ratio  # share of the draws, up to the horizon
+    horizon: float  # revolutions up to which the draws were followed
+    speed: float  # revolutions in a second
+    film_worn: Ratio  # share of the draws that become unstable, mostly because the film is worn
+    pocket_opened: Ratio  # mostly because the pockets have opened
+    friction_risen: Ratio  # mostly because the friction of worn pockets has risen
+    reservoir_empty: Ratio  # share of all draws whose reservoir is empty at the horizon
+    film_sustained: Ratio  # share of the draws in which deposit keeps up at least half of the coverage
+    course: Annotated[tuple[LifeRow, ...], Rows("time", "course_")]
+    drivers: tuple[Driver, ...]  # inputs that the life follows, the strongest first
+    table: LifeTable
+    complete: bool
+    notes: tuple[str, ...] = ()

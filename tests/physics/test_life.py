@@ -1,0 +1,201 @@
+"""Slow time: films, pockets, and when a cage becomes unstable: exact cases and published numbers."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import ndtr, ndtri
+from test_equilibrium_friction import RPM, WHEEL
+
+import separatrix
+from separatrix.chain import slip_work
+from separatrix.chain.contacts import bearing_state
+from separatrix.chain.slip_work import TrackWork, track_work
+from separatrix.study.study import KinematicModel, Operation, Race
+from separatrix.verdict.crossing import PLACES, Count, steepness
+from separatrix.verdict.life_table import life
+from separatrix.verdict.wear_life import (
+    THICKEST,
+    BearingWear,
+    LifeTable,
+    Worn,
+    causes,
+    course,
+    driven_by,
+    film_after,
+    lives,
+    worn_depth,
+)
+
+UM = 1e-6
+
+
+def of(*values):
+    """Each value as an array of one draw."""
+    return tuple(np.array([float(one)]) for one in values)
+
+
+@pytest.mark.parametrize(
+    ("time", "left"), [(5, 0.4205152), (10, 0.3438576), (20, 0.2120761), (60, 0.1043781)]
+)
+def test_a_film_between_wear_and_deposit(time, left):
+    """Closed form, evaluated by another program: h_c 0.1, W 0.046375, D 0.030 um/s, 0.5 um at the start."""
+    h, wear, deposit, hold = of(0.5, 0.046375, 0.030, 0.1)
+    assert film_after(h, wear, deposit, hold, time)[0] == pytest.approx(left, abs=5e-8)  # its digits
+
+
+def test_a_film_alone_covers_half_after_its_time():
+    """Without deposit exp(h/h_c) = 1 + (exp(h_0/h_c) - 1) exp(-W t/h_c): half coverage at 10.767093 s."""
+    h, wear, none, hold = of(0.5, 0.046375, 0.0, 0.1)
+    left = film_after(h, wear, none, hold, 10.767093)
+    assert 1.0 - math.exp(-left[0] / 0.1) == pytest.approx(0.5, abs=1e-7)
+
+
+@pytest.mark.parametrize("deposit", [0.0, 0.02, 0.03, 0.030000001, 0.2])
+def test_two_steps_of_a_film_are_one(deposit):
+    """Wear below, at and above the deposit; a film is neither negative nor thicker than transfer makes it."""
+    h, wear, grown, hold = of(0.5 * UM, 0.03 * UM, deposit * UM, 0.1 * UM)
+    half = film_after(h, wear, grown, hold, 7.0)
+    whole = film_after(h, wear, grown, hold, 14.0)
+    assert film_after(half, wear, grown, hold, 7.0) == pytest.approx(whole, rel=1e-9)
+    for time in (1e3, 1e9):
+        assert 0.0 <= film_after(h, wear, grown, hold, time)[0] <= THICKEST
+
+
+@pytest.mark.parametrize(
+    ("name", "inner", "outer", "passes"),
+    [
+        ("cryogenic-turbopump", 6213.7, 3064.1, (1865.85, 1384.15)),
+        ("le7", 13426.0, 6138.0, None),
+        ("wheel", 167.26, 54.93, None),
+    ],
+)
+def test_work_of_a_pass_is_that_of_an_independent_program(name, inner, outer, passes, monkeypatch):
+    """Its largest value across the track, rigid bodies; and the heat is friction times all of it."""
+    monkeypatch.setattr(slip_work, "STRIPS", 512)
+    study = separatrix.read_study("le7" if name == "wheel" else name)
+    bearing = WHEEL if name == "wheel" else study.bearing
+    load = 40.0 if name == "wheel" else study.operation.axial_load
+    speed = 6000.0 * RPM if name == "wheel" else study.operation.inner_speed
+    operation, friction = Operation(inner_speed=speed, axial_load=load), 0.05 if name == "wheel" else 0.1
+    state = bearing_state(bearing, operation, KinematicModel.FREE, friction)
+    for race, value, at in ((Race.INNER, inner, state.inner), (Race.OUTER, outer, state.outer)):
+        found = track_work(bearing, operation, state, race)
+        assert found.work.max() == pytest.approx(value, rel=1e-3)  # its digits, and another equilibrium
+        width = 2.0 * at.ellipse.semi_major / found.work.size
+        heat = getattr(state.equilibrium, f"heat_{race.value}")[at.ball]
+        # slip that is no longer rounded off near zero: 2 % of the little heat of the wheel's outer race
+        assert friction * found.work.sum() * width * at.rolling_speed == pytest.approx(heat, rel=2.5e-2)
+        assert found.share.sum() == pytest.approx(1.0)
+    if passes:
+        each = [track_work(bearing, operation, state, race).passes for race in Race]
+        assert each == pytest.approx(passes, rel=1e-5)
+
+
+def test_a_ball_wears_its_own_cap():
+    """Pi R w^2, of a shallow cap: 1.5 % of 10 um below the exact pi w^2 (R - w/3)."""
+    R, w = 5e-3, 1e-5
+    exact = math.pi * w**2 * (R - w / 3.0)
+    assert worn_depth(np.array([exact]), 2.0 * R)[0] == pytest.approx(w, rel=1e-3)
+
+
+TRACK = TrackWork(
+    across=np.array([-0.5, 0.5]),
+    share=np.array([0.5, 0.5]),
+    work=np.array([100.0, 100.0]),
+    passes=1.0,
+    area=1e-4,
+)
+BEARING = BearingWear(
+    tracks=(TRACK, TRACK), loads=(1.0, 1.0), ball_diameter=1e-2, ball_count=10, clearance=3e-4
+)
+FLAT = np.ones((2, 2))
+TABLE = LifeTable(
+    race_friction=np.array([0.05, 0.5]),
+    pocket_clearance=np.array([3e-4, 3e-3]),
+    critical_friction=0.05 / np.array([[0.05, 0.05], [0.5, 0.5]]) * 0.4,
+    steepness=30.0 * FLAT,
+    calm_sliding=2.0 * FLAT,
+    whirl_sliding=200.0 * FLAT,
+)
+"""Critical friction falls as one over race friction: 0.4 at 0.05."""
+
+
+def worn(draws=1, **given):
+    """Draws that wear by nothing but what is given."""
+    values = {
+        "film_wear": 0.0, "cage_wear": 0.0, "transferred": 0.0, "thickness": 0.5 * UM, "coverage": 0.1 * UM,
+        "film_friction": 0.05, "bare_friction": 0.4, "pocket_friction": 0.1, "worn_friction": 0.1,
+        "worn_depth": math.inf, "reservoir": math.inf,
+    }  # fmt: skip
+    return Worn(**{name: np.broadcast_to(one, draws).astype(float) for name, one in (values | given).items()})
+
+
+def test_nothing_that_wears_lives_for_ever():
+    """P(unstable) stays where it is."""
+    found = course(BEARING, TABLE, worn(), 1e9)
+    assert np.ptp(found.probability_unstable) == 0.0
+    assert np.isinf(lives(found)).all()
+
+
+def test_a_film_that_wears_ends_a_cage_when_its_critical_friction_is_reached():
+    """At 0.2 of race friction: coverage (0.4 - 0.2)/(0.4 - 0.05), by the closed form of the film."""
+    draws = worn(film_wear=1e-15)
+    found = course(BEARING, TABLE, draws, 1e9)
+    left = -0.1 * UM * math.log1p(-0.2 / 0.35)
+    rate = 1e-15 * 100.0
+    time = 0.1 * UM / rate * math.log(math.expm1(5.0) / math.expm1(left / (0.1 * UM)))
+    ends = lives(found)
+    assert ends[0] == pytest.approx(time, rel=0.16)  # a step of slow time, 10^(1/16)
+    why = causes(found, TABLE, draws, ends, BEARING.clearance)
+    assert why.film_worn[0] > 1.0
+    assert why.pocket_opened[0] == pytest.approx(0.0, abs=1e-9)
+    assert why.friction_risen[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_reservoir_is_that_of_esa():
+    """Limit state g = V - K alpha n with log-normal K: P(empty) = Phi(ln(K_50 alpha n/V)/sigma), to 1 %."""
+    draws, sigma, median = 4096, math.sqrt(math.log1p(0.6**2)), 4e-15
+    points = (np.arange(draws) + 0.5) / draws
+    wear, horizon = median * np.exp(sigma * ndtri(points)), 1e6
+    volume = 1.5 * median * 2.0 * horizon
+    found = course(BEARING, TABLE, worn(draws, cage_wear=wear, reservoir=volume), horizon)
+    empty = np.mean(found.volume[-1] >= volume)
+    assert empty == pytest.approx(float(ndtr(math.log(1.0 / 1.5) / sigma)), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("coefficient", "low", "high"), [(5e-9, 0.2, 0.95), (5e-10, 0.99, 1.0), (4e-6, 0.0, 1e-6)]
+)
+def test_endurance_of_a_published_film(coefficient, low, high):
+    """0.6 um of MoS2 outlasted 1.05e8 cycles (NASA): at 5e-9 mm3/(N m) part is left, at 4e-6 nothing."""
+    operation = Operation(inner_speed=6000.0 * RPM, axial_load=40.0)
+    state = bearing_state(WHEEL, operation, KinematicModel.FREE, 0.05)
+    track = track_work(WHEEL, operation, state, Race.INNER)
+    wear = np.array([coefficient * 1e-9 * track.work.max() * track.passes])
+    left = film_after(*of(0.6 * UM), wear, *of(0.0, 0.1 * UM), 1.05e8 / 100.0)
+    assert low <= -math.expm1(-left[0] / (0.1 * UM)) <= high
+
+
+def test_the_life_follows_what_it_depends_on():
+    """Rank correlation -1 with the wear that alone varies, none with noise; nothing where all lives are one."""
+    wear = np.geomspace(1e-17, 1e-13, 64)
+    found = lives(course(BEARING, TABLE, worn(64, film_wear=wear), 1e9))
+    first, *others = driven_by({"noise": np.sin(1e3 * wear / wear[0]), "wear": wear}, found)
+    assert first.name == "wear"
+    assert first.correlation == pytest.approx(-1.0, abs=0.02)
+    assert abs(others[0].correlation) < 0.4
+    assert driven_by({"wear": wear}, np.ones(64)) == ()
+
+
+def test_steepness_of_counts_is_their_slope():
+    """Expected counts of a logistic of slope 10: within a third, as 13 slopes from 3 to 100 are possible."""
+    places = np.log(0.2) + np.linspace(-0.35, 0.35, 8)
+    counts = {x: Count(round(4000 / (1.0 + math.exp(-10.0 * (x - math.log(0.2))))), 4000) for x in places}
+    assert steepness(counts, math.log(0.2) + PLACES, 0.5) == pytest.approx(10.0, rel=0.34)
+
+
+def test_a_study_without_wear_names_the_test():
+    """One line, and no table is computed."""
+    with pytest.raises(separatrix.InputError, match=r"lacks the section \[wear\].*worn volume over load"):
+        life(separatrix.read_study("cryogenic-turbopump"), revolutions=1e6, draws=64)
