@@ -10,7 +10,7 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "front.api": "Answer ToolAnswer bearing check compare load map material materials mobility rank report "
+    "front.api": "Answer ToolAnswer bearing check compare life load map material materials mobility rank report "
     "restitution sensitivity simulate stability sweep traction tribometer",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
@@ -36,6 +36,7 @@ _PUBLIC = {
     "friction.reduction": "reduce_log",
     "friction.log_series": "ReducedLogs",
     "verdict.ledger": "Ledger",
+    "verdict.wear_life": "Life LifeTable",
     "verbs.report": "Report",
     "verdict.long_jobs": "Interrupted Runner",
     "verdict.ranking_records": "Ranking",

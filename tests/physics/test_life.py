@@ -178,7 +178,7 @@ def test_endurance_of_a_published_film(coefficient, low, high):
 
 
 def test_the_life_follows_what_it_depends_on():
-    """Rank correlation -1 with the wear that alone varies, none with noise; nothing where all lives are one."""
+    """Rank correlation -1 with the wear that alone varies, none with noise; nothing where all are one."""
     wear = np.geomspace(1e-17, 1e-13, 64)
     found = lives(course(BEARING, TABLE, worn(64, film_wear=wear), 1e9))
     first, *others = driven_by({"noise": np.sin(1e3 * wear / wear[0]), "wear": wear}, found)

@@ -153,7 +153,7 @@ def test_random_cages_end_and_close_their_ledger(space):
 
 
 def test_sliding_in_the_pockets_is_force_times_surface_speed():
-    """A cage that its weight has laid on its balls: their surface slides at half a diameter times the spin."""
+    """A cage that its weight has laid on its balls: their surface slides at the lever times the spin."""
     cage = replace(AT_REST, **SPIN, ball_cage_friction=0.05, gravity=9.81)
     found = run(cage, 2.2, samples=20_000)
     last = (found.time >= found.judged_from) & (found.time <= found.followed)

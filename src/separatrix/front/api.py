@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
     from separatrix.verbs.cage_answers import (
+        LifeAnswer,
         MapAnswer,
         RankingAnswer,
         SensitivityAnswer,
@@ -257,6 +258,13 @@ def sweep(
     ranges = (vary,) if isinstance(vary, str) else tuple(vary)
     question = {"vary": ranges, "cases": cases, "verdicts": verdicts, "margins": margins}
     return _answer("sweep", study, question, **how)
+
+
+def life(
+    study: Asked, *, revolutions: float = 1e9, samples: int = 4096, **how: Unpack[Runs]
+) -> Answer[LifeAnswer]:
+    """When the cage becomes unstable, of `samples` bearings up to `revolutions`; the rest as `stability`."""
+    return _answer("life", study, {"revolutions": revolutions, "samples": samples}, **how)
 
 
 def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> ToolAnswer[Any]:

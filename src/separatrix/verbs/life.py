@@ -78,7 +78,7 @@ def page(answer: Part) -> Page:
     )
     return page_of(
         answer,
-        Note(" ".join([*lead(answer), *why(answer)]), "lead"),
+        Note(" ".join([*lead(answer), *why(answer), *again(answer)]), "lead"),
         Heading(f"In the course of time, {answer.candidate}"),
         Table("course", columns, tuple(rows)),
         Note(LEGEND, "legend", Level.LONG),
@@ -101,7 +101,7 @@ def page(answer: Part) -> Page:
 
 SHOWN, LISTED = 12, 6
 COURSE = (
-    *("revolutions", "probability_stable", "film_inner", "film_outer"),
+    *("revolutions", "probability_stable", "first_decile", "last_decile", "film_inner", "film_outer"),
     *("race_friction", "pocket_friction", "pocket_clearance"),
 )
 LEGEND = (
@@ -149,6 +149,19 @@ def why(answer: Part) -> Iterator[str]:
         yield f"Measure first: {quantity(first.name).label} (rank correlation {show(first, 'correlation')})."
 
 
+def again(answer: Part) -> Iterator[str]:
+    """Yield that cages become stable again where worn pockets leave them to their land."""
+    least = min(answer.course, key=lambda row: row.probability_stable)
+    last, land = answer.course[-1], answer.cage.get("land_clearance")
+    is_by_land = land is not None and last.pocket_clearance > land
+    if is_by_land and last.probability_stable > least.probability_stable + 0.2:
+        yield fill(
+            least,
+            "From {revolutions} revolutions on more are stable again: pockets worn so wide leave the cage to "
+            "its land.",
+        )
+
+
 def life_figure(answer: Part) -> Figure:
     """Return P(stable) with its range, and the films, against revolutions."""
     rows = answer.course
@@ -165,7 +178,7 @@ def life_figure(answer: Part) -> Figure:
         marks=(
             Across(at=0.5, axis="y", line=":"),
             Band(
-                x=revolutions, low=each("probability_low"), high=each("probability_high"),
+                x=revolutions, low=each("first_decile"), high=each("last_decile"),
                 name="a tenth to nine in ten of the bearings",
             ),
             Trace(x=revolutions, y=each("probability_stable"), colour=BLUE, name="P(stable), mean"),

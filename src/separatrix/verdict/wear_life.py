@@ -261,8 +261,8 @@ class LifeRow:
     time: Second
     revolutions: float  # of one ring against the other
     probability_stable: Ratio  # mean over the draws
-    probability_low: Ratio  # below it lies a tenth of the draws
-    probability_high: Ratio  # above it lies a tenth of the draws
+    first_decile: Ratio  # of P(stable): below it lies a tenth of the draws
+    last_decile: Ratio  # above it lies a tenth of the draws
     film_inner: Metre  # mean over the track of the inner race
     film_outer: Metre  # the same of the outer race
     race_friction: Ratio
