@@ -10,8 +10,8 @@ import importlib
 from typing import Any
 
 _PUBLIC = {
-    "front.api": "Answer ToolAnswer bearing check compare life load map material materials mobility rank report "
-    "restitution sensitivity simulate stability sweep traction tribometer",
+    "front.api": "Answer ToolAnswer bearing check compare life load map material materials mobility rank "
+    "report restitution sensitivity simulate stability sweep traction tribometer",
     "cage": "Cause CourseAnalysis Ensemble History MovingCage RunOutcome analyse linear_critical_friction "
     "linear_whirl_frequency moving_cage run_ensemble",
     "chain.contacts": "BearingState RaceContact RaceTraction",
