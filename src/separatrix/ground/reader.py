@@ -1,9 +1,9 @@
 """One reader of the files that people write: ``read(Schema, path) -> Loaded(value, sources, notes)``.
 
-From a TOML file, a workbook or a file over the one that it extends, to the record of its schema: keys to
-values by their types, all mistakes at once, each with its line, key, rule, value and cure. The rules
-themselves are in `schema`. A mistake carries the path of its key, and `Document` has the place of a path: a
-line of a file, or a cell of a sheet. Uncertain numbers and names of a library are read by a `Helper`.
+From a TOML file, perhaps over the one that it extends, to the record of its schema: keys to values by their
+types, all mistakes at once, each with its line, key, rule, value and cure. The rules themselves are in
+`schema`. A mistake carries the path of its key, and `Document` has the place of a path: a line of a file.
+Uncertain numbers and names of a library are read by a `Helper`.
 """
 
 from __future__ import annotations
@@ -197,12 +197,7 @@ def read_document(schema: type[Schema], document: Document, helper: Helper | Non
 def document_of(schema: type, path: Path, above: tuple[Path, ...] = ()) -> Document:
     """Document of a file, over that of the file that it extends."""
     kind = _kind(schema)
-    if kind.sheets is not None and kind.sheets(path):
-        from separatrix.ground.workbook import read_sheets
-
-        document = read_sheets(schema, path)
-    else:
-        document = _document_of_text(schema, toml.read_text(path, kind), toml.label_of(path))
+    document = _document_of_text(schema, toml.read_text(path, kind), toml.label_of(path))
     folders: dict[KeyPath, Path] = {(): path.parent}
     for name, one in document.data.items():
         folders |= {(name, key): path.parent for key in one} if isinstance(one, dict) else {}

@@ -1,4 +1,4 @@
-"""Study files: TOML, or a workbook, whose every dimensional value is text with its unit.
+"""Study files: TOML whose every dimensional value is text with its unit.
 
 Keys and rules are those of the records (`study.Study` is the schema); docs/reference/study-file.md has them.
 """

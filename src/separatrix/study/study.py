@@ -28,7 +28,6 @@ from separatrix.ground.schema import (
     positive,
     record,
 )
-from separatrix.ground.sheet import is_workbook
 from separatrix.ground.toml import Kind
 from separatrix.ground.units import (
     Kelvin,
@@ -222,7 +221,7 @@ def shipped_studies() -> dict[str, Path]:
 class Study:
     """Everything that was asked, resolved: library names are replaced by their records."""
 
-    FILE: ClassVar = Kind(shipped=shipped_studies, sheets=is_workbook)
+    FILE: ClassVar = Kind(shipped=shipped_studies)
 
     name: str = ""
     title: str = key(default="", example='"My bearing"', without="the name of the file")

@@ -233,7 +233,7 @@ class StudyHelper:
         """Material of a name; None if the value is not a name."""
         if isinstance(raw, dict):
             return None
-        kind, raw = one.key.named, str(raw) if type(raw) is int else raw  # the steel 52100, from a workbook
+        kind = one.key.named
         if not isinstance(raw, str):
             rule = f"must be the name of a {kind}, or its properties elastic_modulus and poisson_ratio"
             raise InputError("", rule, shown(raw), f'Write it like "{self.library.names(kind)[0]}".')

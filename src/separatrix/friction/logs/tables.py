@@ -127,7 +127,7 @@ _BLANKS = str.maketrans("\t\r\n\x01\x04", "     ")
 
 def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     """Return the lines of each sheet with a number in it, by its name."""
-    found = by_sheet(path, label, lambda _, saved, __: _lines(saved, label))
+    found = by_sheet(path, label, lambda sheet: _lines(sheet, label))
     found = {title: lines for title, lines in found.items() if any(re.search(r"\d", one) for one in lines)}
     if not found:
         cure = "Put the names of the columns in one row, and the numbers (not as text) below."
