@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from separatrix.ground.schema import between, key, not_negative, record
 from separatrix.ground.units import Kelvin, MetrePerSecond, Pascal, Ratio
@@ -49,6 +49,8 @@ class Friction:
     `extrapolation` says in words in what respect a friction was asked for where nothing was tested;
     `widening` is the part of the standard deviation that stands for it.
     """
+
+    SHORT: ClassVar = "mean"
 
     mean: Ratio = key(between(0.0, FRICTION_LIMIT), certain=True, example="0.12")
     standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None, certain=True)

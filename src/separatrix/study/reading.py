@@ -21,7 +21,7 @@ from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
 from separatrix.study.library import Content, Library, beside, joined, library_files, library_of_text
-from separatrix.study.study import CageModel, Study, shipped_studies, stiffness_is_known
+from separatrix.study.study import CageModel, Study, shipped_studies
 from separatrix.study.uncertain import StudyHelper, written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
@@ -110,8 +110,7 @@ def _study_of(
     if environment := fitting_environment(study, library):
         values["ranking"] = built_with(study.ranking, environment=environment)
         values["origins"]["ranking.environment"] = FROM_BEARING
-    study, left_out = _without_unknown_stiffness(built_with(study, **values), document)
-    return _with_distributions(study, loaded, document), (*loaded.notes, *left_out)
+    return _with_distributions(built_with(study, **values), loaded, document), loaded.notes
 
 
 def built_with(record: Made, **changes: object) -> Made:
@@ -123,20 +122,9 @@ def _where(document: Document, path: KeyPath) -> str:
     return f"{document.place(path)}: {document.name(path)}"
 
 
-def _without_unknown_stiffness(study: Study, document: Document) -> tuple[Study, list[str]]:
-    """The study without its cage where nothing gives the stiffness of its pockets; and a note on that."""
-    faults = list(stiffness_is_known(study.cage, study.ranking)) if study.cage else []
-    if not faults:
-        return study, []
-    where = _where(document, ("cage", "ball_cage_stiffness"))
-    refusal = InputError(where, faults[0].rule, cure=faults[0].cure)
-    note = f"{where} {refusal.rule}: the section is left out, and verbs that need it are refused."
-    return built_with(study, cage=None, left_out=refusal), [note]
-
-
 def _with_distributions(study: Study, loaded: Loaded[Study], document: Document) -> Study:
     """The study with the distributions of its uncertain numbers, each fitting its place."""
-    found = {path: one for path, one in loaded.distributions.items() if path[0] != "cage" or study.cage}
+    found = loaded.distributions
     if len(found) > MOST_DISTRIBUTIONS:
         rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
         cure = "Make those certain that matter least."
@@ -236,18 +224,13 @@ def _named(folder: Path, name: str, where: str) -> list[Path]:
 
 
 def require(study: Study, verb: str, *sections: str) -> None:
-    """Refuse a study that lacks a section which a verb needs; `check` refuses one that was left out, too.
+    """Refuse a study that lacks a section which a verb needs.
 
     Raises
     ------
     InputError
         Names the missing sections, the verb, and where to see what they look like.
     """
-    needs_cage = verb == "check" or "cage" in sections
-    if study.left_out is not None and needs_cage:
-        raise study.left_out
-    for fault in stiffness_is_known(study.cage, study.ranking) if study.cage and needs_cage else ():
-        raise InputError(f"{study.name}: [cage] ball_cage_stiffness", fault.rule, cure=fault.cure)
     missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
     if missing:
         rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"

@@ -258,9 +258,6 @@ class Study:
     friction_table: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
     """The library's whole record of the table that [ranking] names."""
 
-    left_out: InputError | None = field(default=None, compare=False, repr=False)
-    """Why the cage of the file is not in the study, for the verbs that need it."""
-
     notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     """Where it leaves the range of the models, and what of its file has no effect or is left out."""
 
@@ -290,7 +287,8 @@ def _pressure_of_a_whole_film(traction: TractionSettings, film: Film) -> Faults:
         yield Fault(("traction", "pressure"), rule)
 
 
-def stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Faults:
+@check(Study)
+def _stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Faults:
     """Without a stiffness, the cage or every candidate needs a material, for the modulus of the pocket."""
     if cage.ball_cage_stiffness is not None or cage.material is not None:
         return

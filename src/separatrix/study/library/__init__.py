@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Generic, Literal, NamedTuple, TypeVar, cast
 
 from separatrix.friction.prediction import (
-    FRICTION_LIMIT,
     LEAST_FRICTION,
     SCATTER_CURE,
     SCATTER_RULE,
@@ -22,7 +21,7 @@ from separatrix.friction.prediction import (
 )
 from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
-from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, not_negative, record
+from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, record
 from separatrix.ground.toml import Kind, folded, label_of, nearest, path_text, read_text
 from separatrix.ground.units import (
     Kelvin,
@@ -150,25 +149,6 @@ UNITS = {
 
 
 @record
-class Measured:
-    """A measured friction of a table."""
-
-    SHORT: ClassVar = "mean"
-
-    mean: Ratio = key(between(0.0, FRICTION_LIMIT))
-    standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None)
-    count: int | None = key(between(1, 1e9), default=None)
-
-
-@check(Measured)
-def _friction_above_zero(mean: Ratio, standard_deviation: Ratio | None) -> Faults:
-    if mean == 0.0:
-        yield Fault("mean", "must be above 0", BLANK)
-    elif standard_deviation and mean < LEAST_FRICTION:
-        yield Fault("mean", SCATTER_RULE, SCATTER_CURE)
-
-
-@record
 class FrictionTable:
     """Measured ball/cage friction of several materials in several environments."""
 
@@ -178,7 +158,7 @@ class FrictionTable:
     environments: tuple[str, ...] = key(default=(), length=(1, 2000))
     """Their order, if not that of the frictions."""
 
-    friction: Mapping[str, Mapping[str, Measured]] = key(
+    friction: Mapping[str, Mapping[str, Friction]] = key(
         length=(1, 2000), hint='Write a section [friction_table."NAME".friction."MATERIAL"] for each.'
     )
     temperature: tuple[Kelvin, Kelvin] | None = key(between(1e-3, 5000.0), default=None)
@@ -197,13 +177,12 @@ class FrictionTable:
     def rows(self) -> dict[str, dict[str, Friction | None]]:
         """Friction of each material in each environment; None where it was not measured."""
         return {
-            name: {env: self._friction(row[env]) if env in row else None for env in self.columns}
+            name: {
+                env: replace(row[env], source=self.source, confidence=self.confidence) if env in row else None
+                for env in self.columns
+            }
             for name, row in self.friction.items()
         }
-
-    def _friction(self, one: Measured) -> Friction:
-        numbers = {name: getattr(one, name) for name in keys_of(Measured)}
-        return Friction(source=self.source, confidence=self.confidence, **numbers)
 
     @property
     def conditions(self) -> dict[str, tuple[float, float]]:
@@ -217,7 +196,7 @@ CONDITIONS = {name: one.unit for name, one in keys_of(FrictionTable).items() if 
 
 @check(FrictionTable)
 def _environments_of_the_rows(
-    environments: tuple[str, ...], friction: Mapping[str, Mapping[str, Measured]]
+    environments: tuple[str, ...], friction: Mapping[str, Mapping[str, Friction]]
 ) -> Faults:
     if len(set(environments)) < len(environments):
         yield Fault("environments", "names an environment twice")
@@ -225,6 +204,15 @@ def _environments_of_the_rows(
     if unknown:
         rule, cure = "lacks an environment that the table uses", nearest(unknown[0], environments)
         yield Fault("environments", rule, cure, shown(unknown[0]))
+
+
+@check(FrictionTable)
+def _frictions_above_zero(friction: Mapping[str, Mapping[str, Friction]]) -> Faults:
+    for at, one in ((("friction", a, b, "mean"), one) for a, row in friction.items() for b, one in row.items()):
+        if one.mean == 0.0:
+            yield Fault(at, "must be above 0", BLANK)
+        elif one.standard_deviation and one.mean < LEAST_FRICTION:
+            yield Fault(at, SCATTER_RULE, SCATTER_CURE)
 
 
 @check(Datum, FrictionTable)
@@ -307,7 +295,7 @@ class Record(Generic[Thing]):
                 "environments": list(content.columns),
                 "friction": {
                     material: {
-                        env: one and {n: getattr(one, n) for n in keys_of(Measured)}
+                        env: one and {n: getattr(one, n) for n in ("mean", "standard_deviation", "count")}
                         for env, one in row.items()
                     }
                     for material, row in content.rows.items()
