@@ -1,7 +1,6 @@
 """Every wrong study file is refused with one line: place, rule, value, cure."""
 
 import os
-import re
 
 import pytest
 from commands import changed, refusal, rows_of, written

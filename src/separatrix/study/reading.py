@@ -20,7 +20,7 @@ from separatrix.study.candidates import candidate_named, fitting_environment
 from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
-from separatrix.study.library import Content, Library, beside, joined, library_files, library_of_text
+from separatrix.study.library import BESIDE, Content, Library, joined, library_of_text
 from separatrix.study.study import CageModel, Study, shipped_studies
 from separatrix.study.uncertain import StudyHelper, written
 
@@ -195,32 +195,26 @@ def _shipped_names(text: str) -> str:
 
 
 def library_of(document: Document) -> Library:
-    """Library of a study: the shipped records, and those of files beside it or named in it."""
+    """Library of a study: the shipped records, and those of a file beside it and of files named in it."""
     paths: list[Path] = []
     for study, data in document.chain:
-        if study not in shipped_studies().values():
-            paths += beside(study.parent, besides=study)
+        ours = study.parent / BESIDE
+        if study not in shipped_studies().values() and ours.is_file() and ours.resolve() != study.resolve():
+            paths.append(ours)
         given = data.get("library", [])
         for name in given if isinstance(given, list) else [given]:
             if isinstance(name, str) and name.isprintable() and name:  # else the schema refuses it
-                paths += _named(study.parent, name, f"{document.place(('library',))}: library")
+                if not isfile(study.parent / name):
+                    where = f"{document.place(('library',))}: library"
+                    cure = "It is taken from the folder of the study."
+                    raise InputError(where, "does not name a file", shown(name), cure)
+                paths.append(study.parent / name)
     contents = []
     for number, path in enumerate(dict.fromkeys(path.resolve() for path in paths), 1):
         text = read_text(path, Content.FILE)
         document.files[f"{LIBRARY}{number}: {label_of(path)}"] = text
         contents.append(library_of_text(text, label_of(path)))
     return joined(contents)
-
-
-def _named(folder: Path, name: str, where: str) -> list[Path]:
-    path = folder / name
-    if not exists(path):
-        cure = "It is taken from the folder of the study."
-        raise InputError(where, "does not name a file or folder", shown(name), cure)
-    found = library_files(path)
-    if not found:
-        raise InputError(where, "names a folder without a .toml file", shown(name))
-    return found
 
 
 def require(study: Study, verb: str, *sections: str) -> None:

@@ -233,10 +233,10 @@ class Study:
         compare=False,
         length=(1, 20),
         single=True,
-        hint="Give the path of a file or a folder, in quotes, or a list of them.",
-        without="materials.toml, and the folder materials, beside the study",
+        hint="Give the path of a file, in quotes, or a list of them.",
+        without="materials.toml beside the study",
     )
-    """Files or folders with your own materials."""
+    """Files with your own materials."""
 
     operation: Operation = key()
     bearing: BallBearing = key()

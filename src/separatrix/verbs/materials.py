@@ -33,15 +33,13 @@ if TYPE_CHECKING:
     from separatrix.study.library import AnyRecord, Library
 
 EPILOG = (
-    "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
+    "Beside the shipped records those of materials.toml in the current folder "
     "are read, as they are for a study there."
 )
 
 
 Kind = Annotated[str | None, Option("bearing material, cage material, film, fluid, friction table.", "KIND")]
-Libraries = Annotated[
-    tuple[str, ...], Option("A library file or folder to read too; may be repeated.", "PATH")
-]
+Libraries = Annotated[tuple[str, ...], Option("A library file to read too; may be repeated.", "PATH")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,13 +77,13 @@ NOTHING = Part({}, {})
 # --- the records --------------------------------------------------------------------------------
 def read_library(libraries: Sequence[str | Path]) -> Library:
     """Return the library: the shipped records, those of the current folder, and those of `libraries`."""
-    from separatrix.study.library import beside, library_files, with_files
+    from separatrix.study.library import BESIDE, with_files
 
-    paths = beside(Path())
+    paths = [Path(BESIDE)] if Path(BESIDE).is_file() else []
     for named in libraries:
         if not str(named) or not Path(named).exists():
-            raise InputError("--library", "does not name a file or folder", f'"{named}"')
-        paths += library_files(Path(named))
+            raise InputError("--library", "does not name a file", f'"{named}"')
+        paths.append(Path(named))
     return with_files(paths)
 
 

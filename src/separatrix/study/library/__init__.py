@@ -22,13 +22,12 @@ from separatrix.friction.prediction import (
 from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
 from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, record
-from separatrix.ground.toml import Kind, folded, label_of, nearest, path_text, read_text
+from separatrix.ground.toml import Kind, folded, label_of, nearest, read_text
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
     Newton,
     Pascal,
-    Ratio,
     format_quantity,
     printable,
     shown,
@@ -208,7 +207,9 @@ def _environments_of_the_rows(
 
 @check(FrictionTable)
 def _frictions_above_zero(friction: Mapping[str, Mapping[str, Friction]]) -> Faults:
-    for at, one in ((("friction", a, b, "mean"), one) for a, row in friction.items() for b, one in row.items()):
+    for at, one in (
+        (("friction", a, b, "mean"), one) for a, row in friction.items() for b, one in row.items()
+    ):
         if one.mean == 0.0:
             yield Fault(at, "must be above 0", BLANK)
         elif one.standard_deviation and one.mean < LEAST_FRICTION:
@@ -375,10 +376,9 @@ SHIPPED_FILES = {
 }
 """Shipped file of each kind; each is read when it is first used."""
 
-ALONE, FOLDER = "materials.toml", "materials"
-"""Library beside a study, and folder beside it whose files are all read."""
+BESIDE = "materials.toml"
+"""Name of a library that is read where it is beside a study."""
 
-MOST_FILES = 200
 Records = Mapping[str, AnyRecord]
 Wanted = TypeVar("Wanted", Solid, Fluid, FrictionTable)
 
@@ -539,25 +539,3 @@ def shipped_records(kind: str) -> Records:
 def with_files(paths: Iterable[Path]) -> Library:
     """Shipped library with library files of the user."""
     return joined([read_library(path) for path in dict.fromkeys(path.resolve() for path in paths)])
-
-
-def library_files(path: Path) -> list[Path]:
-    """The file itself, or the TOML files of a folder, by name; hidden ones are left out."""
-    if not path.is_dir():
-        return [path]
-    try:
-        names = sorted(file.name for file in path.iterdir())
-    except OSError as error:
-        raise InputError(path_text(path), f"cannot be read ({error.strerror})") from None
-    found = [path / name for name in names if name.endswith(".toml") and not name.startswith(".")]
-    if len(found) > MOST_FILES:
-        raise InputError(path_text(path), f"has more than {MOST_FILES} library files")
-    return found
-
-
-def beside(folder: Path, besides: Path | None = None) -> list[Path]:
-    """Library files in a folder: `materials.toml`, and those of a folder `materials`."""
-    alone, several = folder / ALONE, folder / FOLDER
-    found = [alone] if alone.is_file() else []
-    found += library_files(several) if several.is_dir() else []
-    return [path for path in found if besides is None or path.resolve() != besides.resolve()]
