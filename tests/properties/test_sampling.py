@@ -12,16 +12,16 @@ from scipy.special import ndtr
 from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError
 from separatrix.study.candidates import environment_of
-from separatrix.study.distribution import Normal, Samples, Uniform
+from separatrix.study.distribution import normal, samples, uniform
 from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction, RankingQuestion
 from separatrix.verdict.draws import next_cage_deviation, sample, sobol_points, uncertain_inputs
 
 BASE = read_study("cryogenic-turbopump")
 LAWS = {
-    "film.thickness": Normal(mean=5e-7, standard_deviation=1e-7),
-    "bearing.ball_count": Samples(values=(12, 13)),
-    "operation.axial_load": Uniform(low=2500.0, high=3500.0),
+    "film.thickness": normal(mean=5e-7, standard_deviation=1e-7),
+    "bearing.ball_count": samples(values=(12, 13)),
+    "operation.axial_load": uniform(low=2500.0, high=3500.0),
 }
 UNCERTAIN = with_distributions(BASE, LAWS)
 

@@ -18,7 +18,7 @@ from separatrix.ground.schema import Fault, Faults, between, check, key, one_of,
 from separatrix.ground.toml import KeyPath, folded, label_of, nearest
 from separatrix.ground.units import Kelvin, Ratio, shown
 from separatrix.study.ball_bearing import NAMELESS, Material
-from separatrix.study.distribution import Normal
+from separatrix.study.distribution import NORMAL
 from separatrix.study.library import FrictionTable, Library
 from separatrix.study.uncertain import deviation_of, helper_of, number, temperature_of
 
@@ -43,7 +43,7 @@ def read_friction_value(raw: Any, path: KeyPath, reading: Reading) -> Friction:
         return reading.record(Friction, {"mean": mean}, path)
     known = reading.record(Friction, {"mean": mean, "standard_deviation": found.standard_deviation}, path)
     reading.distributions[path] = found
-    return _above_zero(known) if isinstance(found, Normal) else known
+    return _above_zero(known) if found.kind == NORMAL else known
 
 
 def _above_zero(friction: Friction) -> Friction:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Reading
@@ -17,10 +17,8 @@ from separatrix.ground.schema import Described
 from separatrix.ground.toml import Reader, cut_list, nearest, quantity, ratio, truth, whole
 from separatrix.ground.units import NUMBER, Kelvin, parse, printable, shown
 from separatrix.study import distribution
-from separatrix.study.distribution import Distribution, Normal, Samples
+from separatrix.study.distribution import Distribution
 from separatrix.study.library import Library
-
-Made = TypeVar("Made", bound=Distribution)
 
 _SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
 _PLAIN = re.compile(NUMBER)
@@ -41,7 +39,6 @@ _ALONE = "Write the value alone if it is certain."
 
 def number(value: object, unit: str) -> tuple[float, Distribution | None]:
     """A number in SI and None, or the mean of an uncertain one and its distribution."""
-    found: Distribution
     if isinstance(value, list):
         found = _samples(value, "", quantity(unit), written(value))
     elif isinstance(value, dict):
@@ -95,7 +92,7 @@ def _is_spread(value: object) -> bool:
     return isinstance(value, str) and _SIGN.search(value) is not None
 
 
-def _plus_minus(text: str, unit: str) -> Normal:
+def _plus_minus(text: str, unit: str) -> Distribution:
     """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations.
 
     ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4).
@@ -113,7 +110,8 @@ def _plus_minus(text: str, unit: str) -> Normal:
         raise InputError("", "needs a unit before +- too", shown(text), cure)
     mean = _written_number(parts[0], "", unit)
     half = _width(parts[1], mean, parts[0], ", after +-,", unit)
-    return _made(Normal, "", mean=mean, standard_deviation=half / distribution.COVERAGE, text=shown(text))
+    deviation = half / distribution.COVERAGE
+    return _made(distribution.normal, "", mean=mean, standard_deviation=deviation, text=shown(text))
 
 
 def _table(value: dict[str, object], unit: str) -> Distribution:
@@ -151,25 +149,25 @@ def _between(value: dict[str, object], reader: Reader[float]) -> Distribution:
     if log and low <= 0.0:
         cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
         raise InputError(at, "must be > 0 with log = true", shown(bounds[0]), cure)
-    kind = distribution.LogUniform if log else distribution.Uniform
+    kind = distribution.log_uniform if log else distribution.uniform
     return _made(kind, at, low=low, high=high, text=written(value))
 
 
-def _moments(value: dict[str, object], unit: str) -> Normal:
+def _moments(value: dict[str, object], unit: str) -> Distribution:
     if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
         raise InputError("", f"lacks: {missing[0]}", written(value))
     mean = quantity(unit)(value["mean"], ".mean")
     deviation = deviation_of(value["standard_deviation"], value["mean"], unit)
-    return _made(Normal, "", mean=mean, standard_deviation=deviation, text=written(value))
+    return _made(distribution.normal, "", mean=mean, standard_deviation=deviation, text=written(value))
 
 
-def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Samples:
+def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Distribution:
     """Read equally likely values."""
     values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
-    return _made(Samples, where, values=values, text=text)
+    return _made(distribution.samples, where, values=values, text=text)
 
 
-def _made(kind: Callable[..., Made], where: str, **values: object) -> Made:
+def _made(kind: Callable[..., Distribution], where: str, **values: object) -> Distribution:
     """Make a distribution; the place in the file is put before its refusals."""
     try:
         return kind(**values)
