@@ -11,7 +11,7 @@ from synthetic_friction import Recipe, made
 
 from separatrix.friction import steady
 from separatrix.friction.friction_file import place
-from separatrix.friction.logs.conditions import Conditions
+from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.reduction import TestFriction, reduce_log
 

@@ -16,6 +16,7 @@ import numpy as np
 from separatrix.friction.friction_file import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.friction_law import (
     Covariates,
+    Prediction,
     Range,
     at_temperature,
     covariates,
@@ -24,7 +25,6 @@ from separatrix.friction.friction_law import (
     tested_range,
     values_of,
 )
-from separatrix.friction.prediction import Prediction
 from separatrix.friction.scatter import LinearModel, Posterior, posteriors
 from separatrix.ground.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
 

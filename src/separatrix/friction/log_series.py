@@ -12,14 +12,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from separatrix.friction.friction_file import CONDITIONS, NAMES, FrictionTest, Place, place
+from separatrix.friction.friction_file import CONDITIONS, FRICTION_LIMIT, NAMES, FrictionTest, Place, place
 from separatrix.friction.friction_fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.conditions import Conditions, of_log
+from separatrix.friction.logs.column_map import ColumnMap, Conditions, of_log, read_column_map
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
-from separatrix.friction.prediction import FRICTION_LIMIT
 from separatrix.friction.reduction import RUN_IN_END, Cut, Reduction, TestFriction, reduction, with_outliers
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import format_number, format_quantity, printable, unit_of

@@ -9,9 +9,8 @@ from math import exp, log
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from separatrix.friction.friction_file import CONDITIONS, FrictionFile
-from separatrix.friction.friction_law import StatedFriction
-from separatrix.friction.prediction import LEAST_FRICTION, SCATTER_CURE, SCATTER_RULE, Friction
+from separatrix.friction.friction_file import CONDITIONS, LEAST_FRICTION, FrictionFile
+from separatrix.friction.friction_law import SCATTER_CURE, SCATTER_RULE, Friction, StatedFriction
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Elsewhere, Reading, Refused, read_text
 from separatrix.ground.schema import Fault, Faults, between, check, key, one_of, record

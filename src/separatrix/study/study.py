@@ -12,8 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from separatrix.friction.prediction import FRICTION_LIMIT as FRICTION_LIMIT
-from separatrix.friction.prediction import Friction as Friction
+from separatrix.friction.friction_file import FRICTION_LIMIT as FRICTION_LIMIT
+from separatrix.friction.friction_law import Friction as Friction
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,

@@ -13,12 +13,8 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Generic, Literal, NamedTuple, TypeVar, cast
 
-from separatrix.friction.prediction import (
-    LEAST_FRICTION,
-    SCATTER_CURE,
-    SCATTER_RULE,
-    Friction,
-)
+from separatrix.friction.friction_file import LEAST_FRICTION
+from separatrix.friction.friction_law import SCATTER_CURE, SCATTER_RULE, Friction
 from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
 from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, record
