@@ -70,12 +70,6 @@ def test_samples_are_drawn_with_equal_weights_in_rising_order():
     assert law.standard_deviation == pytest.approx(np.std([0.1, 0.2, 0.2, 0.3]), rel=1e-14)
 
 
-def test_the_middle_of_whole_numbers_is_one_of_them():
-    """A study cannot hold 12.67 balls: it holds the listed count nearest to the mean."""
-    assert samples(values=(12, 13, 13)).mean == 13
-    assert samples(values=(11, 12, 16)).mean == 12
-
-
 def test_a_normal_distribution_that_reaches_zero_has_a_log_normal_one_in_its_place():
     """Same mean, same standard deviation, same text; none where there is no need or no positive mean."""
     wide = normal(mean=1.0, standard_deviation=0.25, text="as written")

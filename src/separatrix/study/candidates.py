@@ -31,7 +31,7 @@ MOST_CANDIDATES = 1000
 
 def read_friction_value(raw: Any, path: KeyPath, reading: Reading) -> Friction:
     """A friction: a number, a table with mean, standard_deviation and count, or a distribution."""
-    if isinstance(raw, dict) and not {"between", "samples"} & set(raw):
+    if isinstance(raw, dict) and "between" not in raw:
         given, width = dict(raw), raw.get("standard_deviation")
         if isinstance(width, str) and "%" in width:
             given["standard_deviation"] = deviation_of(width, raw.get("mean"), "-")

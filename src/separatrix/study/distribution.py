@@ -128,8 +128,7 @@ def log_uniform(*, low: float, high: float, text: str = "") -> Distribution:
 def samples(*, values: Sequence[float], text: str = "") -> Distribution:
     """Values that were drawn or measured elsewhere, each as likely as the others; kept in rising order.
 
-    The mean of whole numbers is the one of them that is nearest to it. The standard deviation is that of the
-    values taken as the whole population.
+    The standard deviation is that of the values taken as the whole population.
     """
     if not 2 <= (count := len(values)) <= MOST_SAMPLES:
         cure = "Write one value without brackets." if count == 1 else ""
@@ -142,8 +141,6 @@ def samples(*, values: Sequence[float], text: str = "") -> Distribution:
         raise InputError("values", "must differ: there is no spread in them", text, cure)
     mean = math.fsum(rising) / count
     deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in rising) / count)
-    if all(isinstance(value, int) for value in rising):
-        mean = min(rising, key=lambda value: abs(value - mean))
     low, high = rising[0], rising[-1]
     return Distribution(
         kind=SAMPLES, mean=mean, standard_deviation=deviation, low=low, high=high, text=text, samples=rising

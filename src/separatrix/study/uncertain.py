@@ -24,23 +24,18 @@ _SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
 _PLAIN = re.compile(NUMBER)
 _PERCENT = re.compile(rf"({NUMBER}) ?%")
 _BRACKETS = re.compile(r"\(([^()]*)\) ?([^()]+)")
-_FORM_OF = {
-    "between": "between",
-    "log": "between",
-    "mean": "mean",
-    "standard_deviation": "mean",
-    "samples": "samples",
-}
+_FORM_OF = {"between": "between", "log": "between", "mean": "mean", "standard_deviation": "mean"}
 """Keys of a distribution, and the form that each belongs to."""
 
-_FORMS = "between, or mean with standard_deviation, or samples"
+_FORMS = "between, or mean with standard_deviation"
 _ALONE = "Write the value alone if it is certain."
 
 
 def number(value: object, unit: str) -> tuple[float, Distribution | None]:
     """A number in SI and None, or the mean of an uncertain one and its distribution."""
     if isinstance(value, list):
-        found = _samples(value, "", quantity(unit), written(value))
+        values = tuple(quantity(unit)(item, f", item {i},") for i, item in enumerate(value, 1))
+        found = _made(distribution.samples, "", values=values, text=written(value))
     elif isinstance(value, dict):
         found = _table(value, unit)
     elif isinstance(value, str) and _SIGN.search(value):
@@ -48,25 +43,6 @@ def number(value: object, unit: str) -> tuple[float, Distribution | None]:
     else:
         return quantity(unit)(value, ""), None
     return found.mean, found
-
-
-def count(value: object) -> tuple[int, Distribution | None]:
-    """A whole number and None, or the middle of a list of equally likely ones and their distribution."""
-    if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
-        rule = "must be a whole number, or a list of whole numbers that are equally likely"
-        raise InputError("", rule, shown(value), "Write it like [12, 13].")
-    items = value["samples"] if isinstance(value, dict) else value
-    if not isinstance(items, list):
-        return whole(value, ""), None
-    found = _samples(items, "", whole, written(value))
-    return int(found.mean), found
-
-
-def refuse_distribution(value: object) -> None:
-    """Refuse a distribution where a key takes one certain value."""
-    is_table = isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value)
-    if is_table or _is_spread(value):
-        raise InputError("", "takes no distribution", written(value), "This key takes one certain value.")
 
 
 def written(value: object) -> str:
@@ -86,10 +62,6 @@ def deviation_of(width: object, mean: object, unit: str) -> float:
     if isinstance(width, str) and (unit != "-" or "%" in width):
         return _width(width, quantity(unit)(mean, ".mean"), str(mean), at, unit)
     return _not_zero(quantity(unit)(width, at), width, at)
-
-
-def _is_spread(value: object) -> bool:
-    return isinstance(value, str) and _SIGN.search(value) is not None
 
 
 def _plus_minus(text: str, unit: str) -> Distribution:
@@ -115,7 +87,7 @@ def _plus_minus(text: str, unit: str) -> Distribution:
 
 
 def _table(value: dict[str, object], unit: str) -> Distribution:
-    """Read a table with bounds, with mean and standard deviation, or with samples."""
+    """Read a table with bounds, or with mean and standard deviation."""
     for key in value:
         if key not in _FORM_OF:
             at, cure = f".{printable(key) or chr(34) * 2}", nearest(key, _FORM_OF)
@@ -128,12 +100,7 @@ def _table(value: dict[str, object], unit: str) -> Distribution:
         raise InputError(".log", "has a meaning only with between")
     if "between" in found:
         return _between(value, quantity(unit))
-    if "mean" in found:
-        return _moments(value, unit)
-    samples = value["samples"]
-    if not isinstance(samples, list):
-        raise InputError(".samples", "must be a list in [brackets]", shown(samples))
-    return _samples(samples, ".samples", quantity(unit), written(value))
+    return _moments(value, unit)
 
 
 def _between(value: dict[str, object], reader: Reader[float]) -> Distribution:
@@ -159,12 +126,6 @@ def _moments(value: dict[str, object], unit: str) -> Distribution:
     mean = quantity(unit)(value["mean"], ".mean")
     deviation = deviation_of(value["standard_deviation"], value["mean"], unit)
     return _made(distribution.normal, "", mean=mean, standard_deviation=deviation, text=written(value))
-
-
-def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Distribution:
-    """Read equally likely values."""
-    values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
-    return _made(distribution.samples, where, values=values, text=text)
 
 
 def _made(kind: Callable[..., Distribution], where: str, **values: object) -> Distribution:
@@ -221,11 +182,11 @@ class StudyHelper:
 
     def number(self, raw: object, unit: str, one: Described) -> tuple[float, Distribution | None]:
         """Number of a key or, with an empty unit, whole one; and its distribution, None if it is certain."""
-        if one.key.certain:
-            refuse_distribution(raw)
-        if not unit:
-            return (whole(raw, ""), None) if one.key.certain else count(raw)
-        return number(raw, unit)
+        if one.key.certain or not unit:
+            is_table = isinstance(raw, dict) and {"between", "standard_deviation"} & set(raw)
+            if is_table or isinstance(raw, list) or (isinstance(raw, str) and _SIGN.search(raw)):
+                raise InputError("", "takes no distribution", written(raw), "It takes one certain value.")
+        return number(raw, unit) if unit else (whole(raw, ""), None)
 
     def named(self, raw: object, one: Described, reading: Reading) -> Any:
         """Material of a name; None if the value is not a name."""
