@@ -49,7 +49,7 @@ def test_every_form_is_read(text, study_of):
     """
     study = study_of(f"[film]\nthickness = {text}\n")
     found, wanted = study.distributions["film.thickness"], FORMS[text]
-    assert type(found) is type(wanted)
+    assert found.kind == wanted.kind
     assert (found.mean, found.standard_deviation) == pytest.approx(
         (wanted.mean, wanted.standard_deviation), rel=1e-14
     )
