@@ -214,10 +214,9 @@ def test_a_long_correlation_is_told_by_the_weight_of_all_spectra():
 
 
 def test_white_noise_of_few_spans_seldom_passes_for_a_long_correlation():
-    """In a short steady part the likeliest of all spectra often is a long one, most of the weight seldom."""
+    """In a short steady part most of the weight of all spectra is seldom on long ones."""
     rng = np.random.default_rng(17)
     means = [steady.steady_mean(rng.standard_normal(16)) for _ in range(400)]
-    assert sum(mean.corner < steady.LONG and mean.floor < steady.MIXED for mean in means) > 20
     assert sum(mean.is_long for mean in means) < 12  # by chance 4; a Poisson count above 11 once in 4000
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.ground.errors import InputError, together
-from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
+from separatrix.ground.reader import Document, Loaded, document_of, read_document
 from separatrix.ground.schema import Made, built, defaults_of
 from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
 from separatrix.ground.units import printable, shown
@@ -158,13 +158,12 @@ def number_name(study: Study, path: KeyPath) -> str:
 def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
     """Place and text of every given key of a section, and what follows from others."""
     origins: dict[str, str] = {}
-    for path, source in loaded.sources.items():
-        is_key = len(path) == 2 or path[:2] == ("film", "wear")
-        if source.origin is not Origin.GIVEN or not is_key:
+    for path, place in loaded.places.items():
+        if len(path) != 2 and path[:2] != ("film", "wear"):
             continue
         value = document.written(path)
         is_plain = not isinstance(value, dict | list) or path in loaded.distributions
-        origins[".".join(map(str, path))] = source.place + (f": {written(value)}" if is_plain else "")
+        origins[".".join(map(str, path))] = place + (f": {written(value)}" if is_plain else "")
     for key, name, follows in DERIVED:
         if key in origins:
             origins = dict.fromkeys(follows, f"derived, from {name}, {origins[key]}") | origins

@@ -170,7 +170,6 @@ class StabilitySettings:
         hint=NO_KICK,
         length=(0, 20),
         rising=True,
-        ordered=True,
         without="0.2, 1 and 4 times the reference disturbance",
     )
     """Speeds of the cage's centre at the start."""

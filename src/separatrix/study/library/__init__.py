@@ -478,7 +478,7 @@ def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[An
     loaded = reader.read_text(Content, text, label)
     file = LibraryFile(file=label, sha256=hashlib.sha256(text.encode()).hexdigest(), shipped=shipped)
     return tuple(
-        Record(kind=kind, name=name, content=content, file=file, place=loaded.sources[section, name].place)
+        Record(kind=kind, name=name, content=content, file=file, place=loaded.places[section, name])
         for kind, section in ((kind, kind.replace(" ", "_")) for kind in KINDS)
         for name, content in getattr(loaded.value, section).items()
     )
