@@ -7,8 +7,9 @@ from typing import Annotated, ClassVar, Literal
 import pytest
 from commands import changed, rows_of
 
+from separatrix.ground import toml
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import read, read_text
+from separatrix.ground.reader import read_text
 from separatrix.ground.schema import (
     Fault,
     Only,
@@ -192,7 +193,7 @@ def test_a_file_that_cannot_be_read_at_all_is_refused_in_one_line(tmp_path, text
     """Before any key is looked at."""
     (tmp_path / "parts.toml").write_bytes(text.encode("latin-1"))
     with pytest.raises(InputError) as refused:
-        read(File, tmp_path / "parts.toml")
+        read_text(File, toml.read_text(tmp_path / "parts.toml", File.FILE), "parts.toml")
     assert str(refused.value).startswith(words) or words in str(refused.value)
 
 

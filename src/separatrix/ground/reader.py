@@ -1,4 +1,4 @@
-"""One reader of the files that people write: ``read(Schema, path) -> Loaded(value, sources, notes)``.
+"""One reader of the files that people write: ``read_text(Schema, text, label) -> Loaded``.
 
 From a TOML file, perhaps over the one that it extends, to the record of its schema: keys to values by their
 types, all mistakes at once, each with its line, key, rule, value and cure. The rules themselves are in
@@ -143,19 +143,14 @@ def _longest(known: Mapping[KeyPath, Made], path: KeyPath, default: Made) -> Mad
     return next((known[part] for part in parts if part in known), default)
 
 
-def read(schema: type[Schema], path: Path) -> Loaded[Schema]:
-    """Record of a file by its schema, whose class variable ``FILE`` has the kind of the file.
+def read_text(schema: type[Schema], text: str, label: str) -> Loaded[Schema]:
+    """Record of the text of a file by its schema, whose class variable ``FILE`` has the kind of the file.
 
     Raises
     ------
     InputError
         Everything that is wrong, a line each: place, key, rule, value, cure.
     """
-    return read_document(schema, document_of(schema, path))
-
-
-def read_text(schema: type[Schema], text: str, label: str) -> Loaded[Schema]:
-    """Record of the text of a file."""
     return read_document(schema, _document_of_text(schema, text, label))
 
 
