@@ -12,7 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from separatrix.friction.friction_file import FRICTION_LIMIT as FRICTION_LIMIT
 from separatrix.friction.friction_law import Friction as Friction
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
@@ -40,7 +39,6 @@ from separatrix.ground.units import (
     Second,
 )
 from separatrix.study import cage_body
-from separatrix.study.ball_bearing import MOST_BALLS as MOST_BALLS
 from separatrix.study.ball_bearing import BallBearing as BallBearing
 from separatrix.study.ball_bearing import Material as Material
 from separatrix.study.cage_design import SCALED
