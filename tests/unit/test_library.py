@@ -115,7 +115,7 @@ def test_the_cage_materials_are_those_of_the_paper_and_their_moduli_are_guesses(
 
 def test_the_friction_table_is_the_paper_s():
     """Table 3, every number; a cross is absent, never 0. Its file names its author and what is missing."""
-    table = LIBRARY.friction_table("pin-on-disk-77K").content
+    table = LIBRARY.record("friction table", "pin-on-disk-77K").content
     rows = [line.split(" | ") for line in PAPER_TABLE_3.strip().splitlines()]
     assert list(table.friction) == [row[0] for row in rows]
     for name, *values in rows:
@@ -151,7 +151,9 @@ def test_numbers_that_answers_depend_on_have_not_moved():
 def test_an_unknown_name_is_answered_with_the_known_ones(kind):
     """Names are exact: no record is substituted for another."""
     with pytest.raises(DataError, match=LIBRARY.names(kind)[0]):
-        LIBRARY.friction_table("none") if kind == "friction table" else LIBRARY.material(kind, "440 C")
+        LIBRARY.record("friction table", "none") if kind == "friction table" else LIBRARY.material(
+            kind, "440 C"
+        )
 
 
 def datum(value, temperature):

@@ -178,7 +178,7 @@ def _tested(
             environments, frictions = _of_file(content, section, temperature)
         else:
             name = helper.known(name, "friction table", FROM_LOGS)
-            found = helper.library.friction_table(name).content
+            found = helper.library.record("friction table", name).content
             environments = found.columns
             frictions = {
                 row: {env: f and _stated(f, env, found, section.friction_scatter) for env, f in each.items()}

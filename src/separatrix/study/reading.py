@@ -103,7 +103,7 @@ def _study_of(
     fluid, table = library.fluid(study.operation.fluid or ""), document.written(("ranking", "friction"))
     values["fluid"] = None if fluid is None else fluid.plain()
     if known := library.named("friction table", table if isinstance(table, str) else ""):
-        values["friction_table"] = library.friction_table(known).plain()
+        values["friction_table"] = library.record("friction table", known).plain()
     if study.cage is not None:
         named = candidate_named(study, document.written(("cage", "material")))
         values["cage"] = built_with(study.cage, material_name=named)

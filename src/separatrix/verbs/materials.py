@@ -30,7 +30,7 @@ from separatrix.verbs.parts.quantity_text import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
-    from separatrix.study.library import AnyRecord, Library
+    from separatrix.study.library import Library, Record
 
 EPILOG = (
     "Beside the shipped records those of materials.toml in the current folder "
@@ -87,7 +87,7 @@ def read_library(libraries: Sequence[str | Path]) -> Library:
     return with_files(paths)
 
 
-def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
+def records_of(library: Library, kind: str | None) -> list[Record]:
     """Return the records of a kind; without one all of them."""
     from separatrix.study.library import KINDS
 
@@ -97,7 +97,7 @@ def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
     return [one for each in kinds for one in library.records(each).values()]
 
 
-def records_named(library: Library, records: Sequence[AnyRecord], name: str) -> list[AnyRecord]:
+def records_named(library: Library, records: Sequence[Record], name: str) -> list[Record]:
     """Return the records of a name, a fluid also by another name of it; refused if there is none."""
     found = [one for one in records if one.name == name]
     fluid = library.fluid(name) if any(one.kind == "fluid" for one in records) else None

@@ -56,17 +56,11 @@ class Conditions:
     """Name of the test."""
 
     temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
-    """Of the test."""
-
     slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
-    """Of the test."""
-
     pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
     """Mean contact pressure."""
 
     normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
-    """Of the test."""
-
     cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
     """Of one revolution or of one stroke there and back."""
 

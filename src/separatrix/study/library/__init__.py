@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Generic, Literal, NamedTuple, TypeVar, cast
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from separatrix.friction.friction_file import LEAST_FRICTION
 from separatrix.friction.friction_law import SCATTER_CURE, SCATTER_RULE, Friction
@@ -254,16 +254,15 @@ class LibraryFile:
     shipped: bool
 
 
-Thing = TypeVar("Thing", bound=Solid | Fluid | FrictionTable, covariant=True)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Record(Generic[Thing]):
+class Record:
     """A material, fluid or friction table under its name, and where it is from."""
 
     kind: str
     name: str
-    content: Thing
+    content: Any
+    """`Solid`, `Fluid` or `FrictionTable`, by the kind."""
+
     file: LibraryFile
     place: str
     """File and line."""
@@ -306,8 +305,6 @@ class Record(Generic[Thing]):
             "data": {name: [one.plain(UNITS[name]) for one in data] for name, data in self.data.items()},
         }
 
-
-AnyRecord = Record[Solid | Fluid | FrictionTable]
 
 _NOWHERE = (1e9, 2e9)
 """Temperatures of a datum whose source states none: it serves last."""
@@ -375,8 +372,7 @@ SHIPPED_FILES = {
 BESIDE = "materials.toml"
 """Name of a library that is read where it is beside a study."""
 
-Records = Mapping[str, AnyRecord]
-Wanted = TypeVar("Wanted", Solid, Fluid, FrictionTable)
+Records = Mapping[str, Record]
 
 WORDS = {
     "elastic_modulus": "modulus",
@@ -407,17 +403,13 @@ class Library:
 
     def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
         """One solid by its exact name, with the data that serve at a temperature."""
-        return as_material(self._found(Solid, kind, name), temperature)
+        return as_material(self.record(kind, name), temperature)
 
-    def friction_table(self, name: str) -> Record[FrictionTable]:
-        """One table of measured friction by its exact name."""
-        return self._found(FrictionTable, "friction table", name)
-
-    def _found(self, wanted: type[Wanted], kind: str, name: str) -> Record[Wanted]:
-        found = self.records(kind).get(name)
-        if found is None or not isinstance(found.content, wanted):
-            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
-        return cast("Record[Wanted]", found)
+    def record(self, kind: str, name: str) -> Record:
+        """One record by its exact name."""
+        if name not in (known := self.records(kind)):
+            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(known)}')
+        return known[name]
 
     def named(self, kind: str, name: str) -> str | None:
         """Exact name of a record by its name or another name of it, in any spelling; None if unknown.
@@ -431,15 +423,16 @@ class Library:
         found = found or [one.name for one in records.values() if wanted in map(folded, one.aliases)]
         return found[0] if wanted and len(found) == 1 else None
 
-    def fluid(self, name: str) -> Record[Fluid] | None:
+    def fluid(self, name: str) -> Record | None:
         """Record of a fluid by its name or another name of it, in any spelling; None if unknown."""
         known = self.named("fluid", name)
-        return None if known is None else self._found(Fluid, "fluid", known)
+        return None if known is None else self.record("fluid", known)
 
 
-def as_material(record: Record[Solid], temperature: Kelvin | None = None) -> Material:
+def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
-    solid, data = record.content, record.data
+    solid: Solid = record.content
+    data = record.data
     chosen = {key: choose(data[key], temperature, words) for key, words in WORDS.items() if key in data}
     sources = [f"{WORDS[key]}: {choice.datum.source}" for key, choice in chosen.items()]
     confidences = [f"{WORDS[key]}: {choice.datum.confidence}" for key, choice in chosen.items()]
@@ -462,7 +455,7 @@ def as_material(record: Record[Solid], temperature: Kelvin | None = None) -> Mat
     )
 
 
-def read_library(path: Path, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
+def read_library(path: Path, *, shipped: bool = False) -> tuple[Record, ...]:
     """Records of a library file.
 
     Raises
@@ -473,7 +466,7 @@ def read_library(path: Path, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
     return library_of_text(read_text(path, Content.FILE), label_of(path), shipped=shipped)
 
 
-def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
+def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[Record, ...]:
     """Records of the text of a library file."""
     loaded = reader.read_text(Content, text, label)
     file = LibraryFile(file=label, sha256=hashlib.sha256(text.encode()).hexdigest(), shipped=shipped)
@@ -484,9 +477,9 @@ def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[An
     )
 
 
-def joined(contents: Sequence[Sequence[AnyRecord]]) -> Library:
+def joined(contents: Sequence[Sequence[Record]]) -> Library:
     """Library of files of the user over the shipped records."""
-    own: dict[str, dict[str, AnyRecord]] = {}
+    own: dict[str, dict[str, Record]] = {}
     for records in contents:
         for one in records:
             kind = own.setdefault(one.kind, {})
@@ -497,7 +490,7 @@ def joined(contents: Sequence[Sequence[AnyRecord]]) -> Library:
     return Library(files=tuple(records[0].file for records in contents), own=own)
 
 
-def _refuse_hiding(old: AnyRecord | None, new: AnyRecord) -> None:
+def _refuse_hiding(old: Record | None, new: Record) -> None:
     """Refuse a record that would replace another without stating so."""
     if old is None and new.content.replaces:
         rule = f"replaces a {new.kind} that is not shipped"
@@ -510,9 +503,9 @@ def _refuse_hiding(old: AnyRecord | None, new: AnyRecord) -> None:
         raise InputError(_header(new), f"has the name of a shipped {new.kind}", shown(new.name), cure)
 
 
-def _refuse_alike(records: Iterable[AnyRecord]) -> None:
+def _refuse_alike(records: Iterable[Record]) -> None:
     """Refuse a name that an earlier record has, but for capitals and spaces."""
-    known: dict[str, AnyRecord] = {}
+    known: dict[str, Record] = {}
     for one in records:
         for name in (one.name, *one.aliases):
             old = known.setdefault(" ".join(name.casefold().split()), one)
@@ -521,7 +514,7 @@ def _refuse_alike(records: Iterable[AnyRecord]) -> None:
                 raise InputError(_header(one), rule, shown(name), "Give it another name.")
 
 
-def _header(record: AnyRecord) -> str:
+def _header(record: Record) -> str:
     return f"{record.place}: [{record.kind.replace(' ', '_')}] {printable(record.name)}"
 
 
