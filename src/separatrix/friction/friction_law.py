@@ -8,11 +8,11 @@ tested). Nothing here imports numpy: a study is read without fitting anything.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import hypot, log, sqrt
 from statistics import correlation
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, TypedDict, Unpack
 
 from separatrix.friction.friction_file import (
     CONDITIONS,
@@ -38,18 +38,21 @@ class Prediction:
     assumed_scatter: bool = False  # whether no repeated test shows the scatter
 
 
+class Asked(TypedDict, total=False):
+    """Conditions for which a friction is predicted; one that is None or left out is not known."""
+
+    slip_speed: MetrePerSecond | None
+    pressure: Pascal | None
+    temperature: Kelvin | None
+    medium: str | Sequence[str] | None
+    """By one name, or by all its names: a test under any of them was run in it."""
+
+
 class FrictionLaw(Protocol):
     """Friction as a function of the conditions, from tests, as `friction_fit.TestedFriction`."""
 
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None,
-        pressure: Pascal | None,
-        temperature: Kelvin | None,
-        medium: str | Sequence[str] | None,
-    ) -> Prediction:
-        """Friction for these conditions; one that is None is not known. The medium by all its names."""
+    def at(self, **asked: Unpack[Asked]) -> Prediction:
+        """Friction for these conditions."""
 
 
 @record
@@ -209,13 +212,19 @@ TEMPERATURE_SLACK = 5.0  # the same for temperature, as a difference [K]
 
 
 def limited(
-    conditions: Mapping[str, float | None], ranges: Mapping[str, Range | None], exponents: Mapping[str, float]
+    asked: Asked, ranges: Mapping[str, Range | None], exponents: Mapping[str, float], media: Sequence[str]
 ) -> tuple[Mapping[str, float], tuple[str, ...], Ratio]:
     """Conditions within the tested ranges, sentences on those outside, and the widening that these cost.
 
     Also of pV, where speed and pressure are both known: each may have been tested, and both together not. The
-    exponent of the widening is that of `EXPONENTS`, or the given one where it is larger.
+    exponent of the widening is that of `EXPONENTS`, or the given one where it is larger. A medium in which no
+    test was run has a sentence; its effect has no number.
     """
+    conditions = {
+        "slip_speed": asked.get("slip_speed"),
+        "pressure": asked.get("pressure"),
+        "temperature": asked.get("temperature"),
+    }
     values: dict[str, float] = {}
     sentences, widening = [], 0.0
     for name in (*conditions, PRODUCT):
@@ -236,15 +245,12 @@ def limited(
         sentences.append(_sentence(value, limits, name))
         exponent = max(exponents.get(name, 0.0), EXPONENTS[name])
         widening = hypot(widening, exponent * log(value / values[name]))
+    medium = asked.get("medium") or ()
+    names = (medium,) if isinstance(medium, str) else medium
+    tested = {one.strip().casefold() for one in media}
+    if names and tested and tested.isdisjoint(name.strip().casefold() for name in names):
+        sentences.append(f"tested in {', '.join(media)}, not in {names[0]}")
     return values, tuple(sentences), widening
-
-
-def other_medium(medium: str | Sequence[str] | None, tested: Iterable[str]) -> tuple[str, ...]:
-    """Sentence on a medium in which no test was run, given by all its names; its effect has no number."""
-    names = (medium,) if isinstance(medium, str) else tuple(medium or ())
-    if not names or {name.strip().casefold() for name in names} & {one.strip().casefold() for one in tested}:
-        return ()
-    return (f"tested in {', '.join(tested)}, not in {names[0]}",)
 
 
 def _sentence(value: float, limits: Range, name: str) -> str:
@@ -277,24 +283,16 @@ class StatedFriction:
     medium: str | None = None
     default_scatter: Ratio
 
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None = None,
-        pressure: Pascal | None = None,
-        temperature: Kelvin | None = None,
-        medium: str | Sequence[str] | None = None,
-    ) -> Prediction:
+    def at(self, **asked: Unpack[Asked]) -> Prediction:
         """Friction predicted for these conditions: the printed mean, and what of them was not tested."""
-        conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
-        _, sentences, _ = limited(conditions, self.ranges, {})
+        media = () if self.medium is None else (self.medium,)
+        _, sentences, _ = limited(asked, self.ranges, {}, media)
         stated = self.standard_deviation
         scatter = self.default_scatter * self.mean if stated is None else stated
-        other = () if self.medium is None else other_medium(medium, (self.medium,))
         return Prediction(
             mean=self.mean,
             standard_error=scatter if stated is None else scatter / sqrt(self.count or 1),
             standard_deviation=scatter,
-            extrapolation=(*sentences, *other),
+            extrapolation=sentences,
             assumed_scatter=stated is None,
         )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from separatrix.friction import cycles, steady
-from separatrix.friction.friction_file import in_words
+from separatrix.friction.friction_file import Place, in_words
 from separatrix.friction.logs.column_map import Conditions, of_log
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import MEANINGS
@@ -26,9 +26,6 @@ OUTLIER = 1.5  # friction over the median of the others, or the reverse, from wh
 FAR = 5.0  # distance from that median over the usual one, in standard deviations
 RUN_IN_END = "run_in"
 """Where a given end of running-in is refused."""
-
-Cut = tuple[str, float]
-"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction_file.place`."""
 
 
 # --- events and conditions ----------------------------------------------------------------------
@@ -242,12 +239,12 @@ class Reduction:
     mean: steady.SteadyMean
 
 
-def reduce_log(log: RawLog, cut: Cut | None = None) -> TestFriction:
+def reduce_log(log: RawLog, cut: Place | None = None) -> TestFriction:
     """Return the friction of a log with its error; `reduction` returns also what it was made from."""
     return reduction(log, cut).test
 
 
-def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
+def reduction(log: RawLog, cut: Place | None = None) -> Reduction:
     """Return the friction of a log, its error, flags and series; without a cut running-in is looked for.
 
     Raises
@@ -255,10 +252,10 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     InputError
         The log stands still along its abscissa, lacks the abscissa of the cut, or is too short.
     """
-    if cut is not None and cut[0] not in log.abscissae:
+    if cut is not None and cut.axis not in log.abscissae:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
-        raise InputError(log.source, f"needs a column of {cut[0]}", "none", cure)
-    axis = cut[0] if cut else next(name for name in PREFERRED if name in log.abscissae)
+        raise InputError(log.source, f"needs a column of {cut.axis}", "none", cure)
+    axis = cut.axis if cut else next(name for name in PREFERRED if name in log.abscissae)
     along = cycles.rising(log, axis)
     events = _events(log, along, axis)
     loaded = max((one.row for one in events if not one.is_end), default=0)
@@ -328,7 +325,7 @@ def _test(
 
 
 def _steady(
-    log: RawLog, stretch: cycles.Stretch, kept: slice, given: Cut | None
+    log: RawLog, stretch: cycles.Stretch, kept: slice, given: Place | None
 ) -> tuple[cycles.Stretch, float | None, RunIn | None, tuple[str, ...]]:
     """Return the rows, where on their ruler the steady part begins, how that was found, and notes.
 
