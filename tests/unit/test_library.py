@@ -67,7 +67,7 @@ temperature = "77 K"
 slip_speed = ["1 m/s", "4 m/s"]
 
 [friction_table."our rig".friction."Ours"]
-"liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.01, count = 3 }
+"liquid nitrogen, 440C" = { mean = 0.12, standard_deviation = 0.01, count = 3, source = "Report 6" }
 
 [friction_table."our rig".friction."Armalon"]
 "liquid nitrogen, 440C" = 0.08
@@ -211,6 +211,8 @@ def test_records_beside_a_study_are_known_to_it(case):
     ours, armalon = study.ranking.candidates
     assert ours.material.elastic_modulus == 9e9
     assert ours.friction["liquid nitrogen, 440C"].count == 3
+    assert ours.friction["liquid nitrogen, 440C"].source == "Report 6"
+    assert armalon.friction["liquid nitrogen, 440C"].source == "Report 5"
     assert ours.friction["air, 440C"] is None
     assert armalon.material.record["library"]["shipped"] is True
 

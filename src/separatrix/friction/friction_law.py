@@ -55,6 +55,9 @@ class FrictionLaw(Protocol):
         """Friction for these conditions."""
 
 
+GIVEN = "given in the study"
+
+
 @record
 class Friction:
     """A measured ball/cage friction: its mean and, if known, its scatter.
@@ -70,13 +73,13 @@ class Friction:
     mean: Ratio = key(between(0.0, FRICTION_LIMIT), certain=True, example="0.12")
     standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None, certain=True)
     count: int | None = key(between(1, 1e9), default=None, certain=True)
-    source: str = key(default="given in the study", letters=(1, 2000))
+    source: str = key(default=GIVEN, letters=(1, 2000))
     standard_error: Ratio | None = None
     assumed_scatter: bool = False
     extrapolation: tuple[str, ...] = ()
     widening: Ratio = 0.0
     law: FrictionLaw | None = field(default=None, compare=False, repr=False)
-    confidence: str = "given in the study"
+    confidence: str = GIVEN
 
 
 SCATTER_RULE = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"

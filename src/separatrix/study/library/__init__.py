@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from separatrix.friction.friction_file import LEAST_FRICTION
-from separatrix.friction.friction_law import SCATTER_CURE, SCATTER_RULE, Friction
+from separatrix.friction.friction_law import GIVEN, SCATTER_CURE, SCATTER_RULE, Friction
 from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
 from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, record
@@ -172,12 +172,14 @@ class FrictionTable:
     def rows(self) -> dict[str, dict[str, Friction | None]]:
         """Friction of each material in each environment; None where it was not measured."""
         return {
-            name: {
-                env: replace(row[env], source=self.source, confidence=self.confidence) if env in row else None
-                for env in self.columns
-            }
+            name: {env: self._sourced(row[env]) if env in row else None for env in self.columns}
             for name, row in self.friction.items()
         }
+
+    def _sourced(self, one: Friction) -> Friction:
+        """A friction of the table with the table's source, if it states none of its own."""
+        source = self.source if one.source == GIVEN else one.source
+        return replace(one, source=source, confidence=self.confidence)
 
     @property
     def conditions(self) -> dict[str, tuple[float, float]]:
