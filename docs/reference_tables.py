@@ -15,8 +15,7 @@ from separatrix.chain.contacts import BearingState, RaceContact
 from separatrix.chain.impact_restitution import Restitution
 from separatrix.chain.solution import Solution
 from separatrix.friction.logs.log import ColumnRead, RawLog
-from separatrix.friction.reduction import TestFriction
-from separatrix.friction.test_course import TestCourse
+from separatrix.friction.reduction import TestCourse, TestFriction
 from separatrix.ground.schema import Described, is_record, keys_of
 from separatrix.ground.units import UNITS, format_quantity
 from separatrix.study import study

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter
 
-from separatrix.friction.logs.conditions import Conditions
+from separatrix.friction.logs.column_map import Conditions
 from separatrix.friction.logs.log import RawLog
 
 SPEED = 0.5

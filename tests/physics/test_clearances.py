@@ -14,7 +14,7 @@ from separatrix.chain.clearances import TurningRing, mean_expansion, running_cle
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.study.ball_bearing import Expansion
-from separatrix.study.distribution import Uniform
+from separatrix.study.distribution import uniform
 from separatrix.study.keys import with_values
 from separatrix.study.reading import read_study
 from separatrix.study.study import ClearanceState, Guidance, Material
@@ -151,7 +151,7 @@ def test_draws_and_sweeps_go_through_it():
     assert fast.clearances.hoop_strain > cold.clearances.hoop_strain
     assert moving_cage(cold, 0.1).pocket_clearance == cold.clearances.pocket
     assert cold.study.cage.pocket_clearance == RUNNING.cage.pocket_clearance
-    drawn = with_distributions(RUNNING, {"operation.temperature": Uniform(low=70.0, high=200.0)})
+    drawn = with_distributions(RUNNING, {"operation.temperature": uniform(low=70.0, high=200.0)})
     each = sample(drawn, 4)
     found = [solve(each.setter()(row)).clearances.pocket for row in each.values]
     assert len(set(found)) == 4

@@ -9,7 +9,7 @@ from cages import with_distributions
 from separatrix.cage import RunOutcome, moving_cage, run_ensemble
 from separatrix.cage.disturbance import settings_for
 from separatrix.chain.solution import solve
-from separatrix.study.distribution import Normal, Samples, Uniform
+from separatrix.study.distribution import normal, samples, uniform
 from separatrix.study.reading import read_study
 from separatrix.study.study import Candidate, Friction
 from separatrix.verdict.draws import Case, drawn_bearings, sample
@@ -33,8 +33,8 @@ def study_of(friction, **given):
 
 def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
     """Mass and friction to 1e-12 of themselves: the same runs, so the same counts from every kick."""
-    study = study_of(0.2, cage__mass=Normal(mean=0.025, standard_deviation=2.5e-14))
-    study = with_distributions(study, {FRICTION: Normal(mean=0.2, standard_deviation=2e-13)})
+    study = study_of(0.2, cage__mass=normal(mean=0.025, standard_deviation=2.5e-14))
+    study = with_distributions(study, {FRICTION: normal(mean=0.2, standard_deviation=2e-13)})
     drawn = drawn_bearings(study, 8)
     central = solve(study)
     cage = moving_cage(central, 0.2)
@@ -47,7 +47,7 @@ def test_inputs_that_hardly_vary_give_the_runs_of_a_certain_study():
 
 def test_the_probability_is_that_of_counting_over_the_distribution():
     """Friction between 0.1 and 0.3: the mean of P(settles) counted at frictions one by one, by other runs."""
-    study = with_distributions(study_of(0.2), {FRICTION: Uniform(low=0.1, high=0.3)})
+    study = with_distributions(study_of(0.2), {FRICTION: uniform(low=0.1, high=0.3)})
     central = solve(study)
     settings, runs = settings_for(study.stability, moving_cage(central, 0.2)), 256
     kick = settings.kicks[1]
@@ -95,8 +95,8 @@ def test_draws_that_make_no_bearing_are_left_out_and_counted():
     shipped = read_study("cryogenic-turbopump").bearing
     largest = 0.9 * shipped.pitch_diameter * np.sin(np.pi / shipped.ball_count)
     given = {
-        "bearing.ball_diameter": Samples(values=(shipped.ball_diameter, largest)),
-        "bearing.pitch_diameter": Samples(values=(0.97 * shipped.pitch_diameter, shipped.pitch_diameter)),
+        "bearing.ball_diameter": samples(values=(shipped.ball_diameter, largest)),
+        "bearing.pitch_diameter": samples(values=(0.97 * shipped.pitch_diameter, shipped.pitch_diameter)),
     }
     found = drawn_bearings(with_distributions(study_of(0.1), given), 16)
     assert 0 < len(found.failures) < 16
@@ -111,7 +111,7 @@ def test_rank_shows_both_verdicts_only_where_inputs_are_uncertain():
     certain = replace(certain, stability=replace(certain.stability, **few))
     row = rank(certain, runner=Runner(jobs=2)).environments[0].materials[0]
     assert row.over_inputs is None
-    uncertain = with_distributions(certain, {"cage.mass": Normal(mean=0.025, standard_deviation=0.002)})
+    uncertain = with_distributions(certain, {"cage.mass": normal(mean=0.025, standard_deviation=0.002)})
     row = rank(uncertain, runner=Runner(jobs=2)).environments[0].materials[0]
     both = row.judgement.verdict, row.over_inputs.verdict
     assert (*both, row.over_inputs.runs) == (Verdict.STABLE, Verdict.STABLE, 4)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from separatrix.friction.friction_file import FrictionFile, FrictionTest, Place, friction_text
 from separatrix.friction.friction_fit import fit_friction
-from separatrix.ground.reader import read
+from separatrix.ground.reader import read_text
 
 FRICTION = st.floats(0.01, 1.0)
 POSITIVE = st.floats(1e-3, 100.0)
@@ -31,15 +31,13 @@ TESTS = st.lists(st.tuples(FRICTION, POSITIVE), min_size=1, max_size=8)
     TEXT, TEXT, TEXT, FRICTION, POSITIVE, POSITIVE, POSITIVE, st.sampled_from(["time", "distance", "cycles"])
 )
 @settings(max_examples=60, deadline=None)
-def test_what_is_written_is_read(tmp_path_factory, material, sample, flag, friction, v, p, end, axis):
+def test_what_is_written_is_read(material, sample, flag, friction, v, p, end, axis):
     """Any printable words and any numbers come back as they were."""
     test = FrictionTest(
         material=material, counterface="440C", medium="air", friction=friction, slip_speed=(v, 2.0 * v),
         pressure=(1e6 * p, 1e6 * p), sample=sample, flags=(flag,), run_in_end=Place(axis, end),
     )  # fmt: skip
-    path = tmp_path_factory.mktemp("friction") / "friction.toml"
-    path.write_text(friction_text([test]), encoding="utf-8")
-    assert read(FrictionFile, path).value.test == (test,)
+    assert read_text(FrictionFile, friction_text([test]), "friction.toml").value.test == (test,)
 
 
 @given(TESTS, st.floats(0.2, 5.0), POSITIVE)

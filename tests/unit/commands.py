@@ -17,8 +17,9 @@ from separatrix.friction.friction_file import FrictionFile, FrictionTest
 from separatrix.friction.logs.column_map import ColumnMap
 from separatrix.front import main
 from separatrix.front.page.worker import work
+from separatrix.ground import toml
 from separatrix.ground.errors import InputError
-from separatrix.ground.reader import Document, read, read_document
+from separatrix.ground.reader import Document, read_document, read_text
 from separatrix.study.reading import read_study
 from separatrix.verdict.ledger import NAME
 
@@ -100,7 +101,8 @@ def column_map(document: dict, source: str = "column map") -> ColumnMap:
 
 def read_friction(path: Path) -> tuple[FrictionTest, ...]:
     """Return the tests of a friction file."""
-    return read(FrictionFile, path).value.test
+    text = toml.read_text(path, FrictionFile.FILE)
+    return read_text(FrictionFile, text, path.name).value.test
 
 
 def rows_of(table: str) -> list[tuple[str, list[str]]]:

@@ -56,7 +56,7 @@ gravity = "1 g0"
 added_mass = "0.1 g"
 
 [stability]
-kicks = ["2 m/s", "0.1 m/s"]
+kicks = ["0.1 m/s", "2 m/s"]
 reference_kick = "0.5 m/s"
 runs = 32
 axial_kick = 0.1

@@ -22,7 +22,7 @@ from separatrix.front.console import one_line
 from separatrix.ground.compiled import part
 from separatrix.ground.compiling import COMPILING
 from separatrix.ground.errors import InputError
-from separatrix.ground.files import LEFT, staged, writable_folder
+from separatrix.ground.files import staged, writable_folder
 from separatrix.verdict import long_jobs
 
 COMMAND = [sys.executable, "-m", "separatrix"]
@@ -215,30 +215,6 @@ def write_half(folder: Path) -> None:
     with staged(folder) as stage:
         (stage / "a").write_text("new")
         raise RuntimeError
-
-
-KILLED = """
-import os, pathlib, signal, sys
-from separatrix.ground.files import staged
-with staged(pathlib.Path(sys.argv[1])) as stage:
-    (stage / "half").write_text("written")
-    print(stage.name, flush=True)
-    os.kill(os.getpid(), signal.SIGKILL)
-"""
-
-
-def test_what_a_killed_process_left_is_removed_a_day_later(tmp_path):
-    """Its hidden folder goes; a younger one, which may be that of a living process, stays."""
-    (tmp_path / "kept").write_text("")
-    one = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], capture_output=True, text=True)
-    assert one.returncode == -signal.SIGKILL
-    left = tmp_path / one.stdout.strip()
-    assert (left / "half").exists()
-    for age, here in ((0.0, {"kept", "whole", left.name}), (LEFT + 60.0, {"kept", "whole"})):
-        os.utime(left, (time.time() - age,) * 2)
-        with staged(tmp_path) as stage:
-            (stage / "whole").write_text("")
-        assert {path.name for path in tmp_path.iterdir()} == here
 
 
 def test_staged_files_come_all_or_none(tmp_path):

@@ -79,8 +79,9 @@ def test_only_four_keys_are_needed(tmp_path):
     code = (
         "import sys, json; from pathlib import Path\n"
         "from separatrix.friction.friction_file import FrictionFile\n"
-        "from separatrix.ground.reader import read\n"
-        "read(FrictionFile, Path(sys.argv[1])); print(json.dumps('numpy' in sys.modules))"
+        "from separatrix.ground.reader import read_text\n"
+        "read_text(FrictionFile, Path(sys.argv[1]).read_text(), '')\n"
+        "print(json.dumps('numpy' in sys.modules))"
     )
     found = run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     assert json.loads(found.stdout) is False

@@ -16,7 +16,6 @@ from separatrix.front import main
 from separatrix.study import sources
 from separatrix.study.reading import read_study
 from separatrix.study.sources import provenance_of
-from separatrix.study.template import template_workbook
 
 FEW = "[stability]\nruns = 2\nduration = '5 ms'\nkicks = ['0.5 m/s']\nrestitution_factors = [0.3]\n"
 BASE = "extends = 'cryogenic-turbopump'\ntitle = 'Base \u00b5'\n"
@@ -37,7 +36,6 @@ ASKED = [
     ("bearing", "ball-218"),
     ("bearing", "lox-turbopump-radial"),
     ("restitution", "sub/variant.toml"),
-    ("check", "book.xlsx"),
     ("check", "tested.toml"),
     ("simulate", "sub/variant.toml", "--kick", "0.3 m/s", "--run", "3", "--model", "paper"),
     ("stability", "sub/variant.toml"),
@@ -56,7 +54,6 @@ def home(folder: Path) -> Path:
     (far / "mine.toml").write_text(LIBRARY)
     (own / "base.toml").write_bytes((BASE + FEW).replace("\n", "\r\n").encode())
     (own / "sub" / "variant.toml").write_text(f"extends = '../base.toml'\nlibrary = '{far / 'mine.toml'}'\n")
-    (own / "book.xlsx").write_bytes(template_workbook())
     (own / "tested.toml").write_text(
         "extends = 'cryogenic-turbopump'\n[ranking]\nfriction = 'friction.toml'\n"
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from separatrix.chain.equilibrium import Equilibrium
 from separatrix.chain.impact_restitution import hertz_coefficient_for
-from separatrix.friction.prediction import Friction
+from separatrix.friction.friction_law import Friction
 from separatrix.ground.units import (
     Array,
     Kilogram,

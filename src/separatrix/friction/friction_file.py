@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from typing import ClassVar, NamedTuple
 
-from separatrix.friction.prediction import FRICTION_LIMIT, LEAST_FRICTION
 from separatrix.ground import units
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
@@ -35,6 +34,10 @@ from separatrix.ground.units import (
     format_quantity,
     shown,
 )
+
+FRICTION_LIMIT = 2.0
+LEAST_FRICTION = 1e-5
+"""The least that is a measurement: of frictions that scatter the logarithm is taken."""
 
 UNITS = {"time": "s", "distance": "m", "cycles": "cycles"}
 """The abscissae, of which a log has at least one, and the unit in which a friction file writes each."""

@@ -10,23 +10,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import exp, hypot, sqrt
+from typing import Unpack
 
 import numpy as np
 
 from separatrix.friction.friction_file import CONDITIONS, PRODUCT, FrictionTest
 from separatrix.friction.friction_law import (
+    Asked,
     Covariates,
+    Prediction,
     Range,
     at_temperature,
     covariates,
     limited,
-    other_medium,
     tested_range,
     values_of,
 )
-from separatrix.friction.prediction import Prediction
 from separatrix.friction.scatter import LinearModel, Posterior, posteriors
-from separatrix.ground.units import Array, Kelvin, MetrePerSecond, Pascal, Ratio
+from separatrix.ground.units import Array, Kelvin, Ratio
 
 DEFAULT_SCATTER: Ratio = 0.09
 """Standard deviation that an unrepeated test is assumed to have, as a share of its mean: a guess. A 25 %
@@ -62,38 +63,28 @@ class MaterialFit:
     scatter_source: str
     is_assumed: bool
 
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None = None,
-        pressure: Pascal | None = None,
-        temperature: Kelvin | None = None,
-        medium: str | Sequence[str] | None = None,
-    ) -> Prediction:
-        """Friction predicted for these conditions; one that is None stays at the middle of the tests.
-
-        The medium may be given by several names: a test under any of them was run in it.
+    def at(self, **asked: Unpack[Asked]) -> Prediction:
+        """Friction predicted for these conditions; one that is not known stays at the middle of the tests.
 
         Outside the tests the mean stays that of the nearest tested condition, the standard deviation
         grows by a stated rule (`separatrix.friction.friction_law`), and `extrapolation` reports it.
         """
-        conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
         # how steep friction may be, from the measured slopes and their errors
         steep = {name: sqrt(s.value**2 + s.standard_error**2) for name, s in self.slopes.items()}
         if PRODUCT in steep:
             steep = dict.fromkeys(("slip_speed", "pressure", PRODUCT), steep[PRODUCT])
-        values, sentences, widening = limited(conditions, self.ranges, steep)
+        media = tuple(dict.fromkeys(test.medium for test in self.tests))
+        values, sentences, widening = limited(asked, self.ranges, steep, media)
         chosen = self.covariates  # conditions that are not given stay at their centre
         middle = {name: exp(centre) for name, centre in zip(chosen.names, chosen.centres, strict=True)}
         contrast = np.array(chosen.row({**middle, **values}))
         log_mean, error = self.posterior.moments(contrast)
         mean = exp(log_mean)
-        media = tuple(dict.fromkeys(test.medium for test in self.tests))
         return Prediction(
             mean=mean,
             standard_error=mean * error,
             standard_deviation=mean * hypot(self.scatter, widening),
-            extrapolation=(*sentences, *other_medium(medium, media)),
+            extrapolation=sentences,
             widening=mean * widening,
             assumed_scatter=self.is_assumed,
         )
@@ -213,14 +204,6 @@ class TestedFriction:
         tests = at_temperature(self.tests, temperature)
         return fit_friction(tests, self.default_scatter).of(self.material, self.environment)
 
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None = None,
-        pressure: Pascal | None = None,
-        temperature: Kelvin | None = None,
-        medium: str | Sequence[str] | None = None,
-    ) -> Prediction:
+    def at(self, **asked: Unpack[Asked]) -> Prediction:
         """Friction predicted for these conditions, as `MaterialFit.at`."""
-        fitted = self.fitted(temperature)
-        return fitted.at(slip_speed=slip_speed, pressure=pressure, temperature=temperature, medium=medium)
+        return self.fitted(asked.get("temperature")).at(**asked)

@@ -8,14 +8,83 @@ tested). Nothing here imports numpy: a study is read without fitting anything.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import hypot, log, sqrt
 from statistics import correlation
+from typing import ClassVar, Protocol, TypedDict, Unpack
 
-from separatrix.friction.friction_file import CONDITIONS, PRODUCT, WORDS, FrictionTest
-from separatrix.friction.prediction import Prediction
+from separatrix.friction.friction_file import (
+    CONDITIONS,
+    FRICTION_LIMIT,
+    LEAST_FRICTION,
+    PRODUCT,
+    WORDS,
+    FrictionTest,
+)
+from separatrix.ground.schema import between, key, not_negative, record
 from separatrix.ground.units import Kelvin, MetrePerSecond, Pascal, Ratio, format_quantity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """Friction that tests predict for stated conditions: log-normal about `mean`."""
+
+    mean: Ratio  # the material's friction, its median
+    standard_error: Ratio  # how well that mean is known from the tests
+    standard_deviation: Ratio  # of a new sample about it, widened where the conditions were not tested
+    extrapolation: tuple[str, ...] = ()  # in what respect the conditions were not tested, in words
+    widening: Ratio = 0.0  # what these add to the standard deviation, in quadrature
+    assumed_scatter: bool = False  # whether no repeated test shows the scatter
+
+
+class Asked(TypedDict, total=False):
+    """Conditions for which a friction is predicted; one that is None or left out is not known."""
+
+    slip_speed: MetrePerSecond | None
+    pressure: Pascal | None
+    temperature: Kelvin | None
+    medium: str | Sequence[str] | None
+    """By one name, or by all its names: a test under any of them was run in it."""
+
+
+class FrictionLaw(Protocol):
+    """Friction as a function of the conditions, from tests, as `friction_fit.TestedFriction`."""
+
+    def at(self, **asked: Unpack[Asked]) -> Prediction:
+        """Friction for these conditions."""
+
+
+GIVEN = "given in the study"
+
+
+@record
+class Friction:
+    """A measured ball/cage friction: its mean and, if known, its scatter.
+
+    `standard_deviation` is that of single tests or samples; `standard_error` that of the mean, where it is
+    not the former over the root of `count`. `law` is what knows more: friction over the conditions.
+    `extrapolation` says in words in what respect a friction was asked for where nothing was tested;
+    `widening` is the part of the standard deviation that stands for it.
+    """
+
+    SHORT: ClassVar = "mean"
+
+    mean: Ratio = key(between(0.0, FRICTION_LIMIT), certain=True, example="0.12")
+    standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None, certain=True)
+    count: int | None = key(between(1, 1e9), default=None, certain=True)
+    source: str = key(default=GIVEN, letters=(1, 2000))
+    standard_error: Ratio | None = None
+    assumed_scatter: bool = False
+    extrapolation: tuple[str, ...] = ()
+    widening: Ratio = 0.0
+    law: FrictionLaw | None = field(default=None, compare=False, repr=False)
+    confidence: str = GIVEN
+
+
+SCATTER_RULE = f"must be >= {LEAST_FRICTION:g} where there is a standard deviation [-]"
+SCATTER_CURE = "A friction of 0 that scatters is no measurement: give its mean, or { between = [..., ...] }."
+
 
 LEAST_SPAN = 1.2
 """Ratio of the largest to the smallest value from which tests span a condition; nearer than that
@@ -146,13 +215,19 @@ TEMPERATURE_SLACK = 5.0  # the same for temperature, as a difference [K]
 
 
 def limited(
-    conditions: Mapping[str, float | None], ranges: Mapping[str, Range | None], exponents: Mapping[str, float]
+    asked: Asked, ranges: Mapping[str, Range | None], exponents: Mapping[str, float], media: Sequence[str]
 ) -> tuple[Mapping[str, float], tuple[str, ...], Ratio]:
     """Conditions within the tested ranges, sentences on those outside, and the widening that these cost.
 
     Also of pV, where speed and pressure are both known: each may have been tested, and both together not. The
-    exponent of the widening is that of `EXPONENTS`, or the given one where it is larger.
+    exponent of the widening is that of `EXPONENTS`, or the given one where it is larger. A medium in which no
+    test was run has a sentence; its effect has no number.
     """
+    conditions = {
+        "slip_speed": asked.get("slip_speed"),
+        "pressure": asked.get("pressure"),
+        "temperature": asked.get("temperature"),
+    }
     values: dict[str, float] = {}
     sentences, widening = [], 0.0
     for name in (*conditions, PRODUCT):
@@ -173,15 +248,12 @@ def limited(
         sentences.append(_sentence(value, limits, name))
         exponent = max(exponents.get(name, 0.0), EXPONENTS[name])
         widening = hypot(widening, exponent * log(value / values[name]))
+    medium = asked.get("medium") or ()
+    names = (medium,) if isinstance(medium, str) else medium
+    tested = {one.strip().casefold() for one in media}
+    if names and tested and tested.isdisjoint(name.strip().casefold() for name in names):
+        sentences.append(f"tested in {', '.join(media)}, not in {names[0]}")
     return values, tuple(sentences), widening
-
-
-def other_medium(medium: str | Sequence[str] | None, tested: Iterable[str]) -> tuple[str, ...]:
-    """Sentence on a medium in which no test was run, given by all its names; its effect has no number."""
-    names = (medium,) if isinstance(medium, str) else tuple(medium or ())
-    if not names or {name.strip().casefold() for name in names} & {one.strip().casefold() for one in tested}:
-        return ()
-    return (f"tested in {', '.join(tested)}, not in {names[0]}",)
 
 
 def _sentence(value: float, limits: Range, name: str) -> str:
@@ -214,24 +286,16 @@ class StatedFriction:
     medium: str | None = None
     default_scatter: Ratio
 
-    def at(
-        self,
-        *,
-        slip_speed: MetrePerSecond | None = None,
-        pressure: Pascal | None = None,
-        temperature: Kelvin | None = None,
-        medium: str | Sequence[str] | None = None,
-    ) -> Prediction:
+    def at(self, **asked: Unpack[Asked]) -> Prediction:
         """Friction predicted for these conditions: the printed mean, and what of them was not tested."""
-        conditions = {"slip_speed": slip_speed, "pressure": pressure, "temperature": temperature}
-        _, sentences, _ = limited(conditions, self.ranges, {})
+        media = () if self.medium is None else (self.medium,)
+        _, sentences, _ = limited(asked, self.ranges, {}, media)
         stated = self.standard_deviation
         scatter = self.default_scatter * self.mean if stated is None else stated
-        other = () if self.medium is None else other_medium(medium, (self.medium,))
         return Prediction(
             mean=self.mean,
             standard_error=scatter if stated is None else scatter / sqrt(self.count or 1),
             standard_deviation=scatter,
-            extrapolation=(*sentences, *other),
+            extrapolation=sentences,
             assumed_scatter=stated is None,
         )

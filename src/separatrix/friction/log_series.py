@@ -12,15 +12,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from separatrix.friction.friction_file import CONDITIONS, NAMES, FrictionTest, Place, place
+from separatrix.friction.friction_file import CONDITIONS, FRICTION_LIMIT, NAMES, FrictionTest, Place, place
 from separatrix.friction.friction_fit import FrictionFit, fit_friction
 from separatrix.friction.logs import read_log
-from separatrix.friction.logs.column_map import ColumnMap, read_column_map
-from separatrix.friction.logs.conditions import Conditions, of_log
+from separatrix.friction.logs.column_map import ColumnMap, Conditions, of_log, read_column_map
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import ABSCISSAE, MEANINGS
-from separatrix.friction.prediction import FRICTION_LIMIT
-from separatrix.friction.reduction import RUN_IN_END, Cut, Reduction, TestFriction, reduction, with_outliers
+from separatrix.friction.reduction import RUN_IN_END, Reduction, TestFriction, reduction, with_outliers
 from separatrix.ground.errors import InputError, together
 from separatrix.ground.units import format_number, format_quantity, printable, unit_of
 
@@ -59,9 +57,9 @@ class ReducedLogs:
 
 
 def tribometer(
-    paths: str | Path | Sequence[str | Path],
+    paths: Sequence[Path],
     *,
-    column_map: ColumnMap | str | Path | None = None,
+    column_map: ColumnMap | Path | None = None,
     run_in: str | None = None,
     join: bool = False,
     complete: bool = False,
@@ -69,8 +67,8 @@ def tribometer(
     progress: Progress | None = None,
 ) -> ReducedLogs:
     """Read logs of tribometers and reduce each test to its steady friction, as `separatrix.tribometer`."""
-    files = _files([paths] if isinstance(paths, (str, Path)) else paths)
-    chosen = read_column_map(column_map) if isinstance(column_map, (str, Path)) else column_map or ColumnMap()
+    files = _files(paths)
+    chosen = read_column_map(column_map) if isinstance(column_map, Path) else column_map or ColumnMap()
     idle = chosen.unused(files)
     if idle and complete:
         raise together(idle)
@@ -100,10 +98,10 @@ def tribometer(
     )
 
 
-def _files(paths: Sequence[str | Path]) -> list[Path]:
+def _files(paths: Sequence[Path]) -> list[Path]:
     """The files named, and those in the folders named, in the order of their names and numbers."""
     found: list[Path] = []
-    for path in map(Path, paths):
+    for path in paths:
         try:
             is_folder = path.is_dir()
         except OSError:
@@ -175,7 +173,7 @@ def _tests_of(files: Sequence[tuple[Path, Sequence[RawLog]]], *, join: bool) -> 
     return [(parts[0][0], joined([log for _, log in parts])) for parts in tests.values()]
 
 
-def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Cut | None) -> Reduction:
+def _reduced(path: Path, log: RawLog, chosen: ColumnMap, cut: Place | None) -> Reduction:
     try:
         return reduction(log, cut or chosen.conditions(path).get("run_in_end"))
     except InputError as error:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from separatrix.friction import cycles, steady
-from separatrix.friction.friction_file import in_words
-from separatrix.friction.logs.conditions import Conditions, of_log
+from separatrix.friction.friction_file import Place, in_words
+from separatrix.friction.logs.column_map import Conditions, of_log
 from separatrix.friction.logs.log import RawLog
 from separatrix.friction.logs.names import MEANINGS
 from separatrix.friction.steady import LONG, METHOD, RunIn, run_in
@@ -26,9 +26,6 @@ OUTLIER = 1.5  # friction over the median of the others, or the reverse, from wh
 FAR = 5.0  # distance from that median over the usual one, in standard deviations
 RUN_IN_END = "run_in"
 """Where a given end of running-in is refused."""
-
-Cut = tuple[str, float]
-"""A given end of running-in: its abscissa, and the place there in SI units, as from `friction_file.place`."""
 
 
 # --- events and conditions ----------------------------------------------------------------------
@@ -242,12 +239,12 @@ class Reduction:
     mean: steady.SteadyMean
 
 
-def reduce_log(log: RawLog, cut: Cut | None = None) -> TestFriction:
+def reduce_log(log: RawLog, cut: Place | None = None) -> TestFriction:
     """Return the friction of a log with its error; `reduction` returns also what it was made from."""
     return reduction(log, cut).test
 
 
-def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
+def reduction(log: RawLog, cut: Place | None = None) -> Reduction:
     """Return the friction of a log, its error, flags and series; without a cut running-in is looked for.
 
     Raises
@@ -255,10 +252,10 @@ def reduction(log: RawLog, cut: Cut | None = None) -> Reduction:
     InputError
         The log stands still along its abscissa, lacks the abscissa of the cut, or is too short.
     """
-    if cut is not None and cut[0] not in log.abscissae:
+    if cut is not None and cut.axis not in log.abscissae:
         cure = f"Give it in another; the log has {' and '.join(log.abscissae)}."
-        raise InputError(log.source, f"needs a column of {cut[0]}", "none", cure)
-    axis = cut[0] if cut else next(name for name in PREFERRED if name in log.abscissae)
+        raise InputError(log.source, f"needs a column of {cut.axis}", "none", cure)
+    axis = cut.axis if cut else next(name for name in PREFERRED if name in log.abscissae)
     along = cycles.rising(log, axis)
     events = _events(log, along, axis)
     loaded = max((one.row for one in events if not one.is_end), default=0)
@@ -328,7 +325,7 @@ def _test(
 
 
 def _steady(
-    log: RawLog, stretch: cycles.Stretch, kept: slice, given: Cut | None
+    log: RawLog, stretch: cycles.Stretch, kept: slice, given: Place | None
 ) -> tuple[cycles.Stretch, float | None, RunIn | None, tuple[str, ...]]:
     """Return the rows, where on their ruler the steady part begins, how that was found, and notes.
 
@@ -498,3 +495,64 @@ def with_outliers(reductions: Sequence[Reduction]) -> list[Reduction]:
         )
         found[i] = replace(one, test=replace(one.test, flags=(*one.test.flags, flag)))
     return found
+
+
+# --- the series of a test for its plots ----------------------------------------------------------
+COLUMNS = 600
+"""Columns into which the rows of a log are gathered."""
+
+Shares = Annotated[Array, "-"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TestCourse:
+    """Friction along a test, with what the log has beside it; small, whatever the length of the log.
+
+    Places along the test are in the SI unit of its abscissa. A column of rows has their mean; None where all
+    its values are absent.
+    """
+
+    __test__ = False
+
+    along: Array  # where each column of rows begins
+    low: Shares  # least friction of the rows of a column
+    mean: Shares  # their mean
+    high: Shares  # largest friction of these rows
+    normal_force: Annotated[list[float | None] | None, "N"]  # null where the log has none, as below
+    temperature: Annotated[list[float | None] | None, "K"]  # mean of a column
+    wear_depth: Annotated[list[float | None] | None, "m"]  # mean of a column
+    slip_speed: Annotated[list[float | None] | None, "m/s"]
+    span_along: Array  # centres of the spans of the steady part from whose means its error comes
+    span_mean: Shares  # those means
+
+
+def course(one: Reduction) -> TestCourse:
+    """Return the series of a test."""
+    log, spans = one.log, one.spans
+    starts = np.linspace(0, log.rows, min(COLUMNS, log.rows) + 1).astype(np.int64)[:-1]
+    along = np.asarray(getattr(log, one.test.run_in_axis), dtype=float)
+
+    def beside(name: str) -> list[float | None] | None:
+        column = getattr(log, name)
+        return None if column is None else _means(np.asarray(column, dtype=float), starts)
+
+    return TestCourse(
+        along=along[starts],
+        low=np.minimum.reduceat(log.friction, starts),
+        mean=np.add.reduceat(log.friction, starts) / np.diff(np.append(starts, log.rows)),
+        high=np.maximum.reduceat(log.friction, starts),
+        normal_force=beside("normal_force"),
+        temperature=beside("temperature"),
+        wear_depth=beside("wear_depth"),
+        slip_speed=beside("slip_speed"),
+        span_along=np.array([one.stretch.place(float(centre)) for centre in spans.centres]),
+        span_mean=spans.means,
+    )
+
+
+def _means(values: Array, starts: NDArray[np.int64]) -> list[float | None]:
+    """Return the mean of each column that begins at these rows; None where all its values are absent."""
+    there = np.isfinite(values)
+    counts = np.add.reduceat(there.astype(float), starts)
+    sums = np.add.reduceat(np.where(there, values, 0.0), starts)
+    return [float(total / count) if count else None for total, count in zip(sums, counts, strict=True)]

@@ -60,9 +60,6 @@ class SteadyMean:
     degrees_of_freedom: int
     change: Ratio  # of the straight line, from one end of the stretch to the other
     change_error: Ratio  # standard error of `change`
-    corner: float
-    """Half turns of the stretch at which the correlated part of the spectrum has fallen to half [-]."""
-    floor: Ratio  # white part of the spectrum at zero frequency
     long_chance: Ratio  # weight of all spectra whose correlation is too long for the stated interval
     density: float  # spectral density at zero frequency, in units of the squares of `cosines`
 
@@ -98,8 +95,6 @@ def steady_mean(values: Array) -> SteadyMean:
         degrees_of_freedom=count - 1,
         change=float(x @ values / (x @ x)),
         change_error=float(np.sqrt(density / (x @ x))),
-        corner=float(CORNERS[best[0]]),
-        floor=float(FLOORS[best[1]]),
         long_chance=float(weights[np.ix_(CORNERS < LONG, FLOORS < MIXED)].sum()),
         density=density,
     )

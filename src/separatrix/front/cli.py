@@ -54,18 +54,18 @@ separatrix rank cryogenic-turbopump
 class NewOptions:
     """What `new` takes."""
 
-    path: Annotated[Path, Option("The file to make: .toml, or .xlsx for a workbook.", "PATH", True)]
+    path: Annotated[Path, Option("The file to make; its name ends in .toml.", "PATH", True)]
 
 
 def _new(given: Given) -> int:
     path = given["path"]
-    if path.suffix not in (".toml", ".xlsx") or path.is_dir():
-        cure = 'Name a file like "my-bearing.toml", or "my-bearing.xlsx" for a workbook.'
-        raise InputError(str(path), "must name a file that ends in .toml or .xlsx", cure=cure)
+    if path.suffix != ".toml" or path.is_dir():
+        cure = 'Name a file like "my-bearing.toml".'
+        raise InputError(str(path), "must name a file that ends in .toml", cure=cure)
     refuse_existing(path)
-    from separatrix.study.template import template, template_workbook
+    from separatrix.study.template import template
 
-    write_new(path, template().encode() if path.suffix == ".toml" else template_workbook())
+    write_new(path, template().encode())
     if given["json"]:
         answer_json({"path": str(path)})
     elif not given["quiet"]:

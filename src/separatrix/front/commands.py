@@ -44,7 +44,7 @@ MOST_JOBS = 1024
 class Beside:
     """What commands take beside the options of their verbs."""
 
-    study: Annotated[str, Option("A study file or workbook, or the name of a shipped study.", "STUDY", True)]
+    study: Annotated[str, Option("A study file, or the name of a shipped study.", "STUDY", True)]
     model: Annotated[
         str | None,
         Option("The best estimate or the paper's method [default: that of the study].", "full|paper"),

@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import stat
 import tempfile
-import time
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -77,27 +75,14 @@ def unreadable(where: str, error: OSError | ValueError) -> InputError:
 _AHEAD = ".separatrix-"
 """Beginning of the names of folders and files written aside."""
 
-LEFT = 86_400.0
-"""Age from which what was written aside is of a killed process [s]: writing takes seconds."""
-
-
-def _remove_left_behind(folder: Path) -> None:
-    """Remove what killed processes wrote aside."""
-    for path in folder.glob(f"{_AHEAD}*"):
-        with contextlib.suppress(OSError):  # another process may remove it too
-            if path.lstat().st_mtime < time.time() - LEFT:
-                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-
 
 @contextmanager
 def staged(folder: Path) -> Iterator[Path]:
     """Yield a folder inside `folder` to write into; at the end its files take their places, all or none.
 
-    Those of processes that were killed a day ago are removed first. A folder that cannot be written is
-    refused.
+    A folder that cannot be written is refused.
     """
     try:
-        _remove_left_behind(folder)
         with tempfile.TemporaryDirectory(dir=folder, prefix=_AHEAD) as stage:
             yield Path(stage)
             for path in sorted(Path(stage).iterdir()):

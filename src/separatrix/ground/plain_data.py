@@ -12,7 +12,6 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from separatrix.ground.document import Document as Document
 from separatrix.ground.errors import SeparatrixError
 from separatrix.ground.schema import Spelled
 from separatrix.ground.units import Rows

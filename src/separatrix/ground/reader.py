@@ -1,9 +1,9 @@
-"""One reader of the files that people write: ``read(Schema, path) -> Loaded(value, sources, notes)``.
+"""One reader of the files that people write: ``read_text(Schema, text, label) -> Loaded``.
 
-From a TOML file, a workbook or a file over the one that it extends, to the record of its schema: keys to
-values by their types, all mistakes at once, each with its line, key, rule, value and cure. The rules
-themselves are in `schema`. A mistake carries the path of its key, and `Document` has the place of a path: a
-line of a file, or a cell of a sheet. Uncertain numbers and names of a library are read by a `Helper`.
+From a TOML file, perhaps over the one that it extends, to the record of its schema: keys to values by their
+types, all mistakes at once, each with its line, key, rule, value and cure. The rules themselves are in
+`schema`. A mistake carries the path of its key, and `Document` has the place of a path: a line of a file.
+Uncertain numbers and names of a library are read by a `Helper`.
 """
 
 from __future__ import annotations
@@ -57,27 +57,12 @@ class Helper(Protocol):
         """Record of a library that a text names, or None if the value is not a name."""
 
 
-class Origin(Enum):
-    """Who gave a value."""
-
-    GIVEN = "given"
-    DEFAULT = "default"
-
-
-class Source(NamedTuple):
-    """Where a value comes from: its place and its text in a file, or the reason of a default."""
-
-    origin: Origin
-    place: str = ""
-    text: str = ""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loaded(Generic[Schema]):
-    """A record, the source of each of its values, and notes on what is right but has no effect."""
+    """A record, the place of each value that is given, and notes on what is right but has no effect."""
 
     value: Schema
-    sources: Mapping[KeyPath, Source]
+    places: Mapping[KeyPath, str]
     notes: tuple[str, ...] = ()
     distributions: Mapping[KeyPath, Any] = field(default_factory=dict)
     """Of the uncertain numbers, which have their means in the record."""
@@ -95,7 +80,6 @@ class Document(NamedTuple):
     folders: Mapping[KeyPath, Path] = {}
     """Where the files are that a value names, by the top of its path."""
 
-    notes: tuple[str, ...] = ()
     chain: tuple[tuple[Path, Mapping[str, Any]], ...] = ()
     """The file and those that it extends, each with its own content."""
 
@@ -159,19 +143,14 @@ def _longest(known: Mapping[KeyPath, Made], path: KeyPath, default: Made) -> Mad
     return next((known[part] for part in parts if part in known), default)
 
 
-def read(schema: type[Schema], path: Path) -> Loaded[Schema]:
-    """Record of a file by its schema, whose class variable ``FILE`` has the kind of the file.
+def read_text(schema: type[Schema], text: str, label: str) -> Loaded[Schema]:
+    """Record of the text of a file by its schema, whose class variable ``FILE`` has the kind of the file.
 
     Raises
     ------
     InputError
         Everything that is wrong, a line each: place, key, rule, value, cure.
     """
-    return read_document(schema, document_of(schema, path))
-
-
-def read_text(schema: type[Schema], text: str, label: str) -> Loaded[Schema]:
-    """Record of the text of a file."""
     return read_document(schema, _document_of_text(schema, text, label))
 
 
@@ -187,8 +166,8 @@ def read_document(schema: type[Schema], document: Document, helper: Helper | Non
         value = reading.record(schema, document.data, ())
     except Refused:
         raise together(reading.in_order()) from None
-    notes = (*document.notes, *reading.notes)
-    return Loaded(value=value, sources=reading.sources, notes=notes, distributions=reading.distributions)
+    notes = tuple(reading.notes)
+    return Loaded(value=value, places=reading.places, notes=notes, distributions=reading.distributions)
 
 
 # ---- a file over the file that it extends
@@ -197,12 +176,7 @@ def read_document(schema: type[Schema], document: Document, helper: Helper | Non
 def document_of(schema: type, path: Path, above: tuple[Path, ...] = ()) -> Document:
     """Document of a file, over that of the file that it extends."""
     kind = _kind(schema)
-    if kind.sheets is not None and kind.sheets(path):
-        from separatrix.ground.workbook import read_sheets
-
-        document = read_sheets(schema, path)
-    else:
-        document = _document_of_text(schema, toml.read_text(path, kind), toml.label_of(path))
+    document = _document_of_text(schema, toml.read_text(path, kind), toml.label_of(path))
     folders: dict[KeyPath, Path] = {(): path.parent}
     for name, one in document.data.items():
         folders |= {(name, key): path.parent for key in one} if isinstance(one, dict) else {}
@@ -246,7 +220,6 @@ def _over(schema: type, base: Document, variant: Document) -> Document:
         data=data,
         places={**places, **variant.places},
         folders={**base.folders, **variant.folders},
-        notes=base.notes + variant.notes,
         chain=variant.chain + base.chain,
     )
 
@@ -278,14 +251,14 @@ class Refused(Exception):  # noqa: N818 - it never leaves a reading
 
 @dataclass(slots=True)
 class Reading:
-    """A reading so far: mistakes, notes, sources."""
+    """A reading so far: mistakes, notes, places."""
 
     schema: type
     document: Document
     helper: Helper | None = None
     faults: list[tuple[KeyPath, InputError]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    sources: dict[KeyPath, Source] = field(default_factory=dict)
+    places: dict[KeyPath, str] = field(default_factory=dict)
     distributions: dict[KeyPath, Any] = field(default_factory=dict)
     done: dict[str, Any] = field(default_factory=dict)
     """Values of the keys at the top that were read before."""
@@ -328,8 +301,6 @@ class Reading:
         for name, one in keys.items():  # in the order of the schema: a later key may need an earlier one
             at = (*path, name)
             if name not in raw:
-                text = one.key.without or ("not given" if one.default is None else "")
-                self.sources[at] = Source(Origin.DEFAULT, text=text)
                 continue
             found = self._noted(one.hint, one, raw[name], at)
             values[name] = found
@@ -378,11 +349,10 @@ class Reading:
             self.notes.append(f"{where}: not used, because {other} is {shown(raw[other])}.")
 
     def _noted(self, hint: Any, one: Described, raw: Any, path: KeyPath) -> Any:
-        """Value of a path and its source; `_NOTHING` where it was refused."""
+        """Value of a path; `_NOTHING` where it was refused."""
         if len(self.faults) > MOST_FAULTS:
             return _NOTHING
-        text = raw if isinstance(raw, str) else "" if isinstance(raw, dict | list) else shown(raw)
-        self.sources[path] = Source(Origin.GIVEN, self.document.place(path), text)
+        self.places[path] = self.document.place(path)
         try:
             return self.convert(hint, one, raw, path)
         except InputError as error:
@@ -446,8 +416,7 @@ class Reading:
         if not raw and one.unit and without_unit(hint)[0] is float:
             raise InputError("", "must not be empty", cure="Leave it out, or give its values.")
         one = one._replace(key=replace(one.key, read=None))
-        made = self._each(hint, one, (((*path, i), item) for i, item in enumerate(raw)))
-        return tuple(sorted(made) if one.key.ordered else made)
+        return tuple(self._each(hint, one, (((*path, i), item) for i, item in enumerate(raw))))
 
     def number(self, one: Described, raw: Any, path: KeyPath, hint: type = float) -> float:
         """Number of a key: of an uncertain one the mean."""

@@ -198,9 +198,6 @@ class Key:
     named: str = ""
     """Kind of the library's records that it may name."""
 
-    ordered: bool = False
-    """Whether the numbers of a list are put in rising order."""
-
     read: Callable[[Any, KeyPath, Any], Any] | None = None
     """Reader of a form of its own: from the value, its path and the `reader.Reading` to the field."""
 
@@ -261,7 +258,6 @@ class Described(NamedTuple):
     unit: str
     """SI unit; ``-`` of a ratio, empty of what is not a quantity."""
 
-    is_optional: bool
     default: Any
 
     @property
@@ -300,14 +296,13 @@ def _keys_of(owner: Any, unit: str, bound: Bound | None, hint: str) -> Mapping[s
     for one in fields(owner):
         if "key" not in one.metadata:
             continue
-        optional, is_optional = without_none(types[one.name])
-        plain, own = without_unit(optional)
+        plain, own = without_unit(without_none(types[one.name])[0])
         known: Key = one.metadata["key"]
         if own == OPEN:
             own = unit
             known = Key(bound=bound, hint=hint, without=known.without, length=known.length)
         default = one.default if one.default_factory is MISSING else one.default_factory()
-        found[one.name] = Described(one.name, known, plain, own, is_optional, default)
+        found[one.name] = Described(one.name, known, plain, own, default)
     return found
 
 
@@ -491,7 +486,7 @@ def _of_list(arguments: tuple[Any, ...], one: Described, value: Any, path: KeyPa
         if first > second if is_pair else one.key.rising and first >= second:
             got = f"{format_quantity(second, one.unit)} after {format_quantity(first, one.unit)}"
             rule = "must have the lowest value first" if is_pair else "must be strictly increasing"
-            yield Fault(path, rule, "" if is_pair else one.key.hint, got)
+            yield Fault(path, rule, got=got)
             return
 
 

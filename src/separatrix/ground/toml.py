@@ -43,9 +43,6 @@ class Kind:
     shipped: Callable[[], Mapping[str, Path]] = dict
     """Files that `extends` may name without a path."""
 
-    sheets: Callable[[Path], bool] | None = None
-    """Whether a file of this kind is a workbook; None: none is."""
-
 
 STUDY = Kind()
 
@@ -146,6 +143,8 @@ def read_text(path: Path, kind: Kind = STUDY) -> str:
         raise unreadable(path_text(path), error) from None
     if len(raw) > kind.most_bytes:
         raise InputError(label, f"is larger than {kind.noun} can be, {kind.most_bytes // 1024} kB")
+    if raw.startswith(b"PK"):
+        raise InputError(label, f"is a workbook or another zip file: {kind.noun} is text", cure=kind.empty)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

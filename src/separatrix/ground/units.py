@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, NamedTuple, get_type_hints
 
@@ -161,7 +162,7 @@ UNITS: dict[str, dict[str, str]] = {
         "ksi": "44482216152605/6451600",
     },
     "kg/m3": {"kg/m3": "1", "g/cm3": "1e3", "kg/dm3": "1e3"},
-    "m/s": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": "1/3.6"},
+    "m/s": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": "5/18"},
     "m/s2": {"m/s2": "1", "mm/s2": "1e-3", "g0": "9.80665"},
     "K": {"K": "1", "degC": "1 + 273.15", "°C": "1 + 273.15", "degF": "5/9 + 459.67"},
     "m/m/K": {"m/m/K": "1", "um/m/K": "1e-6", "ppm/K": "1e-6"},
@@ -272,26 +273,14 @@ def printable(text: str, longest: int = LONGEST) -> str:
 
 def _scaled(number: str, scale: str, text: str, where: str) -> float:
     factor, _, offset = scale.removesuffix(" pi").partition(" + ")
-    (a, b), (c, d), (e, f) = _integers(number), _integers(offset or "0"), _integers(factor)
-    top, bottom = (a * d + c * b) * e, b * d * f
+    exact = (Fraction(number) + Fraction(offset or 0)) * Fraction(factor)
     try:
-        value = top / bottom * (math.pi if scale.endswith(" pi") else 1.0)  # of integers: rounded once
+        value = float(exact) * (math.pi if scale.endswith(" pi") else 1.0)  # rounded once
     except OverflowError:
         value = math.inf
-    if math.isinf(value) or (value == 0.0 and top != 0):
+    if math.isinf(value) or (value == 0.0 and exact != 0):
         raise InputError(where, "must be a number that a computer can hold", shown(text))
     return value
-
-
-def _integers(text: str) -> tuple[int, int]:
-    """Numerator and denominator of a decimal number, or of a ratio; `fractions` takes long to import."""
-    if "/" in text:
-        (a, b), (c, d) = map(_integers, text.split("/"))
-        return a * d, b * c
-    mantissa, _, exponent = text.lower().partition("e")
-    whole, _, part = mantissa.partition(".")
-    power = int(exponent or 0) - len(part)
-    return int(whole + part) * 10 ** max(power, 0), 10 ** max(-power, 0)
 
 
 def missing_unit(value: object, unit: str, where: str) -> InputError:

@@ -8,7 +8,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Any, ClassVar, cast
 
-from separatrix.friction.prediction import FRICTION_LIMIT
+from separatrix.friction.friction_file import FRICTION_LIMIT
 from separatrix.ground.reader import Reading
 from separatrix.ground.schema import (
     Fault,

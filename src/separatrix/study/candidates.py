@@ -9,16 +9,15 @@ from math import exp, log
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from separatrix.friction.friction_file import CONDITIONS, FrictionFile
-from separatrix.friction.friction_law import StatedFriction
-from separatrix.friction.prediction import LEAST_FRICTION, SCATTER_CURE, SCATTER_RULE, Friction
+from separatrix.friction.friction_file import CONDITIONS, LEAST_FRICTION, FrictionFile
+from separatrix.friction.friction_law import SCATTER_CURE, SCATTER_RULE, Friction, StatedFriction
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Elsewhere, Reading, Refused, read_text
 from separatrix.ground.schema import Fault, Faults, between, check, key, one_of, record
 from separatrix.ground.toml import KeyPath, folded, label_of, nearest
 from separatrix.ground.units import Kelvin, Ratio, shown
 from separatrix.study.ball_bearing import NAMELESS, Material
-from separatrix.study.distribution import Normal
+from separatrix.study.distribution import NORMAL
 from separatrix.study.library import FrictionTable, Library
 from separatrix.study.uncertain import deviation_of, helper_of, number, temperature_of
 
@@ -32,7 +31,7 @@ MOST_CANDIDATES = 1000
 
 def read_friction_value(raw: Any, path: KeyPath, reading: Reading) -> Friction:
     """A friction: a number, a table with mean, standard_deviation and count, or a distribution."""
-    if isinstance(raw, dict) and not {"between", "samples"} & set(raw):
+    if isinstance(raw, dict) and "between" not in raw:
         given, width = dict(raw), raw.get("standard_deviation")
         if isinstance(width, str) and "%" in width:
             given["standard_deviation"] = deviation_of(width, raw.get("mean"), "-")
@@ -43,7 +42,7 @@ def read_friction_value(raw: Any, path: KeyPath, reading: Reading) -> Friction:
         return reading.record(Friction, {"mean": mean}, path)
     known = reading.record(Friction, {"mean": mean, "standard_deviation": found.standard_deviation}, path)
     reading.distributions[path] = found
-    return _above_zero(known) if isinstance(found, Normal) else known
+    return _above_zero(known) if found.kind == NORMAL else known
 
 
 def _above_zero(friction: Friction) -> Friction:
@@ -179,7 +178,7 @@ def _tested(
             environments, frictions = _of_file(content, section, temperature)
         else:
             name = helper.known(name, "friction table", FROM_LOGS)
-            found = helper.library.friction_table(name).content
+            found = helper.library.record("friction table", name).content
             environments = found.columns
             frictions = {
                 row: {env: f and _stated(f, env, found, section.friction_scatter) for env, f in each.items()}

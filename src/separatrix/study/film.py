@@ -6,7 +6,7 @@ from enum import Enum
 from itertools import pairwise
 from typing import ClassVar
 
-from separatrix.friction.prediction import FRICTION_LIMIT
+from separatrix.friction.friction_file import FRICTION_LIMIT
 from separatrix.ground.schema import (
     Fault,
     Faults,

@@ -11,7 +11,7 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.schema import OneOf, keys_of
 from separatrix.ground.toml import nearest
 from separatrix.ground.units import format_quantity, shown
-from separatrix.study.distribution import Distribution, LogNormal, Normal, described, positive_alternative
+from separatrix.study.distribution import LOG_NORMAL, NORMAL, Distribution, described, positive_alternative
 from separatrix.study.study import SECTIONS as SECTIONS
 from separatrix.study.study import Material, Study, Wear, key_of
 
@@ -186,7 +186,7 @@ def _refusal(study: Study, number: StudyNumber, distribution: Distribution) -> I
 
     Of a candidate's friction only the mean is stated: the tail of its log-normal scatter is taken as it is.
     """
-    if number.is_friction and isinstance(distribution, LogNormal):
+    if number.is_friction and distribution.kind == LOG_NORMAL:
         return None
     put = setter(study, [number.key])
     for side, end in (("lower", distribution.low), ("upper", distribution.high)):
@@ -195,7 +195,7 @@ def _refusal(study: Study, number: StudyNumber, distribution: Distribution) -> I
         except InputError as error:
             at = f"at the {side} end, {format_quantity(end, number.unit or '-')}"
             rule = f"leaves the range that the study takes {at}: {error.path} {error.rule}"
-            wide = isinstance(distribution, Normal | LogNormal)
+            wide = distribution.kind in (NORMAL, LOG_NORMAL)
             cure = "Make it narrower, or write { between = [..., ...] }." if wide else "Narrow it."
             got = distribution.text or described(distribution, number.unit)
             return InputError(number.key, rule, got, cure)

@@ -1,4 +1,4 @@
-"""Study files: TOML, or a workbook, whose every dimensional value is text with its unit.
+"""Study files: TOML whose every dimensional value is text with its unit.
 
 Keys and rules are those of the records (`study.Study` is the schema); docs/reference/study-file.md has them.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from separatrix.ground.errors import InputError, together
-from separatrix.ground.reader import Document, Loaded, Origin, document_of, read_document
+from separatrix.ground.reader import Document, Loaded, document_of, read_document
 from separatrix.ground.schema import Made, built, defaults_of
 from separatrix.ground.toml import KeyPath, label_of, path_text, read_text
 from separatrix.ground.units import printable, shown
@@ -20,8 +20,8 @@ from separatrix.study.candidates import candidate_named, fitting_environment
 from separatrix.study.cautions import cautions
 from separatrix.study.distribution import Distribution
 from separatrix.study.keys import MOST_DISTRIBUTIONS, settled_in
-from separatrix.study.library import Content, Library, beside, joined, library_files, library_of_text
-from separatrix.study.study import CageModel, Study, shipped_studies, stiffness_is_known
+from separatrix.study.library import BESIDE, Content, Library, joined, library_of_text
+from separatrix.study.study import CageModel, Study, shipped_studies
 from separatrix.study.uncertain import StudyHelper, written
 
 FROM_BEARING = "that of [operation] fluid and of [bearing] ball_material or ring_material"
@@ -103,15 +103,14 @@ def _study_of(
     fluid, table = library.fluid(study.operation.fluid or ""), document.written(("ranking", "friction"))
     values["fluid"] = None if fluid is None else fluid.plain()
     if known := library.named("friction table", table if isinstance(table, str) else ""):
-        values["friction_table"] = library.friction_table(known).plain()
+        values["friction_table"] = library.record("friction table", known).plain()
     if study.cage is not None:
         named = candidate_named(study, document.written(("cage", "material")))
         values["cage"] = built_with(study.cage, material_name=named)
     if environment := fitting_environment(study, library):
         values["ranking"] = built_with(study.ranking, environment=environment)
         values["origins"]["ranking.environment"] = FROM_BEARING
-    study, left_out = _without_unknown_stiffness(built_with(study, **values), document)
-    return _with_distributions(study, loaded, document), (*loaded.notes, *left_out)
+    return _with_distributions(built_with(study, **values), loaded, document), loaded.notes
 
 
 def built_with(record: Made, **changes: object) -> Made:
@@ -123,20 +122,9 @@ def _where(document: Document, path: KeyPath) -> str:
     return f"{document.place(path)}: {document.name(path)}"
 
 
-def _without_unknown_stiffness(study: Study, document: Document) -> tuple[Study, list[str]]:
-    """The study without its cage where nothing gives the stiffness of its pockets; and a note on that."""
-    faults = list(stiffness_is_known(study.cage, study.ranking)) if study.cage else []
-    if not faults:
-        return study, []
-    where = _where(document, ("cage", "ball_cage_stiffness"))
-    refusal = InputError(where, faults[0].rule, cure=faults[0].cure)
-    note = f"{where} {refusal.rule}: the section is left out, and verbs that need it are refused."
-    return built_with(study, cage=None, left_out=refusal), [note]
-
-
 def _with_distributions(study: Study, loaded: Loaded[Study], document: Document) -> Study:
     """The study with the distributions of its uncertain numbers, each fitting its place."""
-    found = {path: one for path, one in loaded.distributions.items() if path[0] != "cage" or study.cage}
+    found = loaded.distributions
     if len(found) > MOST_DISTRIBUTIONS:
         rule = f"has more than {MOST_DISTRIBUTIONS} uncertain numbers"
         cure = "Make those certain that matter least."
@@ -170,13 +158,12 @@ def number_name(study: Study, path: KeyPath) -> str:
 def _origins(loaded: Loaded[Study], document: Document) -> dict[str, str]:
     """Place and text of every given key of a section, and what follows from others."""
     origins: dict[str, str] = {}
-    for path, source in loaded.sources.items():
-        is_key = len(path) == 2 or path[:2] == ("film", "wear")
-        if source.origin is not Origin.GIVEN or not is_key:
+    for path, place in loaded.places.items():
+        if len(path) != 2 and path[:2] != ("film", "wear"):
             continue
         value = document.written(path)
         is_plain = not isinstance(value, dict | list) or path in loaded.distributions
-        origins[".".join(map(str, path))] = source.place + (f": {written(value)}" if is_plain else "")
+        origins[".".join(map(str, path))] = place + (f": {written(value)}" if is_plain else "")
     for key, name, follows in DERIVED:
         if key in origins:
             origins = dict.fromkeys(follows, f"derived, from {name}, {origins[key]}") | origins
@@ -207,15 +194,20 @@ def _shipped_names(text: str) -> str:
 
 
 def library_of(document: Document) -> Library:
-    """Library of a study: the shipped records, and those of files beside it or named in it."""
+    """Library of a study: the shipped records, and those of a file beside it and of files named in it."""
     paths: list[Path] = []
     for study, data in document.chain:
-        if study not in shipped_studies().values():
-            paths += beside(study.parent, besides=study)
+        ours = study.parent / BESIDE
+        if study not in shipped_studies().values() and ours.is_file() and ours.resolve() != study.resolve():
+            paths.append(ours)
         given = data.get("library", [])
         for name in given if isinstance(given, list) else [given]:
             if isinstance(name, str) and name.isprintable() and name:  # else the schema refuses it
-                paths += _named(study.parent, name, f"{document.place(('library',))}: library")
+                if not isfile(study.parent / name):
+                    where = f"{document.place(('library',))}: library"
+                    cure = "It is taken from the folder of the study."
+                    raise InputError(where, "does not name a file", shown(name), cure)
+                paths.append(study.parent / name)
     contents = []
     for number, path in enumerate(dict.fromkeys(path.resolve() for path in paths), 1):
         text = read_text(path, Content.FILE)
@@ -224,30 +216,14 @@ def library_of(document: Document) -> Library:
     return joined(contents)
 
 
-def _named(folder: Path, name: str, where: str) -> list[Path]:
-    path = folder / name
-    if not exists(path):
-        cure = "It is taken from the folder of the study."
-        raise InputError(where, "does not name a file or folder", shown(name), cure)
-    found = library_files(path)
-    if not found:
-        raise InputError(where, "names a folder without a .toml file", shown(name))
-    return found
-
-
 def require(study: Study, verb: str, *sections: str) -> None:
-    """Refuse a study that lacks a section which a verb needs; `check` refuses one that was left out, too.
+    """Refuse a study that lacks a section which a verb needs.
 
     Raises
     ------
     InputError
         Names the missing sections, the verb, and where to see what they look like.
     """
-    needs_cage = verb == "check" or "cage" in sections
-    if study.left_out is not None and needs_cage:
-        raise study.left_out
-    for fault in stiffness_is_known(study.cage, study.ranking) if study.cage and needs_cage else ():
-        raise InputError(f"{study.name}: [cage] ball_cage_stiffness", fault.rule, cure=fault.cure)
     missing = [f"[{section}]" for section in sections if getattr(study, section) is None]
     if missing:
         rule = f"is missing; `{verb}` needs it" if len(missing) == 1 else f"are missing; `{verb}` needs them"

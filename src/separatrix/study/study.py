@@ -12,8 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from separatrix.friction.prediction import FRICTION_LIMIT as FRICTION_LIMIT
-from separatrix.friction.prediction import Friction as Friction
+from separatrix.friction.friction_law import Friction as Friction
 from separatrix.ground.errors import InputError
 from separatrix.ground.schema import (
     Fault,
@@ -28,7 +27,6 @@ from separatrix.ground.schema import (
     positive,
     record,
 )
-from separatrix.ground.sheet import is_workbook
 from separatrix.ground.toml import Kind
 from separatrix.ground.units import (
     Kelvin,
@@ -41,7 +39,6 @@ from separatrix.ground.units import (
     Second,
 )
 from separatrix.study import cage_body
-from separatrix.study.ball_bearing import MOST_BALLS as MOST_BALLS
 from separatrix.study.ball_bearing import BallBearing as BallBearing
 from separatrix.study.ball_bearing import Material as Material
 from separatrix.study.cage_design import SCALED
@@ -172,7 +169,6 @@ class StabilitySettings:
         hint=NO_KICK,
         length=(0, 20),
         rising=True,
-        ordered=True,
         without="0.2, 1 and 4 times the reference disturbance",
     )
     """Speeds of the cage's centre at the start."""
@@ -223,7 +219,7 @@ def shipped_studies() -> dict[str, Path]:
 class Study:
     """Everything that was asked, resolved: library names are replaced by their records."""
 
-    FILE: ClassVar = Kind(shipped=shipped_studies, sheets=is_workbook)
+    FILE: ClassVar = Kind(shipped=shipped_studies)
 
     name: str = ""
     title: str = key(default="", example='"My bearing"', without="the name of the file")
@@ -235,10 +231,10 @@ class Study:
         compare=False,
         length=(1, 20),
         single=True,
-        hint="Give the path of a file or a folder, in quotes, or a list of them.",
-        without="materials.toml, and the folder materials, beside the study",
+        hint="Give the path of a file, in quotes, or a list of them.",
+        without="materials.toml beside the study",
     )
-    """Files or folders with your own materials."""
+    """Files with your own materials."""
 
     operation: Operation = key()
     bearing: BallBearing = key()
@@ -260,9 +256,6 @@ class Study:
 
     friction_table: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
     """The library's whole record of the table that [ranking] names."""
-
-    left_out: InputError | None = field(default=None, compare=False, repr=False)
-    """Why the cage of the file is not in the study, for the verbs that need it."""
 
     notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     """Where it leaves the range of the models, and what of its file has no effect or is left out."""
@@ -293,7 +286,8 @@ def _pressure_of_a_whole_film(traction: TractionSettings, film: Film) -> Faults:
         yield Fault(("traction", "pressure"), rule)
 
 
-def stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Faults:
+@check(Study)
+def _stiffness_is_known(cage: CageDesign, ranking: RankingQuestion | None) -> Faults:
     """Without a stiffness, the cage or every candidate needs a material, for the modulus of the pocket."""
     if cage.ball_cage_stiffness is not None or cage.material is not None:
         return

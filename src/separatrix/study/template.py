@@ -1,19 +1,17 @@
-"""A study to fill in, from its schema: the commented file, the same as a workbook, what a form shows."""
+"""A study to fill in, from its schema: the commented file, and what a form shows."""
 
 from __future__ import annotations
 
 import tomllib
 import typing
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from typing import Any
 
 from separatrix.ground.schema import Described, OneOf, is_number, is_record, keys_of, meanings_of
-from separatrix.ground.sheet import add_table, new_workbook, workbook_bytes
 from separatrix.ground.units import HABITS, UNITS, format_quantity, shown
-from separatrix.ground.workbook import COLUMNS, SEPARATOR, TOP
 from separatrix.study.library import Library
 from separatrix.study.study import ORDER, Study
 
@@ -22,24 +20,10 @@ USE = """\
 A study for separatrix. Fill in your bearing, then:
   separatrix check THIS_FILE        is it right?
   separatrix rank THIS_FILE         which cage material runs stably?
-"""
-IN_TEXT = """\
 Every dimensional value is text with its unit: "11.1125 mm", "300 daN". Ratios are plain numbers.
 Any of them may be uncertain: "0.5 um +- 20 %" (two standard deviations), a list of samples, or bounds.
 A line that starts with # is off: it shows an optional key, with its default or an example.
 Names of the library: separatrix materials list
-"""
-IN_CELLS = """\
-Fill in the values of each sheet; the names of the sheets and the headings stay as they are.
-A key without a value has its default; its meaning states that, or that the key is required.
-A value is a number, its unit beside it. Ratios and counts have no unit.
-Under +- is the uncertainty of a value: 20 %, or a number in the same unit (two standard deviations).
-Several values are in one cell with ; between them: 0.1; 0.5; 2.
-A material is a name of the library, or has rows of its own: ball_material.elastic_modulus, ...
-Candidates: on the sheet ranking, a row [[candidates]] for each, below it name, friction."air, 440C", ...
-Or name a table of the library or a friction file there; not both.
-Formulas may be used; the value saved with them is read.
-Sheets of your own are not read.
 """
 EXAMPLES = {
     "extends": '"base.toml"',
@@ -226,7 +210,7 @@ def remark_of(section: str) -> str:
 
 def template() -> str:
     """Commented study to fill in; valid as it is."""
-    lines = [f"# {line}" for line in (USE + IN_TEXT).splitlines()]
+    lines = [f"# {line}" for line in USE.splitlines()]
     for section in sections():
         off = "# " if section == CANDIDATES else ""
         head = f"{off}[[{section}]]" if off else f"[{section}]"
@@ -235,30 +219,3 @@ def template() -> str:
             code = f"{'' if key.is_on else '# '}{key.name} = {key.written}"
             lines.append(f"{code:<40} # {key.meaning}" if key.meaning else code)
     return "\n".join(lines) + "\n"
-
-
-# ---- the same as a workbook
-
-
-def template_workbook() -> bytes:
-    """The workbook that ``separatrix new PATH.xlsx`` writes; valid as it is."""
-    book = new_workbook()
-    lines = [[line.strip()] for line in (USE + IN_CELLS).splitlines()]
-    add_table(book, "instructions", ("How to fill this in",), lines, widths=(110,))
-    for section in ("", *ORDER):
-        rows = (row for key in study_keys(section) for row in _rows(key, key.name, key.example))
-        add_table(book, section or TOP, COLUMNS, rows, keep_columns=1, widths=(30, 24, 10, 10, 120))
-    return workbook_bytes(book)
-
-
-def _rows(key: StudyKey, name: str, value: object) -> Iterator[tuple[object, ...]]:
-    """Rows of an example: one, or one for each part of a table; without the value of a key that is off."""
-    if isinstance(value, Mapping):
-        for part, item in value.items():
-            yield from _rows(key, f"{name}.{part}", item)
-        return
-    number, _, unit = str(value).partition(" ")
-    unit = unit if isinstance(value, str) and unit in UNITS.get(key.one.unit, ()) else ""
-    if isinstance(value, list):
-        value = f"{SEPARATOR} ".join(map(str, value))
-    yield name, (float(number) if unit else value) if key.is_on else None, None, unit, key.meaning

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 from separatrix.ground.errors import InputError
 from separatrix.ground.reader import Reading
@@ -17,33 +17,25 @@ from separatrix.ground.schema import Described
 from separatrix.ground.toml import Reader, cut_list, nearest, quantity, ratio, truth, whole
 from separatrix.ground.units import NUMBER, Kelvin, parse, printable, shown
 from separatrix.study import distribution
-from separatrix.study.distribution import Distribution, Normal, Samples
+from separatrix.study.distribution import Distribution
 from separatrix.study.library import Library
-
-Made = TypeVar("Made", bound=Distribution)
 
 _SIGN = re.compile(r"\s*(?:\+-|\+/-|±)\s*")
 _PLAIN = re.compile(NUMBER)
 _PERCENT = re.compile(rf"({NUMBER}) ?%")
 _BRACKETS = re.compile(r"\(([^()]*)\) ?([^()]+)")
-_FORM_OF = {
-    "between": "between",
-    "log": "between",
-    "mean": "mean",
-    "standard_deviation": "mean",
-    "samples": "samples",
-}
+_FORM_OF = {"between": "between", "log": "between", "mean": "mean", "standard_deviation": "mean"}
 """Keys of a distribution, and the form that each belongs to."""
 
-_FORMS = "between, or mean with standard_deviation, or samples"
+_FORMS = "between, or mean with standard_deviation"
 _ALONE = "Write the value alone if it is certain."
 
 
 def number(value: object, unit: str) -> tuple[float, Distribution | None]:
     """A number in SI and None, or the mean of an uncertain one and its distribution."""
-    found: Distribution
     if isinstance(value, list):
-        found = _samples(value, "", quantity(unit), written(value))
+        values = tuple(quantity(unit)(item, f", item {i},") for i, item in enumerate(value, 1))
+        found = _made(distribution.samples, "", values=values, text=written(value))
     elif isinstance(value, dict):
         found = _table(value, unit)
     elif isinstance(value, str) and _SIGN.search(value):
@@ -51,25 +43,6 @@ def number(value: object, unit: str) -> tuple[float, Distribution | None]:
     else:
         return quantity(unit)(value, ""), None
     return found.mean, found
-
-
-def count(value: object) -> tuple[int, Distribution | None]:
-    """A whole number and None, or the middle of a list of equally likely ones and their distribution."""
-    if _is_spread(value) or (isinstance(value, dict) and set(value) != {"samples"}):
-        rule = "must be a whole number, or a list of whole numbers that are equally likely"
-        raise InputError("", rule, shown(value), "Write it like [12, 13].")
-    items = value["samples"] if isinstance(value, dict) else value
-    if not isinstance(items, list):
-        return whole(value, ""), None
-    found = _samples(items, "", whole, written(value))
-    return int(found.mean), found
-
-
-def refuse_distribution(value: object) -> None:
-    """Refuse a distribution where a key takes one certain value."""
-    is_table = isinstance(value, dict) and {"between", "standard_deviation", "samples"} & set(value)
-    if is_table or _is_spread(value):
-        raise InputError("", "takes no distribution", written(value), "This key takes one certain value.")
 
 
 def written(value: object) -> str:
@@ -91,11 +64,7 @@ def deviation_of(width: object, mean: object, unit: str) -> float:
     return _not_zero(quantity(unit)(width, at), width, at)
 
 
-def _is_spread(value: object) -> bool:
-    return isinstance(value, str) and _SIGN.search(value) is not None
-
-
-def _plus_minus(text: str, unit: str) -> Normal:
+def _plus_minus(text: str, unit: str) -> Distribution:
     """Read ``"0.5 um +- 20 %"``: a mean and its expanded uncertainty, `COVERAGE` standard deviations.
 
     ``"(0.5 +- 0.1) um"`` has one unit for both (GUM, 7.2.4).
@@ -113,11 +82,12 @@ def _plus_minus(text: str, unit: str) -> Normal:
         raise InputError("", "needs a unit before +- too", shown(text), cure)
     mean = _written_number(parts[0], "", unit)
     half = _width(parts[1], mean, parts[0], ", after +-,", unit)
-    return _made(Normal, "", mean=mean, standard_deviation=half / distribution.COVERAGE, text=shown(text))
+    deviation = half / distribution.COVERAGE
+    return _made(distribution.normal, "", mean=mean, standard_deviation=deviation, text=shown(text))
 
 
 def _table(value: dict[str, object], unit: str) -> Distribution:
-    """Read a table with bounds, with mean and standard deviation, or with samples."""
+    """Read a table with bounds, or with mean and standard deviation."""
     for key in value:
         if key not in _FORM_OF:
             at, cure = f".{printable(key) or chr(34) * 2}", nearest(key, _FORM_OF)
@@ -130,12 +100,7 @@ def _table(value: dict[str, object], unit: str) -> Distribution:
         raise InputError(".log", "has a meaning only with between")
     if "between" in found:
         return _between(value, quantity(unit))
-    if "mean" in found:
-        return _moments(value, unit)
-    samples = value["samples"]
-    if not isinstance(samples, list):
-        raise InputError(".samples", "must be a list in [brackets]", shown(samples))
-    return _samples(samples, ".samples", quantity(unit), written(value))
+    return _moments(value, unit)
 
 
 def _between(value: dict[str, object], reader: Reader[float]) -> Distribution:
@@ -151,25 +116,19 @@ def _between(value: dict[str, object], reader: Reader[float]) -> Distribution:
     if log and low <= 0.0:
         cure = "A logarithm needs positive numbers: raise the lower bound, or leave log out."
         raise InputError(at, "must be > 0 with log = true", shown(bounds[0]), cure)
-    kind = distribution.LogUniform if log else distribution.Uniform
+    kind = distribution.log_uniform if log else distribution.uniform
     return _made(kind, at, low=low, high=high, text=written(value))
 
 
-def _moments(value: dict[str, object], unit: str) -> Normal:
+def _moments(value: dict[str, object], unit: str) -> Distribution:
     if missing := [key for key in ("mean", "standard_deviation") if key not in value]:
         raise InputError("", f"lacks: {missing[0]}", written(value))
     mean = quantity(unit)(value["mean"], ".mean")
     deviation = deviation_of(value["standard_deviation"], value["mean"], unit)
-    return _made(Normal, "", mean=mean, standard_deviation=deviation, text=written(value))
+    return _made(distribution.normal, "", mean=mean, standard_deviation=deviation, text=written(value))
 
 
-def _samples(items: list[object], where: str, reader: Reader[float], text: str) -> Samples:
-    """Read equally likely values."""
-    values = tuple(reader(item, f"{where}, item {i},") for i, item in enumerate(items, 1))
-    return _made(Samples, where, values=values, text=text)
-
-
-def _made(kind: Callable[..., Made], where: str, **values: object) -> Made:
+def _made(kind: Callable[..., Distribution], where: str, **values: object) -> Distribution:
     """Make a distribution; the place in the file is put before its refusals."""
     try:
         return kind(**values)
@@ -223,17 +182,17 @@ class StudyHelper:
 
     def number(self, raw: object, unit: str, one: Described) -> tuple[float, Distribution | None]:
         """Number of a key or, with an empty unit, whole one; and its distribution, None if it is certain."""
-        if one.key.certain:
-            refuse_distribution(raw)
-        if not unit:
-            return (whole(raw, ""), None) if one.key.certain else count(raw)
-        return number(raw, unit)
+        if one.key.certain or not unit:
+            is_table = isinstance(raw, dict) and {"between", "standard_deviation"} & set(raw)
+            if is_table or isinstance(raw, list) or (isinstance(raw, str) and _SIGN.search(raw)):
+                raise InputError("", "takes no distribution", written(raw), "It takes one certain value.")
+        return number(raw, unit) if unit else (whole(raw, ""), None)
 
     def named(self, raw: object, one: Described, reading: Reading) -> Any:
         """Material of a name; None if the value is not a name."""
         if isinstance(raw, dict):
             return None
-        kind, raw = one.key.named, str(raw) if type(raw) is int else raw  # the steel 52100, from a workbook
+        kind = one.key.named
         if not isinstance(raw, str):
             rule = f"must be the name of a {kind}, or its properties elastic_modulus and poisson_ratio"
             raise InputError("", rule, shown(raw), f'Write it like "{self.library.names(kind)[0]}".')

@@ -30,18 +30,16 @@ from separatrix.verbs.parts.quantity_text import known_columns
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
-    from separatrix.study.library import AnyRecord, Library
+    from separatrix.study.library import Library, Record
 
 EPILOG = (
-    "Beside the shipped records those of materials.toml and of the folder materials in the current folder "
+    "Beside the shipped records those of materials.toml in the current folder "
     "are read, as they are for a study there."
 )
 
 
 Kind = Annotated[str | None, Option("bearing material, cage material, film, fluid, friction table.", "KIND")]
-Libraries = Annotated[
-    tuple[str, ...], Option("A library file or folder to read too; may be repeated.", "PATH")
-]
+Libraries = Annotated[tuple[str, ...], Option("A library file to read too; may be repeated.", "PATH")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,17 +77,17 @@ NOTHING = Part({}, {})
 # --- the records --------------------------------------------------------------------------------
 def read_library(libraries: Sequence[str | Path]) -> Library:
     """Return the library: the shipped records, those of the current folder, and those of `libraries`."""
-    from separatrix.study.library import beside, library_files, with_files
+    from separatrix.study.library import BESIDE, with_files
 
-    paths = beside(Path())
+    paths = [Path(BESIDE)] if Path(BESIDE).is_file() else []
     for named in libraries:
         if not str(named) or not Path(named).exists():
-            raise InputError("--library", "does not name a file or folder", f'"{named}"')
-        paths += library_files(Path(named))
+            raise InputError("--library", "does not name a file", f'"{named}"')
+        paths.append(Path(named))
     return with_files(paths)
 
 
-def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
+def records_of(library: Library, kind: str | None) -> list[Record]:
     """Return the records of a kind; without one all of them."""
     from separatrix.study.library import KINDS
 
@@ -99,7 +97,7 @@ def records_of(library: Library, kind: str | None) -> list[AnyRecord]:
     return [one for each in kinds for one in library.records(each).values()]
 
 
-def records_named(library: Library, records: Sequence[AnyRecord], name: str) -> list[AnyRecord]:
+def records_named(library: Library, records: Sequence[Record], name: str) -> list[Record]:
     """Return the records of a name, a fluid also by another name of it; refused if there is none."""
     found = [one for one in records if one.name == name]
     fluid = library.fluid(name) if any(one.kind == "fluid" for one in records) else None

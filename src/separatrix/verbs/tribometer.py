@@ -138,7 +138,7 @@ def document(found: ReducedLogs, written: str | None = None) -> Document:
 
 def _test(one: Reduction) -> Any:
     """Return a test as a node: its numbers, their interval, and its course."""
-    from separatrix.friction.test_course import course
+    from separatrix.friction.reduction import course
     from separatrix.ground.plain_data import Group, Leaf, shape
 
     low, high = one.test.interval

@@ -30,7 +30,7 @@ from separatrix.friction.friction_fit import TestedFriction
 from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import Array, MetrePerSecond, Ratio
 from separatrix.study.candidates import environment_of
-from separatrix.study.distribution import Distribution, LogNormal
+from separatrix.study.distribution import Distribution, log_normal
 from separatrix.study.keys import Setter, setter, settled_in, study_numbers, value_of
 from separatrix.study.study import BallModel, Friction, Study
 from separatrix.verdict.judgement import Judgement, judge_solution
@@ -134,17 +134,17 @@ def _frictions(study: Study, frictions: Mapping[Case, Friction]) -> Iterator[Unc
             yield UncertainInput(key=key, unit="-", distribution=law, central=friction.mean, source=source)
 
 
-def _next_cage(friction: Friction, deviation: Ratio, where: str) -> LogNormal:
+def _next_cage(friction: Friction, deviation: Ratio, where: str) -> Distribution:
     """Friction of a new cage; a fit to tests predicts the median, and the scatter of the logarithm."""
     if not isinstance(friction.law, TestedFriction):
-        return LogNormal(mean=friction.mean, standard_deviation=deviation)
+        return log_normal(mean=friction.mean, standard_deviation=deviation)
     variance = (deviation / friction.mean) ** 2
     if variance > MOST_VARIANCE:
         got = f"{friction.mean:.3g} with a standard deviation of {deviation:.3g}"
         cure = "Test it nearer to the speed and pressure of the pocket, or state a friction."
         raise InputError(where, "must not scatter by ten times its mean [-]", got, cure)
     mean = friction.mean * exp(0.5 * variance)
-    return LogNormal(mean=mean, standard_deviation=mean * sqrt(expm1(variance)))
+    return log_normal(mean=mean, standard_deviation=mean * sqrt(expm1(variance)))
 
 
 def next_cage_deviation(friction: Friction, default_scatter: Ratio) -> tuple[Ratio, str]:

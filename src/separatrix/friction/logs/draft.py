@@ -10,7 +10,7 @@ from typing import NamedTuple
 from separatrix.friction.logs import names as naming
 from separatrix.friction.logs import tables
 from separatrix.friction.logs.column_map import SEPARATORS, Column, ColumnMap, TextFormat, given_in
-from separatrix.friction.logs.log import TIMES, UnfitError, stated_units
+from separatrix.friction.logs.log import TIMES, UnfitError, seconds, stated_units
 from separatrix.ground.errors import InputError
 from separatrix.ground.toml import as_toml
 from separatrix.ground.units import printable
@@ -30,8 +30,6 @@ USUAL = {
 WORDS = {sign: word for word, sign in SEPARATORS.items()}
 MOST_ROWS = 20_000  # of which a column is looked at in all
 SAMPLE = 50  # rows of a column that are looked at
-_CLOCK = re.compile(r"\d{1,4}:\d{1,2}:\d{1,2}(?:[.,:]\d+)?\s*(?:[AaPp]\.?[Mm]\.?)?")
-_ISO = re.compile(r"\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}(?::\d{2}(?:[.,]\d+)?)?(Z|[+-]\d{2}:?\d{2})?")
 
 
 class Option(NamedTuple):
@@ -224,10 +222,9 @@ def _option(block: tables.Block, i: int, meaning: str, rank: int, *, is_only: bo
 
 def _time_form(stated: Sequence[str], clocks: Sequence[str]) -> str:
     """How times are written as text."""
-    form = next((form for one in stated if (form := naming.time_form(one))), "")
-    if form or all(_CLOCK.fullmatch(one) for one in clocks):
-        return form or "clock"
-    return "iso" if all(_ISO.fullmatch(one) for one in clocks) else UNKNOWN
+    named = [form for one in stated if (form := naming.time_form(one))]
+    fitting = (form for form in ("clock", "iso") if not seconds(clocks, form)[1])
+    return named[0] if named else next(fitting, UNKNOWN)
 
 
 # --- the lines of the map -------------------------------------------------------------------------

@@ -11,8 +11,7 @@ import numpy as np
 
 from separatrix.friction.logs import names as naming
 from separatrix.friction.logs import tables
-from separatrix.friction.logs.column_map import ColumnMap
-from separatrix.friction.logs.conditions import Conditions, conditions_of
+from separatrix.friction.logs.column_map import ColumnMap, Conditions, conditions_of
 from separatrix.friction.logs.sliding import Rows, Signal, sliding_rows
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, format_quantity, printable, shown

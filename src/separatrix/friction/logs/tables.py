@@ -127,7 +127,7 @@ _BLANKS = str.maketrans("\t\r\n\x01\x04", "     ")
 
 def sheets_as_lines(path: Path, label: str) -> dict[str, list[str]]:
     """Return the lines of each sheet with a number in it, by its name."""
-    found = by_sheet(path, label, lambda _, saved, __: _lines(saved, label))
+    found = by_sheet(path, label, lambda sheet: _lines(sheet, label))
     found = {title: lines for title, lines in found.items() if any(re.search(r"\d", one) for one in lines)}
     if not found:
         cure = "Put the names of the columns in one row, and the numbers (not as text) below."
@@ -189,7 +189,7 @@ _CONTROLS = re.compile("[\x00-\x08\x0b\x0e-\x1f]")
 
 
 def text_lines(raw: bytes, name: str, encoding: str | None = None) -> tuple[list[str], str]:
-    """Lines of a text, and its encoding: by its mark, by the zeros of UTF-16, as UTF-8, else Windows-1252."""
+    """Lines of a text, and its encoding: by its mark, as UTF-8, else Windows-1252."""
     for magic, (what, cure) in _OTHERS.items() if encoding is None else ():
         if raw.startswith(magic):
             raise InputError(name, f"is {what}, not text", cure=cure)
@@ -206,7 +206,7 @@ def text_lines(raw: bytes, name: str, encoding: str | None = None) -> tuple[list
         raise InputError(f"{name}: line {line}", rule, f"byte {body[place]:#04x}", cure) from None
     text = text.rstrip("\x1a").replace("\u2212", "-").replace("\f", "\n").lstrip("\ufeff")
     if _CONTROLS.search(text):
-        cure = "Export the log as text from the tribometer's program."
+        cure = "Export the log as text from the tribometer's program, or state its encoding in a column map."
         raise InputError(name, "is not a text file (it has NUL or control characters)", cure=cure)
     if not text[:65536].strip():
         raise InputError(name, "is empty")
@@ -214,13 +214,8 @@ def text_lines(raw: bytes, name: str, encoding: str | None = None) -> tuple[list
 
 
 def _encoding_of(raw: bytes) -> str:
-    if b"\0" in raw:  # UTF-16 by the side of the NUL bytes; other files with NUL bytes are refused as text
-        head = raw[: min(len(raw), 65536) // 2 * 2]
-        low, high = head[0::2].count(0), head[1::2].count(0)
-        for code, none, many in (("utf-16-le", low, high), ("utf-16-be", high, low)):
-            if none == 0 and many > 0.4 * len(head):
-                return code
-        return "latin-1"
+    if b"\0" in raw:
+        return "latin-1"  # it is refused for its NUL
     try:
         raw.decode("utf-8")
     except UnicodeDecodeError:

@@ -229,15 +229,15 @@ def routes(page: Page) -> APIRouter:
     router = APIRouter(default_response_class=HTMLResponse)
 
     def editor(name: str, problem: str = "", page_of: str = "editor.html", **more: object) -> Response:
-        """Return the text and the form beside it; nothing of a workbook, which is not `checked`."""
+        """Return the text and the form beside it."""
         path = page.folder.study(name)
-        checked = check(path, page.folder.root) if path.suffix == ".toml" else None
+        checked = check(path, page.folder.root)
         return page.html(
             page_of,
             name=name,
             checked=checked,
-            version=version_of(checked.text) if checked else "",
-            sections=[*form(checked)] if checked else (),
+            version=version_of(checked.text),
+            sections=[*form(checked)],
             as_typed=as_typed,
             problem=problem,
             has_draft=has_draft(path),

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-import zipfile
-import zlib
 from dataclasses import dataclass
 from functools import lru_cache
 from os.path import exists
@@ -31,7 +29,6 @@ if TYPE_CHECKING:
 REPORT, LOG = "report", "tribometer"
 """In the place of a verb: the report of a study, and the tool whose question is to a log."""
 
-STUDY_SUFFIXES = (".toml", ".xlsx")
 LOGS, MAP, OF_LOG = "logs", ".map.toml", ".answer"
 """Folder of the logs of tribometers; endings of a column map and of the folder of an answer, beside a log."""
 
@@ -39,7 +36,6 @@ MOST_STUDIES, DEEPEST = 500, 3
 _NAME = re.compile(r"[^\W_][\w .,()+-]{0,99}")
 _PART = r"[^./\0\\:][^/\0\\:]*"
 _HEADER = re.compile(rb"^\s*\[bearing\]|^\s*extends\s*=", re.MULTILINE)
-_SHEET = re.compile(rb'name="bearing"', re.IGNORECASE)
 _BEGINNING = 64 * 1024
 
 TEMPLATES = Environment(
@@ -93,7 +89,7 @@ class Folder:
     def study(self, name: str) -> Path:
         """Return the path of a study."""
         path = self.inside(name)
-        if path.suffix not in STUDY_SUFFIXES:
+        if path.suffix != ".toml":
             raise InputError(shown(name), "is not a study")
         return path
 
@@ -124,7 +120,7 @@ class Folder:
     def studies(self) -> list[str]:
         """Return the names of the studies, those on top first."""
         found = (path for depth in range(DEEPEST) for path in self.root.glob("*/" * depth + "*"))
-        kinds = (path for path in found if path.suffix in STUDY_SUFFIXES)
+        kinds = (path for path in found if path.suffix == ".toml")
         names = (self.name(path) for path in kinds if self._is_own(path) and _is_study(path))
         return sorted(names, key=lambda name: (name.count("/"), name.casefold()))[:MOST_STUDIES]
 
@@ -135,13 +131,7 @@ class Folder:
 
 
 def _is_study(path: Path) -> bool:
-    """Whether a file begins as a study does, or has its sheets; a library or a friction file does not."""
-    if path.suffix != ".toml":
-        try:
-            with zipfile.ZipFile(path) as book, book.open("xl/workbook.xml") as sheets:
-                return _SHEET.search(sheets.read(_BEGINNING)) is not None
-        except (OSError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error):
-            return False  # not a workbook
+    """Whether a file begins as a study does; a library or a friction file does not."""
     with path.open("rb") as file:
         return _HEADER.search(file.read(_BEGINNING)) is not None
 

@@ -8,28 +8,22 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Generic, Literal, NamedTuple, TypeVar, cast
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
-from separatrix.friction.prediction import (
-    FRICTION_LIMIT,
-    LEAST_FRICTION,
-    SCATTER_CURE,
-    SCATTER_RULE,
-    Friction,
-)
+from separatrix.friction.friction_file import LEAST_FRICTION
+from separatrix.friction.friction_law import GIVEN, SCATTER_CURE, SCATTER_RULE, Friction
 from separatrix.ground import reader
 from separatrix.ground.errors import DataError, InputError
-from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, not_negative, record
-from separatrix.ground.toml import Kind, folded, label_of, nearest, path_text, read_text
+from separatrix.ground.schema import Fault, Faults, Open, between, check, key, keys_of, record
+from separatrix.ground.toml import Kind, folded, label_of, nearest, read_text
 from separatrix.ground.units import (
     Kelvin,
     MetrePerSecond,
     Newton,
     Pascal,
-    Ratio,
     format_quantity,
     printable,
     shown,
@@ -150,25 +144,6 @@ UNITS = {
 
 
 @record
-class Measured:
-    """A measured friction of a table."""
-
-    SHORT: ClassVar = "mean"
-
-    mean: Ratio = key(between(0.0, FRICTION_LIMIT))
-    standard_deviation: Ratio | None = key(not_negative(FRICTION_LIMIT), default=None)
-    count: int | None = key(between(1, 1e9), default=None)
-
-
-@check(Measured)
-def _friction_above_zero(mean: Ratio, standard_deviation: Ratio | None) -> Faults:
-    if mean == 0.0:
-        yield Fault("mean", "must be above 0", BLANK)
-    elif standard_deviation and mean < LEAST_FRICTION:
-        yield Fault("mean", SCATTER_RULE, SCATTER_CURE)
-
-
-@record
 class FrictionTable:
     """Measured ball/cage friction of several materials in several environments."""
 
@@ -178,7 +153,7 @@ class FrictionTable:
     environments: tuple[str, ...] = key(default=(), length=(1, 2000))
     """Their order, if not that of the frictions."""
 
-    friction: Mapping[str, Mapping[str, Measured]] = key(
+    friction: Mapping[str, Mapping[str, Friction]] = key(
         length=(1, 2000), hint='Write a section [friction_table."NAME".friction."MATERIAL"] for each.'
     )
     temperature: tuple[Kelvin, Kelvin] | None = key(between(1e-3, 5000.0), default=None)
@@ -197,13 +172,14 @@ class FrictionTable:
     def rows(self) -> dict[str, dict[str, Friction | None]]:
         """Friction of each material in each environment; None where it was not measured."""
         return {
-            name: {env: self._friction(row[env]) if env in row else None for env in self.columns}
+            name: {env: self._sourced(row[env]) if env in row else None for env in self.columns}
             for name, row in self.friction.items()
         }
 
-    def _friction(self, one: Measured) -> Friction:
-        numbers = {name: getattr(one, name) for name in keys_of(Measured)}
-        return Friction(source=self.source, confidence=self.confidence, **numbers)
+    def _sourced(self, one: Friction) -> Friction:
+        """A friction of the table with the table's source, if it states none of its own."""
+        source = self.source if one.source == GIVEN else one.source
+        return replace(one, source=source, confidence=self.confidence)
 
     @property
     def conditions(self) -> dict[str, tuple[float, float]]:
@@ -217,7 +193,7 @@ CONDITIONS = {name: one.unit for name, one in keys_of(FrictionTable).items() if 
 
 @check(FrictionTable)
 def _environments_of_the_rows(
-    environments: tuple[str, ...], friction: Mapping[str, Mapping[str, Measured]]
+    environments: tuple[str, ...], friction: Mapping[str, Mapping[str, Friction]]
 ) -> Faults:
     if len(set(environments)) < len(environments):
         yield Fault("environments", "names an environment twice")
@@ -225,6 +201,17 @@ def _environments_of_the_rows(
     if unknown:
         rule, cure = "lacks an environment that the table uses", nearest(unknown[0], environments)
         yield Fault("environments", rule, cure, shown(unknown[0]))
+
+
+@check(FrictionTable)
+def _frictions_above_zero(friction: Mapping[str, Mapping[str, Friction]]) -> Faults:
+    for at, one in (
+        (("friction", a, b, "mean"), one) for a, row in friction.items() for b, one in row.items()
+    ):
+        if one.mean == 0.0:
+            yield Fault(at, "must be above 0", BLANK)
+        elif one.standard_deviation and one.mean < LEAST_FRICTION:
+            yield Fault(at, SCATTER_RULE, SCATTER_CURE)
 
 
 @check(Datum, FrictionTable)
@@ -269,16 +256,15 @@ class LibraryFile:
     shipped: bool
 
 
-Thing = TypeVar("Thing", bound=Solid | Fluid | FrictionTable, covariant=True)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Record(Generic[Thing]):
+class Record:
     """A material, fluid or friction table under its name, and where it is from."""
 
     kind: str
     name: str
-    content: Thing
+    content: Any
+    """`Solid`, `Fluid` or `FrictionTable`, by the kind."""
+
     file: LibraryFile
     place: str
     """File and line."""
@@ -307,7 +293,7 @@ class Record(Generic[Thing]):
                 "environments": list(content.columns),
                 "friction": {
                     material: {
-                        env: one and {n: getattr(one, n) for n in keys_of(Measured)}
+                        env: one and {n: getattr(one, n) for n in ("mean", "standard_deviation", "count")}
                         for env, one in row.items()
                     }
                     for material, row in content.rows.items()
@@ -321,8 +307,6 @@ class Record(Generic[Thing]):
             "data": {name: [one.plain(UNITS[name]) for one in data] for name, data in self.data.items()},
         }
 
-
-AnyRecord = Record[Solid | Fluid | FrictionTable]
 
 _NOWHERE = (1e9, 2e9)
 """Temperatures of a datum whose source states none: it serves last."""
@@ -387,12 +371,10 @@ SHIPPED_FILES = {
 }
 """Shipped file of each kind; each is read when it is first used."""
 
-ALONE, FOLDER = "materials.toml", "materials"
-"""Library beside a study, and folder beside it whose files are all read."""
+BESIDE = "materials.toml"
+"""Name of a library that is read where it is beside a study."""
 
-MOST_FILES = 200
-Records = Mapping[str, AnyRecord]
-Wanted = TypeVar("Wanted", Solid, Fluid, FrictionTable)
+Records = Mapping[str, Record]
 
 WORDS = {
     "elastic_modulus": "modulus",
@@ -423,17 +405,13 @@ class Library:
 
     def material(self, kind: str, name: str, temperature: Kelvin | None = None) -> Material:
         """One solid by its exact name, with the data that serve at a temperature."""
-        return as_material(self._found(Solid, kind, name), temperature)
+        return as_material(self.record(kind, name), temperature)
 
-    def friction_table(self, name: str) -> Record[FrictionTable]:
-        """One table of measured friction by its exact name."""
-        return self._found(FrictionTable, "friction table", name)
-
-    def _found(self, wanted: type[Wanted], kind: str, name: str) -> Record[Wanted]:
-        found = self.records(kind).get(name)
-        if found is None or not isinstance(found.content, wanted):
-            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(self.names(kind))}')
-        return cast("Record[Wanted]", found)
+    def record(self, kind: str, name: str) -> Record:
+        """One record by its exact name."""
+        if name not in (known := self.records(kind)):
+            raise DataError(f'no {kind} "{printable(name)}"; the library has {", ".join(known)}')
+        return known[name]
 
     def named(self, kind: str, name: str) -> str | None:
         """Exact name of a record by its name or another name of it, in any spelling; None if unknown.
@@ -447,15 +425,16 @@ class Library:
         found = found or [one.name for one in records.values() if wanted in map(folded, one.aliases)]
         return found[0] if wanted and len(found) == 1 else None
 
-    def fluid(self, name: str) -> Record[Fluid] | None:
+    def fluid(self, name: str) -> Record | None:
         """Record of a fluid by its name or another name of it, in any spelling; None if unknown."""
         known = self.named("fluid", name)
-        return None if known is None else self._found(Fluid, "fluid", known)
+        return None if known is None else self.record("fluid", known)
 
 
-def as_material(record: Record[Solid], temperature: Kelvin | None = None) -> Material:
+def as_material(record: Record, temperature: Kelvin | None = None) -> Material:
     """Solid with the data of a record that serve at a temperature, and the whole record behind it."""
-    solid, data = record.content, record.data
+    solid: Solid = record.content
+    data = record.data
     chosen = {key: choose(data[key], temperature, words) for key, words in WORDS.items() if key in data}
     sources = [f"{WORDS[key]}: {choice.datum.source}" for key, choice in chosen.items()]
     confidences = [f"{WORDS[key]}: {choice.datum.confidence}" for key, choice in chosen.items()]
@@ -478,7 +457,7 @@ def as_material(record: Record[Solid], temperature: Kelvin | None = None) -> Mat
     )
 
 
-def read_library(path: Path, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
+def read_library(path: Path, *, shipped: bool = False) -> tuple[Record, ...]:
     """Records of a library file.
 
     Raises
@@ -489,20 +468,20 @@ def read_library(path: Path, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
     return library_of_text(read_text(path, Content.FILE), label_of(path), shipped=shipped)
 
 
-def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[AnyRecord, ...]:
+def library_of_text(text: str, label: str, *, shipped: bool = False) -> tuple[Record, ...]:
     """Records of the text of a library file."""
     loaded = reader.read_text(Content, text, label)
     file = LibraryFile(file=label, sha256=hashlib.sha256(text.encode()).hexdigest(), shipped=shipped)
     return tuple(
-        Record(kind=kind, name=name, content=content, file=file, place=loaded.sources[section, name].place)
+        Record(kind=kind, name=name, content=content, file=file, place=loaded.places[section, name])
         for kind, section in ((kind, kind.replace(" ", "_")) for kind in KINDS)
         for name, content in getattr(loaded.value, section).items()
     )
 
 
-def joined(contents: Sequence[Sequence[AnyRecord]]) -> Library:
+def joined(contents: Sequence[Sequence[Record]]) -> Library:
     """Library of files of the user over the shipped records."""
-    own: dict[str, dict[str, AnyRecord]] = {}
+    own: dict[str, dict[str, Record]] = {}
     for records in contents:
         for one in records:
             kind = own.setdefault(one.kind, {})
@@ -513,7 +492,7 @@ def joined(contents: Sequence[Sequence[AnyRecord]]) -> Library:
     return Library(files=tuple(records[0].file for records in contents), own=own)
 
 
-def _refuse_hiding(old: AnyRecord | None, new: AnyRecord) -> None:
+def _refuse_hiding(old: Record | None, new: Record) -> None:
     """Refuse a record that would replace another without stating so."""
     if old is None and new.content.replaces:
         rule = f"replaces a {new.kind} that is not shipped"
@@ -526,9 +505,9 @@ def _refuse_hiding(old: AnyRecord | None, new: AnyRecord) -> None:
         raise InputError(_header(new), f"has the name of a shipped {new.kind}", shown(new.name), cure)
 
 
-def _refuse_alike(records: Iterable[AnyRecord]) -> None:
+def _refuse_alike(records: Iterable[Record]) -> None:
     """Refuse a name that an earlier record has, but for capitals and spaces."""
-    known: dict[str, AnyRecord] = {}
+    known: dict[str, Record] = {}
     for one in records:
         for name in (one.name, *one.aliases):
             old = known.setdefault(" ".join(name.casefold().split()), one)
@@ -537,7 +516,7 @@ def _refuse_alike(records: Iterable[AnyRecord]) -> None:
                 raise InputError(_header(one), rule, shown(name), "Give it another name.")
 
 
-def _header(record: AnyRecord) -> str:
+def _header(record: Record) -> str:
     return f"{record.place}: [{record.kind.replace(' ', '_')}] {printable(record.name)}"
 
 
@@ -551,25 +530,3 @@ def shipped_records(kind: str) -> Records:
 def with_files(paths: Iterable[Path]) -> Library:
     """Shipped library with library files of the user."""
     return joined([read_library(path) for path in dict.fromkeys(path.resolve() for path in paths)])
-
-
-def library_files(path: Path) -> list[Path]:
-    """The file itself, or the TOML files of a folder, by name; hidden ones are left out."""
-    if not path.is_dir():
-        return [path]
-    try:
-        names = sorted(file.name for file in path.iterdir())
-    except OSError as error:
-        raise InputError(path_text(path), f"cannot be read ({error.strerror})") from None
-    found = [path / name for name in names if name.endswith(".toml") and not name.startswith(".")]
-    if len(found) > MOST_FILES:
-        raise InputError(path_text(path), f"has more than {MOST_FILES} library files")
-    return found
-
-
-def beside(folder: Path, besides: Path | None = None) -> list[Path]:
-    """Library files in a folder: `materials.toml`, and those of a folder `materials`."""
-    alone, several = folder / ALONE, folder / FOLDER
-    found = [alone] if alone.is_file() else []
-    found += library_files(several) if several.is_dir() else []
-    return [path for path in found if besides is None or path.resolve() != besides.resolve()]
