@@ -70,10 +70,10 @@ def test_an_answer_is_the_page_of_its_document(page, root):
     for row in found["overall"]:
         assert row["name"] in text
         assert row["verdict"] in text
-    places = re.findall('data-source="([^"]+)"', text)
+    places = re.findall('hx-get="(/figure/[^"]+)"', text)
     assert places
     for place in places:
-        assert page.get(place).json()["data"]
+        assert 'data-ways="[[' in page.get(place).text
 
 
 @pytest.mark.parametrize("damage", ["{", "[]", '{"verb": "bearing"}', "interrupted"])

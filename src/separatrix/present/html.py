@@ -100,7 +100,7 @@ def body(
     view: Callable[[View], str] | None = None,
 ) -> str:
     """Return the blocks of a page; `picture` shows a picture otherwise than as SVG, `view` a view."""
-    return "\n".join(_block(one, picture or _picture, view or _view) for one in page.at(level).blocks)
+    return "\n".join(_block(one, picture or drawn, view or _view) for one in page.at(level).blocks)
 
 
 def _static(name: str) -> str:
@@ -171,7 +171,8 @@ def _meant(cell: Cell, text: str) -> str:
     return f'<span title="{escape(meaning)}">{inline(text)}</span>' if meaning else inline(text)
 
 
-def _picture(one: Picture) -> str:
+def drawn(one: Picture) -> str:
+    """Return a picture as SVG that is drawn for it."""
     spec = one.figure()
     return picture_html(one, draw.save(spec), spec.alt)
 
@@ -190,7 +191,8 @@ def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
     hint = ' <span class="screen">Point at a mark for its numbers.</span>' if circles else ""
     image = _image(drawing, alt)
     caption = f"<figcaption>{inline(one.caption)}{hint}</figcaption>"
-    return f'<figure><div class="paper">{image}{over if circles else ""}</div>{caption}</figure>'
+    paper = f'<div class="paper" data-ways="{json.dumps(drawing.ways)}">{image}{over if circles else ""}</div>'
+    return f"<figure>{paper}{caption}</figure>"
 
 
 def _view(one: View) -> str:

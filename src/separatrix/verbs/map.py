@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
-from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
+from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import (
@@ -255,7 +255,6 @@ def map_figure(answer: Part) -> Figure:
         heading=figure_heading(answer, varied=[one.rpartition(".")[2] for one in _names(answer)]),
         alt="Map of the share of runs that whirl over two inputs of the study.",
         height=4.1,
-        legend=(sign("|", VERMILION, "begins to whirl between these points"),) if answer.changes else (),
     )
 
 
@@ -295,7 +294,8 @@ def _overlays(answer: Part) -> Iterator[Mark]:
         yield replace(law, colour=BLACK, has_halo=True)
     if found:
         place, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
-        yield Trace(x=place, y=low, low=low, high=high, line="", colour=VERMILION)
+        words = "begins to whirl between these points"
+        yield Trace(x=place, y=low, low=low, high=high, line="", marker="|", colour=VERMILION, name=words)
     if _has_here(x) and _has_here(y):
         look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
         yield Trace(x=[x.here], y=[y.here], name="the study itself", **look)
