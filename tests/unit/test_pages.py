@@ -19,6 +19,7 @@ from separatrix.ground.quantity import Estimate
 from separatrix.present import html
 from separatrix.present.blocks import Facts, Heading, Level, Note, Picture, Table, View
 from separatrix.present.draw import save
+from separatrix.present.figure import Axis, Figure, Panel, Trace
 from separatrix.present.pdf import pdf
 from separatrix.present.spreadsheet import spreadsheet
 from separatrix.present.text import text
@@ -331,6 +332,21 @@ def test_blocks_are_where_their_level_says(answers):
         heads = [(a.depth, b.depth) for a, b in pairs if isinstance(a, Heading) and isinstance(b, Heading)]
         assert all(inner > outer for outer, inner in heads)
     assert "--full" not in text(page, Level.REPORT)
+
+
+def test_a_click_in_a_figure_is_at_the_values_of_its_axes():
+    """The place of a point with a text, by the ends of both axes, has the values of the point."""
+    x = Axis(label="a [um]", size=1e-6, low=1e-6, high=1e-4, is_log=True)
+    point = Trace(x=(1e-5,), y=(0.25,), line="", marker="o", hover=("here",))
+    panel = Panel(title="", x=x, y=Axis(label="b [-]", low=0.0, high=1.0), marks=(point,))
+    drawing = save(Figure(rows=((panel,),), heading=("above", "it"), alt="-"))
+    ((across, down, _),) = drawing.targets
+    along, up = drawing.ways
+    share = (across / drawing.width - along.start) / (along.end - along.start)
+    # places of points are to a hundredth of a point
+    assert along.low * (along.high / along.low) ** share == pytest.approx(1e-5, rel=1e-3)
+    share = (down / drawing.height - up.start) / (up.end - up.start)
+    assert up.low + (up.high - up.low) * share == pytest.approx(0.25, rel=1e-3)
 
 
 def test_a_notebook_shows_the_page(answers):

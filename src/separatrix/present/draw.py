@@ -137,12 +137,15 @@ def _svg(figure: Canvas, spec: Figure) -> Drawing:
 
 
 def _ways(axes: Axes, panel: Panel) -> tuple[Way, Way]:
-    box, x, y = axes.get_position(), panel.x, panel.y
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    return (
-        Way(box.x0, box.x1, left * x.size, right * x.size, x.is_log),
-        Way(1.0 - box.y0, 1.0 - box.y1, low * y.size, high * y.size, y.is_log),
-    )
+    canvas: Any = axes.get_figure(root=True)
+    box = axes.get_window_extent().transformed(canvas.transFigure.inverted())
+
+    def way(start: float, end: float, limits: tuple[float, float], axis: Axis) -> Way:
+        low, high = (float(one) * axis.size for one in limits)
+        return Way(float(start), float(end), low, high, axis.is_log)
+
+    across = way(box.x0, box.x1, axes.get_xlim(), panel.x)
+    return across, way(1.0 - box.y0, 1.0 - box.y1, axes.get_ylim(), panel.y)
 
 
 def _places(axes: Axes, panel: Panel) -> Iterator[tuple[float, float, str]]:

@@ -191,8 +191,8 @@ def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
     hint = ' <span class="screen">Point at a mark for its numbers.</span>' if circles else ""
     image = _image(drawing, alt)
     caption = f"<figcaption>{inline(one.caption)}{hint}</figcaption>"
-    paper = f'<div class="paper" data-ways="{json.dumps(drawing.ways)}">{image}{over if circles else ""}</div>'
-    return f"<figure>{paper}{caption}</figure>"
+    paper = f'<div class="paper" data-ways="{json.dumps(drawing.ways)}">'
+    return f"<figure>{paper}{image}{over if circles else ''}</div>{caption}</figure>"
 
 
 def _view(one: View) -> str:
