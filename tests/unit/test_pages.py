@@ -337,10 +337,10 @@ def test_blocks_are_where_their_level_says(answers):
 def test_a_click_in_a_figure_is_at_the_values_of_its_axes():
     """The place of a point with a text, by the ends of both axes, has the values of the point."""
     x = Axis(label="a [um]", size=1e-6, low=1e-6, high=1e-4, is_log=True)
-    point = Trace(x=(1e-5,), y=(0.25,), line="", marker="o", hover=("here",))
+    point = Trace(x=(1e-5, 2e-5), y=(0.25, 0.5), line="", marker="o", hover=("here", "there"))
     panel = Panel(title="", x=x, y=Axis(label="b [-]", low=0.0, high=1.0), marks=(point,))
     drawing = save(Figure(rows=((panel,),), heading=("above", "it"), alt="-"))
-    ((across, down, _),) = drawing.targets
+    (across, down, _), _ = drawing.targets
     along, up = drawing.ways
     share = (across / drawing.width - along.start) / (along.end - along.start)
     # places of points are to a hundredth of a point
