@@ -386,5 +386,4 @@ VERB = Tool(
     options=Options,
     rows="rows",
     folder="compare",
-    has_full=True,
 )

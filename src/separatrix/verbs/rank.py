@@ -45,7 +45,6 @@ from separatrix.verbs.parts.quantity_text import (
     fact,
     fill,
     known_columns,
-    number_of,
     quantity,
     show,
 )
@@ -86,15 +85,6 @@ SHORT = (
     "largest_land_force",
     "rubbing_power",
 )
-MOTION = (
-    "growth_rate",
-    "whirl_frequency",
-    "whirl_ratio",
-    "mean_offset",
-    "end_energy",
-    "cone_ratio",
-    "axial_travel",
-)
 NAME = text_column("material", lambda row: row.name)
 POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
 
@@ -127,7 +117,6 @@ def page(answer: Part) -> Page:
     others = [one for one in answer.environments if one.name != answer.environment]
     rows = own.materials
     known = [row for row in rows if is_judged(row)]
-    motion = (NAME, *known_columns(map(evidence_column, MOTION), known))
     kicks = ", ".join(disturbances(answer))
     overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
     return page_of(
@@ -140,10 +129,8 @@ def page(answer: Part) -> Page:
         Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
-        Table(f"{own.name}, motion", motion, tuple(known), explained(motion), LONG),
-        *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
+        *undecided(known),
         reasons(rows),
-        Note(f"`--full` has all evidence{', and the other environments' * bool(others)}.", level=BRIEF),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
         Heading("Ball on pocket", LONG, 3),
@@ -154,6 +141,11 @@ def page(answer: Part) -> Page:
         *(overall if others else []),
         candidate_numbers(answer),
         draws=True,
+        more=[
+            "the margins of the paper's method",
+            "all evidence",
+            *["the other environments"] * bool(others),
+        ],
     )
 
 
@@ -177,8 +169,7 @@ def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> li
     )
     table = Table(name, columns, tuple(rows), level=level)
     legend = [Note(explained(columns), "legend", LONG)] if level == Level.ALWAYS else []
-    notes = [one for one in footnotes(rows) if one.level & level]
-    return [Heading(begun(name), LONG), table, *legend, *notes]
+    return [Heading(begun(name), LONG), table, *legend, *footnotes(rows, level)]
 
 
 def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
@@ -191,18 +182,8 @@ def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
     rows = [row for row in judged if row.get("paper_verdict") is not None]
     if not has_safety(rows):
         return []
-    threshold = "restitution_threshold"
-
-    def numbers(row: Part) -> str:
-        return f"{number_of(row, threshold, row.restitution_threshold)}, {show(row, 'margin')}"
-
-    columns = (
-        NAME,
-        column(threshold),
-        column("margin"),
-        column("paper_probability_stable"),
-        text_column("verdict", lambda row: row.paper_verdict),
-    )
+    numbers = ("restitution_threshold", "margin", "paper_probability_stable")
+    columns = (NAME, *map(column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
     apart = [row.name for row in rows if row.paper_verdict != row.verdict]
     why = ""
@@ -212,11 +193,14 @@ def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
             "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
             "from an impact.",
         )
-    each = grouped((row.paper_verdict, f"{row.name} ({numbers(row)})") for row in rows)
-    words = f"The paper's method ({model}; threshold, margin): {by_verdict(each)}.{why}"
-    heading = Heading("The paper's method", LONG, 3)
-    table = Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG)
-    return [Note(words, level=BRIEF), heading, table]
+    each = (
+        by_verdict(grouped((row.paper_verdict, row.name) for row in rows)) if apart else "the same verdicts"
+    )
+    return [
+        Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF),
+        Heading("The paper's method", LONG, 3),
+        Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG),
+    ]
 
 
 def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
@@ -246,19 +230,26 @@ def reasons(rows: Sequence[Part]) -> Block:
     return facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)
 
 
+def undecided(rows: Sequence[Part]) -> list[Block]:
+    """Return why candidates are undecided, for a screen."""
+    each = grouped((row.reason, row.name) for row in rows if row.verdict == "UNDECIDED")
+    return [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in each.items()]
+
+
 # Words.
 
 
-def footnotes(rows: Sequence[Part]) -> list[Note]:
-    """Return in what respect frictions are extrapolated; on a screen, that of all of them."""
+def footnotes(rows: Sequence[Part], level: Level) -> list[Note]:
+    """Return in what respect frictions are extrapolated; on a screen, the first one."""
     measured = [row for row in rows if "friction" in row]
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
-    of_all = [f"{one}." for one, names in who.items() if len(names) == len(measured)]
-    some = [f"{one} ({', '.join(names)})." for one, names in who.items() if len(names) < len(measured)]
-    words = " ".join([f"{MARK} extrapolated beyond the tests:", *of_all])
-    found = [Note(" ".join([words, *some]), "legend", LONG)]
-    found += [Note(words + " More, by material: `--full`." * bool(some), "legend", BRIEF)]
-    return found if who else []
+    each = [
+        one if len(names) == len(measured) else f"{one} ({', '.join(names)})" for one, names in who.items()
+    ]
+    words = f"{MARK} extrapolated beyond the tests: {{}}."
+    brief = f"{each[0]}; more: `--full`" if each[1:] else each[0] if each else ""
+    notes = (Note(words.format("; ".join(each)), "legend", LONG), Note(words.format(brief), "legend", BRIEF))
+    return [one for one in notes if each and one.level & level]
 
 
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
@@ -403,7 +394,6 @@ VERB = Verb(
     page=page,
     needs=("cage", "ranking"),
     moves_a_cage=True,
-    has_full=True,
     keeps_runs=True,
     refusals=refusals,
 )

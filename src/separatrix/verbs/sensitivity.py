@@ -219,7 +219,6 @@ VERB = Verb(
     options=Options,
     needs=("cage", "ranking"),
     moves_a_cage=True,
-    has_full=True,
     keeps_runs=True,
     refusals=refusals,
 )

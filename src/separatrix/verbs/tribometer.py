@@ -374,5 +374,4 @@ VERB = Tool(
     options=Options,
     rows="tests",
     takes_time=True,
-    has_full=True,
 )

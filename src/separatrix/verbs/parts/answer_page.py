@@ -27,11 +27,13 @@ Json = Mapping[str, Any]
 APPENDIX = Level.REPORT | Level.SHEET
 
 
-def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level = APPENDIX) -> Page:
+def page_of(
+    answer: Part, *blocks: Block, draws: bool = False, appendix: Level = APPENDIX, more: Sequence[str] = ()
+) -> Page:
     """Return the page of an answer: what is asked, its blocks, its notes, inputs and provenance.
 
     `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
-    `appendix` is where inputs and provenance are shown.
+    `appendix` is where inputs and provenance are shown; `more` is what a screen lacks of the blocks.
     """
     missing = [Note(INTERRUPTED)] if answer.get("complete") is False else []
     uncertain = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
@@ -41,8 +43,9 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level =
         Note(text, "caveat", Level.ALWAYS if place < MOST_NOTES else Level.LONG)
         for place, text in enumerate(texts)
     ]
-    if len(texts) > MOST_NOTES:
-        caveats.append(Note(f"`--full` has {len(texts) - MOST_NOTES} more.", "caveat", Level.BRIEF))
+    hidden = [*more, *([f"{len(texts) - MOST_NOTES} more notes"] if texts[MOST_NOTES:] else [])]
+    if hidden:
+        caveats.append(Note(f"`--full` has {', '.join(hidden)}.", level=Level.BRIEF))
     return Page(
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",

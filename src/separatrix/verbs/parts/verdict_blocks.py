@@ -133,7 +133,7 @@ def _safety(first: Sequence[Part]) -> str:
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
-    """Yield what decides a ranking besides frictions: land or pockets, a weak whirl, extrapolation."""
+    """Yield what decides a ranking besides frictions: land or pockets, a weak whirl."""
     judged = [row for row in rows if is_judged(row)]
     if not judged or not has_safety(judged):
         return
@@ -155,9 +155,6 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     if weak:
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
         yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
-    beyond = [row.name for row in judged if row.extrapolation]
-    if beyond:
-        yield f"{'All' if len(beyond) == len(judged) else 'Some'} frictions are extrapolated."
 
 
 def span(rows: Sequence[Part], name: str) -> str:
