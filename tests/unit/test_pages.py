@@ -186,7 +186,7 @@ def test_files_are_whole_and_nothing_else_is_left(verb, folder):
     """Document, text for a terminal, dataset, each figure as PNG and SVG; no temporary file stays."""
     names = {path.name for path in (folder / verb).iterdir()}
     pictures = {name for name in names if name.endswith(".png")}
-    assert pictures or verb in ("bearing", "sensitivity")  # of balls that run alike there is none
+    assert pictures or verb in ("bearing", "sensitivity")
     own = {f"{verb}{suffix}" for suffix in (".json", ".txt", ".nc", ".xlsx", ".html")}
     assert names == pictures | KEPT.get(verb, set()) | {f"{p[:-4]}.svg" for p in pictures} | own
     lines = (folder / verb / f"{verb}.txt").read_text(encoding="ascii").splitlines()

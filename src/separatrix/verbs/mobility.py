@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table, facts
+from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, place_column, show
+from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, places_table, show
 from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -58,12 +58,7 @@ def page(answer: Part) -> Page:
             ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", fill(answer, "up to {asymmetry} of the capacity")),
         ),
-        Table(
-            "pushes",
-            tuple(place_column(answer, name) for name in PUSH),
-            tuple(range(len(answer.speed))),
-            level=Level.SHEET,
-        ),
+        places_table("pushes", answer, *PUSH),
         Picture("mobility", lambda: push_figure(answer), PUSHED),
     )
 
