@@ -45,25 +45,16 @@ def page(answer: Part) -> Page:
     """Return the page of `stability`."""
     below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
     caption = f"Critical friction against restitution factor: below the band {below}, above it unstable."
-    here = answer.get("here")
-    is_overdamped = here is not None and here.restitution_factor == 0.0
     friction = ("Pocket friction", pocket_friction(answer) or "not stated")
     return page_of(
         answer,
         Note(" ".join([*own_words(answer), *friction_words(answer), *drift_words(answer)]), "lead"),
         *([Picture("stability-curve", lambda: curve_figure(answer), caption)] if answer.curve else []),
-        *([Note(OVERDAMPED, "legend")] if is_overdamped else []),
         Heading("Stability curve"),
         *curve_blocks(answer),
         Heading("Basis of this answer", Level.LONG),
         facts(*basis_facts(answer), friction, level=Level.LONG),
     )
-
-
-OVERDAMPED = (
-    "Impacts of this bearing are overdamped: its critical friction is found with its own race damping, the "
-    "curve's point at 0 with the largest damping that leaves no rebound."
-)
 
 
 def own_words(answer: Part) -> Iterator[str]:

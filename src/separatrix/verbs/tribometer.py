@@ -38,7 +38,7 @@ from separatrix.present.figure import (
     Panel,
     Trace,
 )
-from separatrix.verbs.parts.quantity_text import column, itself, known_columns, quantity, show
+from separatrix.verbs.parts.quantity_text import column, fill, itself, known_columns, quantity
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
@@ -74,13 +74,13 @@ FRICTION = Quantity(label="friction", digits=4)
 
 EXPONENT = Quantity(label="exponent", form=".3f")
 
-LEGEND = "friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
+LEGEND = "Friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
 NUMBERS = (
-    "scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. drift: of "
+    "Scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. Drift: of "
     "the steady part."
 )
 FIT_LEGEND = (
-    "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
+    "Friction of the material at the middle of its tested conditions, with its standard error. Scatter: "
     "standard deviation of a new sample about it."
 )
 
@@ -182,7 +182,6 @@ def page(answer: Part) -> Page:
             Heading("Tests"),
             _table(tests, flags),
             *(Note(f"{i}: {flag}", "legend") for i, flag in enumerate(flags, 1)),
-            Note(LEGEND, "legend"),
             _numbers(tests),
             *(Note(f"End of running-in: {one}.", "legend", Level.LONG) for one in methods),
             *(_fits(answer) if answer.fits else ()),
@@ -219,16 +218,13 @@ def _along(test: Part, name: str) -> Cell:
 
 
 def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
-    """Yield the answer: friction of each material, or of the tests."""
+    """Yield the answer: friction of each material, or of each test."""
+    words = "{standard_error}, scatter of a new sample {standard_deviation}"
     for one in answer.fits or ():
-        error, scatter = (show(one, name) for name in ("standard_error", "standard_deviation"))
         friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
-        yield f"{friction} (standard error {error}, scatter of a new sample {scatter})."
-    if not answer.fits and len(tests) == 1:
-        yield f"{tests[0].source}: {_summary(tests[0])}."
-    elif not answer.fits:
-        low, high = (alone(of(one.friction for one in tests), FRICTION, "-") for of in (min, max))
-        yield f"Steady friction of the tests lies between {low} and {high}."
+        yield f"{friction} (standard error {fill(one, words)})."
+    if not answer.fits:
+        yield from (f"{one.source}: {_summary(one)}." for one in tests[:1])
 
 
 def _place(fit: Part) -> str:
@@ -258,7 +254,7 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
         text_column("notes", numbers),
     )
-    return Table("tests", known_columns(columns, tests), tuple(tests))
+    return Table("tests", known_columns(columns, tests), tuple(tests), LEGEND)
 
 
 def _word(name: str, of: Callable[[Part], Part] = itself) -> Column:
@@ -287,8 +283,7 @@ def _fits(answer: Part) -> Iterator[Block]:
         column("standard_deviation", head="scatter of a sample"),
         text_column("rests on", lambda one: one.scatter_source),
     )
-    yield Table("materials", columns, tuple(answer.fits))
-    yield Note(FIT_LEGEND, "legend")
+    yield Table("materials", columns, tuple(answer.fits), FIT_LEGEND)
     for one in answer.fits:
         yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
 
