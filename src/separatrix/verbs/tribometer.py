@@ -218,13 +218,16 @@ def _along(test: Part, name: str) -> Cell:
 
 
 def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
-    """Yield the answer: friction of each material, or of each test."""
+    """Yield the answer: friction of each material, or of the tests."""
     words = "{standard_error}, scatter of a new sample {standard_deviation}"
     for one in answer.fits or ():
         friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
         yield f"{friction} (standard error {fill(one, words)})."
-    if not answer.fits:
-        yield from (f"{one.source}: {_summary(one)}." for one in tests[:1])
+    if not answer.fits and len(tests) == 1:
+        yield f"{tests[0].source}: {_summary(tests[0])}."
+    elif not answer.fits:
+        low, high = (alone(of(one.friction for one in tests), FRICTION, "-") for of in (min, max))
+        yield f"Steady friction of the tests lies between {low} and {high}."
 
 
 def _place(fit: Part) -> str:
