@@ -106,6 +106,7 @@ def page(answer: Part) -> Page:
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
         bands(answer),
+        facts(*unchanged(answer)),
         *(
             all_numbers(name, (), ((one,) for one in answer.get(name) or ()))
             for name in (("points", "changes") if answer.complete else ())  # else there is no workbook
@@ -213,6 +214,22 @@ def bands(answer: Part) -> Table:
     chosen = tuple(every[round(i * step)] for i in range(min(SHOWN, len(every))))
     part = f"{SHOWN} of {len(every)} places; map.json has all. " if len(every) > SHOWN else ""
     return Table("bands", columns, chosen, part + LEGEND)
+
+
+def unchanged(answer: Part) -> Iterator[tuple[str, str]]:
+    """Yield at which values of x the cage whirls at no point, or at every one, beyond the scatter."""
+    columns: dict[float, list[Part]] = {}
+    for one in answer.points:
+        if one.runs:
+            columns.setdefault(one.x, []).append(one)
+    changed = {one.x for one in answer.get("changes") or ()}
+    known = {x: along for x, along in columns.items() if x not in changed}
+    calm = [x for x, along in known.items() if all(one.probability_high < 0.5 for one in along)]
+    wild = [x for x, along in known.items() if all(one.probability_low > 0.5 for one in along)]
+    for words, found in (("Whirls nowhere", calm), ("Whirls everywhere", wild)):
+        if found:
+            values = ", ".join(_value(answer.x, x) for x in found[:SHOWN])
+            yield words, f"at {values}" + ", ..." * (len(found) > SHOWN)
 
 
 LEGEND = (
