@@ -142,8 +142,7 @@ def _stacked(table: Table) -> Columns:
 
 def variable(leaf: Leaf) -> xr.Variable:
     """Return a leaf with its axes as a variable with its unit."""
-    attributes = {"units": leaf.unit, "long_name": leaf.long_name}
-    attrs = {name: value for name, value in attributes.items() if value}
+    attrs = {"units": leaf.unit} if leaf.unit else {}
     return xr.Variable(leaf.axes or (), _array(leaf.value, is_text=leaf.unit is None), attrs=attrs)
 
 
