@@ -117,13 +117,14 @@ def page(answer: Part) -> Page:
     others = [one for one in answer.environments if one.name != answer.environment]
     rows = own.materials
     known = [row for row in rows if is_judged(row)]
+    apart = [row.name for row in known if row.get("paper_verdict") not in (None, row.verdict)]
     kicks = ", ".join(disturbances(answer))
     overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
     return page_of(
         answer,
         Note(" ".join([verdict_sentences(rows, own.name), *deciding(answer, rows)]), "lead"),
         *verdicts(own.name, rows),
-        *by_paper(answer, known),
+        *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
         Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
@@ -142,7 +143,7 @@ def page(answer: Part) -> Page:
         candidate_numbers(answer),
         draws=True,
         more=[
-            "the margins of the paper's method",
+            *[f"the paper's method{'' if apart else ' (the same verdicts)'}"] * has_safety(rows),
             "all evidence",
             *["the other environments"] * bool(others),
         ],
@@ -177,29 +178,25 @@ def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
     return dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
 
 
-def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
-    """Return the answer of the paper's model beside another one, and where the two differ."""
+def by_paper(answer: Part, judged: Sequence[Part], apart: Sequence[str]) -> list[Block]:
+    """Return the answer of the paper's model beside another one, and for whom the two stand apart."""
     rows = [row for row in judged if row.get("paper_verdict") is not None]
     if not has_safety(rows):
         return []
     numbers = ("restitution_threshold", "margin", "paper_probability_stable")
     columns = (NAME, *map(column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    apart = [row.name for row in rows if row.paper_verdict != row.verdict]
-    why = ""
-    if apart:
-        why = f" It differs for {', '.join(apart)}: " + fill(
-            answer.chain,
-            "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
-            "from an impact.",
-        )
-    each = (
-        by_verdict(grouped((row.paper_verdict, row.name) for row in rows)) if apart else "the same verdicts"
+    why = fill(
+        answer.chain,
+        f" It differs for {', '.join(apart)}: a ball that may spin yields to a slow push by "
+        "{race_damping_free_spin}, and takes more energy from an impact.",
     )
+    each = by_verdict(grouped((row.paper_verdict, row.name) for row in rows))
+    caption = f"{begun(model)}.{why if apart else ''}"
     return [
-        Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF),
+        *([Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF)] if apart else []),
         Heading("The paper's method", LONG, 3),
-        Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG),
+        Table("The paper's method", columns, tuple(rows), caption, LONG),
     ]
 
 
