@@ -107,6 +107,7 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     margin = _safety(first) if has_safety(first) else _margin(first)
     others = grouped((verdict(row), row.name) for row in rows if row not in first)
     rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
+    rest = f"All others: {next(iter(others))}." if len(others) == 1 else rest
     return f"{lead} {margin} {rest}"
 
 
@@ -133,7 +134,7 @@ def _safety(first: Sequence[Part]) -> str:
 
 
 def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
-    """Yield what decides a ranking besides frictions: land or pockets, a weak whirl."""
+    """Yield what decides a ranking besides frictions: land or pockets, a weak whirl, extrapolation."""
     judged = [row for row in rows if is_judged(row)]
     if not judged or not has_safety(judged):
         return
@@ -155,6 +156,9 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
     if weak:
         words = "a weak whirl remains, fed {pocket_power}, with pocket forces up to {largest_contact_force}"
         yield f"{weak[0].name} rolls in its pockets: {fill(weak[0], words)}."
+    beyond = [row.name for row in judged if row.extrapolation]
+    if beyond:
+        yield f"{'All' if len(beyond) == len(judged) else 'Some'} frictions are extrapolated."
 
 
 def span(rows: Sequence[Part], name: str) -> str:
