@@ -143,13 +143,11 @@ class Panel:
 class Figure:
     """Rows of panels; what is named in them stands below, once; `heading` says of what it is.
 
-    `height` is that of a row [inch], and the width that of a page. `alt` tells what is seen to who does not
-    see it.
+    `height` is that of a row [inch], and the width that of a page.
     """
 
     rows: tuple[tuple[Panel, ...], ...]
     heading: tuple[str, ...] = ()
-    alt: str
     height: float = 2.5
 
     @property

@@ -173,11 +173,10 @@ def _meant(cell: Cell, text: str) -> str:
 
 def drawn(one: Picture) -> str:
     """Return a picture as SVG that is drawn for it."""
-    spec = one.figure()
-    return picture_html(one, draw.save(spec), spec.alt)
+    return picture_html(one, draw.save(one.figure()))
 
 
-def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
+def picture_html(one: Picture, drawing: draw.Drawing) -> str:
     """Return a picture as it was drawn, with the places that a reader can point at."""
     circles = "".join(
         f'<circle cx="{x}" cy="{y}" r="4" tabindex="{0 if place == 0 else -1}" role="img" '
@@ -189,7 +188,7 @@ def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
         f'aria-label="Points of the figure: arrow keys move from one to the next">{circles}</svg>'
     )
     hint = ' <span class="screen">Point at a mark for its numbers.</span>' if circles else ""
-    image = _image(drawing, alt)
+    image = _image(drawing, one.caption)
     caption = f"<figcaption>{inline(one.caption)}{hint}</figcaption>"
     paper = f'<div class="paper" data-ways="{json.dumps(drawing.ways)}">'
     return f"<figure>{paper}{image}{over if circles else ''}</div>{caption}</figure>"

@@ -121,9 +121,8 @@ def _draw(page: Page, stage: Path, name: str) -> None:
 
     def picture(one: Picture) -> str:
         if one.name not in drawn:
-            spec = one.figure()
-            drawing = draw.save(spec, stage / f"{one.name}.png", stage / f"{one.name}.svg")
-            drawn[one.name] = picture_html(one, drawing, spec.alt)
+            drawing = draw.save(one.figure(), stage / f"{one.name}.png", stage / f"{one.name}.svg")
+            drawn[one.name] = picture_html(one, drawing)
         return drawn[one.name]
 
     for one in page.blocks:

@@ -12,7 +12,7 @@ from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
+from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
@@ -249,13 +249,9 @@ def map_figure(answer: Part) -> Figure:
         for one in (answer.x, answer.y)
     )
     kick = "" if KICK in _names(answer) else fill(answer, ", initial disturbance {kick}")
-    title, marks = f"Share of the runs that whirl{kick}", (*_cells(answer), *_overlays(answer))
-    return Figure(
-        rows=((Panel(title=title, x=x, y=y, marks=marks),),),
-        heading=figure_heading(answer, varied=[one.rpartition(".")[2] for one in _names(answer)]),
-        alt="Map of the share of runs that whirl over two inputs of the study.",
-        height=4.1,
-    )
+    marks = (*_cells(answer), *_overlays(answer))
+    panel = Panel(title=f"Share of the runs that whirl{kick}", x=x, y=y, marks=marks)
+    return figure(answer, (panel,), height=4.1, varied=_names(answer))
 
 
 def _cells(answer: Part) -> Iterator[Mark]:

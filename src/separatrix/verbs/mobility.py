@@ -88,7 +88,7 @@ def push_figure(answer: Part) -> Figure:
     label, most = "force of the races $F$", 1.25 * capacity
     y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
     panel = Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks))
-    return figure(answer, (panel,), alt=PUSHED, height=3.2)
+    return figure(answer, (panel,), height=3.2)
 
 
 VERB = Verb(

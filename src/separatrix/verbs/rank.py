@@ -310,11 +310,7 @@ def on_the_curve(answer: Part, own: Part) -> Figure:
         labels=labels,
         head="candidate  friction  verdict",
     )
-    alt = (
-        "Critical friction against restitution factor, with the friction of each candidate at the bearing's "
-        "own restitution factor; the table has the numbers."
-    )
-    return figure(answer, (panel,), alt=alt, height=4.3, more=(f"seed {answer.seed}",))
+    return figure(answer, (panel,), height=4.3, more=(f"seed {answer.seed}",))
 
 
 def look_of(word: str) -> dict[str, Any]:
@@ -378,8 +374,6 @@ def overview(answer: Part, own: Part) -> Figure:
     return figure(
         answer,
         (Panel(title=title, x=x, y=y, marks=tuple(found), labels=labels, head="verdict"),),
-        alt=f"{what} of each candidate in each environment, where the bearing runs with their interval; the "
-        "table has the numbers.",
         height=0.9 + 0.32 * len(place),
         more=(f"seed {answer.seed}",),
     )

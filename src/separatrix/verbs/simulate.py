@@ -233,7 +233,7 @@ def _figure(answer: Part) -> Figure:
         (panels.offset(answer), panels.forces(answer)),
     ]
     rows += [(panels.tilt(answer),)] if "lean" in answer else []
-    return figure(answer, *rows, alt=CAPTION, height=2.2)
+    return figure(answer, *rows, height=2.2)
 
 
 def _view(answer: Part) -> str:

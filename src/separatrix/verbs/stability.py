@@ -108,8 +108,7 @@ def curve_figure(answer: Part) -> Figure:
         look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
         own = [Trace(x=[answer.chain.restitution_factor], y=[friction], **look)]
     panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])
-    alt = "Stability curve with its band and limits, and the bearing's own restitution factor."
-    return figure(answer, (panel,), alt=alt, height=3.6)
+    return figure(answer, (panel,), height=3.6)
 
 
 VERB = Verb(

@@ -79,6 +79,7 @@ NUMBERS = (
     "Scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. Drift: of "
     "the steady part."
 )
+COURSE = "Friction along the test with its steady part; the tables have the numbers."
 FIT_LEGEND = (
     "Friction of the material at the middle of its tested conditions, with its standard error. Scatter: "
     "standard deviation of a new sample about it."
@@ -190,7 +191,7 @@ def page(answer: Part) -> Page:
             *(Note(one, "caveat") for one in answer.notes),
             Note(kept if "friction_file" in answer else "Nothing written; use `--out friction.toml`."),
             Heading("Course of each test", Level.REPORT),
-            *(Picture(file_name(one.source), partial(_figure, one), one.source) for one in tests),
+            *(Picture(file_name(one.source), partial(_figure, one), COURSE) for one in tests),
         ),
     )
 
@@ -359,8 +360,7 @@ def _figure(test: Part) -> Figure:
             Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),
         ),
     )
-    alt = "Friction along the test with its steady part; the tables have the numbers."
-    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), alt=alt, height=2.0)
+    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)
 
 
 VERB = Tool(

@@ -166,15 +166,19 @@ def is_chosen(model: Json) -> bool:
 
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
     """Return what stands above a figure: the title, and the operating point but for the inputs `varied`."""
-    study = answer.values["study"]
-    return answer.title, _listed("; ", operation_words(study, varied), coat_words(study, varied), *more)
+    study, keys = answer.values["study"], [one.rpartition(".")[2] for one in varied]
+    return answer.title, _listed("; ", operation_words(study, keys), coat_words(study, keys), *more)
 
 
 def figure(
-    answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5, more: Sequence[str] = ()
+    answer: Part,
+    *rows: tuple[Panel, ...],
+    height: float,
+    more: Sequence[str] = (),
+    varied: Sequence[str] = (),
 ) -> Figure:
-    """Return a figure of an answer, with its operating point, and `more`, above it."""
-    return Figure(rows=rows, heading=figure_heading(answer, *more), alt=alt, height=height)
+    """Return a figure of an answer below its heading."""
+    return Figure(rows=rows, heading=figure_heading(answer, *more, varied=varied), height=height)
 
 
 def _listed(between: str, *words: str | None) -> str:
