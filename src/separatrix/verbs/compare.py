@@ -66,7 +66,7 @@ MOST_ROWS = 500
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
-    """A result in one answer, with its 95 % interval if it has one."""
+    """A result in one answer, or its change, with its 95 % interval if it has one."""
 
     value: float | int | str | bool | None  # null where this answer lacks it
     low: float | None = None  # lower end of its 95 % interval
@@ -82,11 +82,8 @@ class Row:
     unit: str = "-"  # SI unit of the numbers
     first: Value  # value of the first answer
     second: Value  # value of the second one
-    change: float | None = None  # second less first
-    change_low: float | None = None  # ends of its 95 % interval
-    change_high: float | None = None  # upper end
-    relative: float | None = None  # change over the larger of both
-    beyond_noise: bool | None = None  # whether 0 is outside that interval; null without one
+    change: Value | None = None  # second less first; null of texts
+    beyond_noise: bool | None = None  # whether 0 is outside its interval; null without one
 
 
 NOT_RESULTS = (
@@ -196,12 +193,11 @@ def _judged(row: Row) -> Row:
     a, b = row.first, row.second
     if not is_number(a.value) or not is_number(b.value):
         return row
-    change = float(b.value) - float(a.value)
-    row = replace(row, change=change, relative=change / (max(abs(a.value), abs(b.value)) or 1.0))
     if a.low is None or a.high is None or b.low is None or b.high is None:
-        return row
+        return replace(row, change=Value(value=b.value - a.value))
     low, high = difference_interval((a.value, a.low, a.high), (b.value, b.low, b.high))
-    return replace(row, change_low=low, change_high=high, beyond_noise=not low <= 0.0 <= high)
+    change = Value(value=b.value - a.value, low=low, high=high)
+    return replace(row, change=change, beyond_noise=not low <= 0.0 <= high)
 
 
 def order(row: Row) -> tuple[bool, bool, int, int, int, float]:
@@ -210,7 +206,9 @@ def order(row: Row) -> tuple[bool, bool, int, int, int, float]:
     noise = (True, None, False).index(row.beyond_noise)
     places = row.place.count(" / ")
     others = row.name not in DECISIONS, row.name not in MAIN
-    return *others, places, names.index(row.name), noise, -abs(row.relative or 0.0)
+    sides = row.first, row.second, row.change
+    first, second, change = (abs(one.value) if one and is_number(one.value) else 0.0 for one in sides)
+    return *others, places, names.index(row.name), noise, -change / (max(first, second) or 1.0)
 
 
 def compared(
@@ -335,9 +333,7 @@ def _table(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Ite
 def _cell(row: Part, name: str) -> Cell:
     """Return a side of a row, or its change; a text or a truth as words."""
     found = row.get(name)
-    value, low, high = (
-        (found.value, found.low, found.high) if isinstance(found, Part) else (found, None, None)
-    )
+    value, low, high = (found.value, found.low, found.high) if found else (None, None, None)
     if not is_number(value):
         return Cell(ABSENT if value is None else str(value))
     form = ".0f" if isinstance(value, int) else ""
