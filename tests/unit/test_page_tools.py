@@ -132,7 +132,7 @@ def test_what_is_decided_by_comes_first():
     assert [(row["place"], row["name"]) for row in found["rows"]] == [
         *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor")),
     ]
-    assert "Changed: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
+    assert "counting noise: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
 
 
 def test_what_cannot_be_compared_is_refused(tmp_path):
