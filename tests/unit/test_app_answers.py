@@ -169,7 +169,7 @@ def test_a_log_is_dropped_corrected_and_cut(page, root):
     assert test["run_in_end"] == pytest.approx(12.0)
     text = page.get("/log/a.csv").text
     assert 'data-cut="s"' in text
-    assert page.get(re.search('data-source="([^"]+)"', text)[1]).json()["data"]
+    assert 'data-ways="[[' in page.get(re.search('hx-get="(/figure/[^"]+)"', text)[1]).text
 
 
 def test_a_job_is_cancelled_and_resumed(page, root):
