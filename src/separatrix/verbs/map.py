@@ -290,8 +290,9 @@ def _overlays(answer: Part) -> Iterator[Mark]:
         yield replace(law, colour=BLACK, has_halo=True)
     if found:
         place, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
-        words = "begins to whirl between these points"
-        yield Trace(x=place, y=low, low=low, high=high, line="", marker="|", colour=VERMILION, name=words)
+        middle = [0.5 * (one.y_low + one.y_high) for one in found]
+        bar: dict[str, Any] = {"line": "", "marker": "|", "colour": VERMILION, "low": low, "high": high}
+        yield Trace(x=place, y=middle, name="begins to whirl between these points", **bar)
     if _has_here(x) and _has_here(y):
         look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
         yield Trace(x=[x.here], y=[y.here], name="the study itself", **look)
