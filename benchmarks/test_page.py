@@ -51,7 +51,7 @@ def test_first_view(benchmark, page, server):
     "place",
     [
         *("study/small.toml", "answer/rank/small.toml", "view/simulate/moving-cage/small.toml"),
-        *("figure/rank/rank-overview.json/small.toml", "figure/map/stability-map.json/small.toml"),
+        *("figure/rank/rank-overview/small.toml", "figure/map/stability-map/small.toml"),
     ],
 )
 def test_what_needs_no_run(benchmark, page, server, place):

@@ -27,11 +27,10 @@ def test_figures_show_numbers_under_the_pointer(view, server, ranked):
     page.goto(f"{server.address}/answer/rank/small.toml")
     answer = json.loads((ranked / "rank.json").read_text(encoding="utf-8"))
     expect(page.locator("main")).to_contain_text(answer["overall"][0]["name"])
-    figure = page.locator(".plot .canvas").first
-    figure.locator(".points path.point").first.wait_for(state="attached")
+    figure = page.locator(".paper").first
     figure.scroll_into_view_if_needed()
-    figure.locator(".points path.point").last.hover(force=True)
-    expect(figure.locator(".hoverlayer")).to_contain_text("0.")
+    figure.locator("circle").last.hover(force=True)
+    expect(page.locator("#tip")).to_contain_text("0.")
 
 
 def test_a_duty_cycle_is_run(view, server, ranked, folder):
@@ -46,7 +45,7 @@ def test_a_duty_cycle_is_run(view, server, ranked, folder):
     card.get_by_label("verdicts").check()
     run(page, "sweep")
     page.get_by_role("link", name="Show the answer").first.click()
-    page.locator(".plot .canvas .points path.point").first.wait_for(state="attached")
+    page.locator(".paper circle").first.wait_for(state="attached")
 
 
 def test_a_click_in_a_map_simulates_the_cage_there(view, server, ranked, folder):
@@ -59,8 +58,7 @@ def test_a_click_in_a_map_simulates_the_cage_there(view, server, ranked, folder)
     card.locator("input[name=points]").fill("2")
     run(page, "map")
     page.get_by_role("link", name="Show the answer").first.click()
-    figure = page.locator(".plot .canvas").first
-    figure.locator(".heatmaplayer image").first.wait_for(state="attached")
+    figure = page.locator(".paper").first
     figure.scroll_into_view_if_needed()
     figure.click(position={"x": 300, "y": 120})
     ended(page, "simulate")
@@ -76,8 +74,7 @@ def test_a_log_is_dropped_and_its_running_in_moved(view, server, tmp_path):
     page.set_input_files("#pick", tmp_path / "log.csv")
     page.wait_for_url("**/log/log.csv")
     page.get_by_role("button", name="Reduce the log").click()
-    figure = page.locator(".plot .canvas").first
-    figure.locator(".scatterlayer path").first.wait_for(state="attached")
+    figure = page.locator(".paper").first
     before = page.locator("article.answer").inner_text()
     figure.scroll_into_view_if_needed()
     figure.click(position={"x": 300, "y": 100})

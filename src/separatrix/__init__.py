@@ -41,7 +41,7 @@ _PUBLIC = {
     "verdict.long_jobs": "Interrupted Runner",
     "verdict.ranking_records": "Ranking",
     "present.dataset": "dataset",
-    "verbs.answer_files": "document to_dataframe to_xarray",
+    "verbs.answer_files": "document",
     "verdict.stability_curve": "StabilityCurve critical_friction restitution_threshold stability_curve",
     "study.study": "BallBearing BallModel CageDesign Candidate ContactPressure Film Friction Guidance "
     "KinematicModel Kinematics Material MotionModel Operation PocketContact PocketShape PressureSlip Race "

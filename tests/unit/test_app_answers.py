@@ -70,10 +70,10 @@ def test_an_answer_is_the_page_of_its_document(page, root):
     for row in found["overall"]:
         assert row["name"] in text
         assert row["verdict"] in text
-    places = re.findall('data-source="([^"]+)"', text)
+    places = re.findall('hx-get="(/figure/[^"]+)"', text)
     assert places
     for place in places:
-        assert page.get(place).json()["data"]
+        assert 'data-ways="[[' in page.get(place).text
 
 
 @pytest.mark.parametrize("damage", ["{", "[]", '{"verb": "bearing"}', "interrupted"])
@@ -169,7 +169,7 @@ def test_a_log_is_dropped_corrected_and_cut(page, root):
     assert test["run_in_end"] == pytest.approx(12.0)
     text = page.get("/log/a.csv").text
     assert 'data-cut="s"' in text
-    assert page.get(re.search('data-source="([^"]+)"', text)[1]).json()["data"]
+    assert 'data-ways="[[' in page.get(re.search('hx-get="(/figure/[^"]+)"', text)[1]).text
 
 
 def test_a_job_is_cancelled_and_resumed(page, root):

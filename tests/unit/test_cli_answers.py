@@ -67,12 +67,8 @@ def test_a_check_fits_a_screen_and_full_shows_the_rest(capsys):
     assert max(map(len, said.splitlines())) <= 96
     assert said.count("not stated at 90 K") <= 3
     assert said.count("Note: ") == 1
-    words = ("Speed parameter", "million mm rpm", "Pressure at rest", "maximum", "Assumed, because the study")
-    assert all(one in said for one in words)
     assert main(["check", "cold.toml", "--full"]) == 0
-    whole = capsys.readouterr().out
-    assert "cold.toml, line" in whole
-    assert "Materials, at the temperature of the study." in whole
+    assert "cold.toml, line" in capsys.readouterr().out
 
 
 def test_the_speed_parameter_and_the_static_pressure_are_those_of_the_bearing(capsys):

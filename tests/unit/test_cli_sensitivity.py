@@ -43,17 +43,6 @@ friction = { air = "0.3 +- 10 %" }
 name = "C"
 friction = { vacuum = 0.2 }
 """
-KEYS = (
-    "bearings failed stopped_risk default_scatter environment inputs materials drivers kicks runs complete "
-    "chain cage seed study warnings"
-)
-OF_A_ROW = (
-    "name friction friction_deviation friction_scatter_assumed extrapolation "
-    "restitution_factor restitution_factor_low restitution_factor_high verdict probability_stable "
-    "probability_low probability_high worst_kick by_kick runs cage_motion largest_offset drift_rate "
-    "largest_contact_force force_exceeds_races largest_land_force energy_imbalance duration longest_run ball "
-    "reason"
-)
 
 
 @pytest.fixture(scope="module")
@@ -84,11 +73,9 @@ def row(document, name):
     return next(row for row in document["materials"] if row["name"] == name)
 
 
-def test_the_document_has_the_keys_that_scripts_rely_on(small):
-    """Every candidate; probabilities in their intervals, with their evidence."""
+def test_every_candidate_has_its_evidence(small):
+    """Probabilities in their intervals, from the counts of the worst disturbance."""
     found = small
-    assert set(KEYS.split()) <= set(found)
-    assert set(OF_A_ROW.split()) <= set(found["materials"][0])
     rows = [one for one in found["materials"] if one["friction"]]
     assert len(rows) == 2
     for one in rows:

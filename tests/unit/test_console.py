@@ -34,7 +34,7 @@ VERBS = [
 OPTIONS = {
     "new": ("--json", "--quiet"),
     "compare": ("--json", "--out", "--quiet", "--full"),
-    "reproduce": ("--json", "--quiet", "--jobs"),
+    "reproduce": ("--json", "--quiet", "--jobs", "--full"),
     "app": ("--port", "--open"),
     "tribometer": ("--json", "--out"),
     "materials": ("list", "show"),

@@ -1,4 +1,4 @@
-"""Pages of `tribometer`, `materials`, `compare` and `reproduce`, and saved answers that are wrong."""
+"""Pages of `tribometer` and `compare`, and saved answers that are wrong."""
 
 import json
 
@@ -11,7 +11,7 @@ from separatrix.present.blocks import Level, Picture
 from separatrix.present.figure import Across
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
-from separatrix.verbs import bearing, compare, computed, materials, tribometer
+from separatrix.verbs import bearing, compare, computed, tribometer
 from separatrix.verbs.answer_files import document
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.compare import difference_interval, differing, results
@@ -132,7 +132,7 @@ def test_what_is_decided_by_comes_first():
     assert [(row["place"], row["name"]) for row in found["rows"]] == [
         *(("A", "verdict"), ("F / A", "verdict"), ("A", "safety_factor"), ("F / A", "safety_factor")),
     ]
-    assert "Changed: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
+    assert "counting noise: verdict (2)." in text(compare.page(part_of(json.loads(json.dumps(found)))))
 
 
 def test_what_cannot_be_compared_is_refused(tmp_path):
@@ -143,7 +143,7 @@ def test_what_cannot_be_compared_is_refused(tmp_path):
         compared(tmp_path, study={"ranking": {"candidates": [1]}})
 
 
-# --- logs and the library -----------------------------------------------------------------------
+# --- logs ---------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def tests_of_logs(tmp_path_factory):
     """Return the document of two logs: running-in from 0.2, then noise about a friction."""
@@ -180,12 +180,3 @@ def test_logs_that_were_read_alike_are_told_once(tests_of_logs):
     assert "a.csv and 1 more: plain text" in words
     assert "12.49" in text(tribometer.page(part_of(tests_of_logs)), Level.FULL)  # the last row, at 749.5 s
     assert words.count("\n") < 45
-
-
-def test_a_record_of_the_library_is_shown_whole(tmp_path, monkeypatch):
-    """Value, range, conditions, confidence and source of each datum; an unknown name is refused."""
-    monkeypatch.chdir(tmp_path)
-    words = text(materials.show_page(part_of(materials.show_records(materials.ShowOptions(name="PTFE")))))
-    assert "elastic modulus  4 GPa (3 GPa to 5 GPa), 77 K, bulk; guess" in words
-    with pytest.raises(InputError, match="NAME is not a film of the library"):
-        materials.show_records(materials.ShowOptions(name="none", kind="film"))

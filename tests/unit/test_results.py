@@ -12,13 +12,13 @@ import pytest
 from cages import TURNING
 
 from separatrix.chain.solution import solve
-from separatrix.ground.plain_data import Group, NotFiniteError, field_units, plain, shape, units_of
+from separatrix.ground.plain_data import Group, NotFiniteError, field_units, node_of, plain, shape, units_of
 from separatrix.ground.units import Newton, Ratio, Rows
-from separatrix.present.dataset import dataset
+from separatrix.present.dataset import arrays_of, dataset, main_table
 from separatrix.study.reading import read_study
 from separatrix.study.study import Guidance
 from separatrix.verbs import Computed, cage_answers, chain_answers, verb_named
-from separatrix.verbs.answer_files import document, to_dataframe, to_xarray
+from separatrix.verbs.answer_files import document
 from separatrix.verbs.verb import NoOptions
 from separatrix.verdict import swept_cases as sweep
 from separatrix.verdict.ranking_records import NotMeasured, Ranked
@@ -83,6 +83,12 @@ class Places:
 
     restitution_factor: Ratio
     environments: Annotated[tuple[Place, ...], Rows("environment", label="name")]
+
+
+def to_xarray(record):
+    """Return the arrays of a record, by way of its plain data."""
+    node = Group(shape(record))
+    return arrays_of(node_of(plain(node, left_out=[]), units_of(node)))
 
 
 def test_a_record_becomes_what_json_can_hold():
@@ -178,13 +184,14 @@ def test_a_dataset_has_balls_that_are_held_by_unlike_numbers_of_waves():
 def test_an_answer_is_a_table():
     """A row a ball, a case, or a candidate in an environment; columns are the arrays along them."""
     state = solve(STUDY).bearing
-    balls = to_dataframe(state)
+    balls = main_table(to_xarray(state))
     assert (balls.index.name, len(balls)) == ("ball", 13)
     assert balls["load_inner"].to_numpy() == pytest.approx(state.equilibrium.load_inner, rel=0)
     assert "ball_spin_2" in balls
-    cases = to_dataframe(sweep.sweep(STUDY, [{"film.thickness": h} for h in (2e-7, 5e-7)]))
+    cases = sweep.sweep(STUDY, [{"film.thickness": h} for h in (2e-7, 5e-7)])
+    cases = main_table(to_xarray(cases))
     assert cases["film.thickness"].tolist() == [2e-7, 5e-7]
-    rows = to_dataframe(Places(0.3, (Place("x", ROWS), Place("y", ROWS))))
+    rows = main_table(to_xarray(Places(0.3, (Place("x", ROWS), Place("y", ROWS)))))
     assert rows.loc["x", "A"]["friction"] == 0.1
 
 

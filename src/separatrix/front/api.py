@@ -143,9 +143,9 @@ class Answer(ToolAnswer[Record]):
 
     def to_dataframe(self) -> pd.DataFrame:
         """One row for each ball, point, material or case."""
-        from separatrix.verbs.answer_files import to_dataframe
+        from separatrix.present.dataset import main_table
 
-        return to_dataframe(self.record)
+        return main_table(self.to_xarray())
 
 
 def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:

@@ -80,7 +80,7 @@ PAGE_EPILOG = (
     "Only this computer can open the page, by the printed link. If you stop the page during a job, start the "
     'job again to resume it. Needs the extra app: pip install "separatrix[app]".'
 )
-NEEDED = ("starlette", "uvicorn", "plotly")
+NEEDED = ("starlette", "uvicorn")
 MOST_PORT = 65535
 
 

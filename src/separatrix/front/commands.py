@@ -162,7 +162,7 @@ def options_of(asked: Tool, given: Given) -> Any:
 
 def verb_command(verb: Verb, about: str) -> click.Command:
     """Return the command of a verb."""
-    after = *("full",) * verb.has_full, "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs
+    after = "full", "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs
     takes = beside("study") | asked_of(verb) | beside(*after)
     return command(verb.name, partial(run, verb), takes, about, verb.epilog)
 
@@ -244,7 +244,7 @@ def tool_command(tool: Tool, about: str) -> click.Command:
     """Return the command of a tool."""
     is_long = tool.takes_time or tool.folder
     names = {
-        "full": tool.has_full,
+        "full": True,
         "json": True,
         "out": tool.folder,
         "quiet": is_long,

@@ -26,7 +26,6 @@ class Leaf(NamedTuple):
     value: object
     unit: str | None = None
     axes: tuple[str, ...] | None = None
-    long_name: str = ""
 
     @property
     def number(self) -> float | None:

@@ -1,4 +1,4 @@
-"""Records and documents as labelled arrays with units, and as tables of pandas."""
+"""Documents as labelled arrays with units, and as tables of pandas."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from separatrix.ground.plain_data import Group, Item, Leaf, Node, Table, node_of
 from separatrix.ground.units import Rows
 
 if TYPE_CHECKING:
+    import pandas as pd
     from numpy.typing import NDArray
 
 RACES = ("inner", "outer")
@@ -37,6 +38,30 @@ def dataset(found: Mapping[str, Any]) -> xr.Dataset:
         if key in found and key != "units":
             data.attrs[key] = found[key] if isinstance(found[key], str | int) else json.dumps(found[key])
     return data
+
+
+def main_table(data: xr.Dataset) -> pd.DataFrame:
+    """Return the arrays of an answer that have the dimensions of its main table, in SI units.
+
+    A row is a ball of a bearing, a point of traction curves, of a stability curve or of a map, a sample of a
+    run, a candidate in an environment, a case of a sweep. An array with one more dimension has a column for
+    each place on it.
+    """
+    wanted = next(one for one in MAIN if set(one) <= set(data.dims))
+    columns: dict[str, xr.DataArray] = {}
+    for name, found in data.data_vars.items():
+        if found.dims == wanted:
+            columns[str(name).removeprefix(f"{wanted[-1]}_")] = found
+        elif len(wanted) == 1 and found.dims[:1] == wanted and found.ndim == 2:
+            columns |= {f"{name}_{i}": found[:, i] for i in range(found.shape[1])}
+    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe(dim_order=list(wanted))
+
+
+MAIN = (
+    *(("case",), ("y", "x"), ("time",), ("environment", "material"), ("restitution_factor",)),
+    *(("race", "increment"), ("push",), ("ball",), ("race",)),
+)
+"""Dimensions of the main tables; an answer has that of the first that it has."""
 
 
 def arrays_of(item: Item) -> xr.Dataset:
@@ -117,8 +142,7 @@ def _stacked(table: Table) -> Columns:
 
 def variable(leaf: Leaf) -> xr.Variable:
     """Return a leaf with its axes as a variable with its unit."""
-    attributes = {"units": leaf.unit, "long_name": leaf.long_name}
-    attrs = {name: value for name, value in attributes.items() if value}
+    attrs = {"units": leaf.unit} if leaf.unit else {}
     return xr.Variable(leaf.axes or (), _array(leaf.value, is_text=leaf.unit is None), attrs=attrs)
 
 

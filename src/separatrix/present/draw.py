@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -34,7 +35,6 @@ from separatrix.present.figure import (
     Numbers,
     Panel,
     Trace,
-    Words,
     apart,
 )
 
@@ -69,17 +69,13 @@ NOTHING: dict[str, dict[str, None]] = {
 }
 """Endings of pictures, and what is left out of each so that the same data make the same bytes."""
 
+ONE_AT_A_TIME = threading.Lock()
+"""Settings of matplotlib and its reader of formulas are those of the whole process."""
+
 DASHES: dict[str, Any] = {"-": "-", "": "", ":": ":", "--": (0, (5, 2)), "-.": (0, (6, 1.5, 1, 1.5))}
 SYMBOLS = {name: rf"\{name}" for name in ("eta", "mu", "zeta", "alpha", "xi")} | {"dxi": r"\delta\xi"}
-SIDES: dict[str, dict[str, Any]] = {
-    "right": {"xytext": (4, 0), "ha": "left", "va": "center"},
-    "left": {"xytext": (-4, 0), "ha": "right", "va": "center"},
-    "above": {"xytext": (0, 4), "ha": "center", "va": "bottom"},
-    "below": {"xytext": (0, -4), "ha": "center", "va": "top"},
-    "on": {"xytext": (0, 0), "ha": "center", "va": "center"},
-}
 BESIDE: dict[str, Any] = {"xycoords": "axes fraction", "fontsize": 7.0, "annotation_clip": False}
-"""How words stand beside their place, and labels beside a panel."""
+"""How labels stand beside a panel."""
 
 MOST_NAMED = 3000.0
 """Ratio of the ends of a logarithmic axis below which 2 and 5 are named, too."""
@@ -90,7 +86,7 @@ def save(spec: Figure, *paths: Path) -> Drawing:
     for path in paths:
         if path.suffix not in NOTHING:
             raise InputError(str(path), f"must end in {', '.join(NOTHING)}", got=f'"{path.suffix}"')
-    with mpl.rc_context(STYLE):
+    with ONE_AT_A_TIME, mpl.rc_context(STYLE):
         figure = _drawn(spec)
         for path in paths:
             figure.savefig(path, metadata=NOTHING[path.suffix])
@@ -105,13 +101,27 @@ def plot(page: Page, name: str | None = None) -> Canvas:
     raise InputError(page.title, f"has no picture {name or 'of this answer'}")
 
 
+class Way(NamedTuple):
+    """An axis of a figure: its ends on paper, as shares from left or top, and their values [SI]."""
+
+    start: float
+    end: float
+    low: float
+    high: float
+    is_log: bool
+
+
 class Drawing(NamedTuple):
-    """A figure as SVG with its size [points], and the places that a reader can point at: x, y, and a text."""
+    """A figure as SVG with its size [points], and the places that a reader can point at: x, y, and a text.
+
+    `ways` are x and y of its first panel: where a click in it is.
+    """
 
     svg: str
     width: float
     height: float
     targets: tuple[tuple[float, float, str], ...] = ()
+    ways: tuple[Way, ...] = ()
 
 
 MOST_TARGETS, MOST_CELLS, MANY = 400, 900, 5000
@@ -123,7 +133,19 @@ def _svg(figure: Canvas, spec: Figure) -> Drawing:
     figure.savefig(buffer, format="svg", metadata=NOTHING[".svg"])
     axes = [one for one in figure.axes if one.get_label() != "<colorbar>"]
     places = [at for one, panel in zip(axes, spec.panels, strict=True) for at in _places(one, panel)]
-    return _small(buffer.getvalue())._replace(targets=tuple(places))
+    return _small(buffer.getvalue())._replace(targets=tuple(places), ways=_ways(axes[0], spec.panels[0]))
+
+
+def _ways(axes: Axes, panel: Panel) -> tuple[Way, Way]:
+    canvas: Any = axes.get_figure(root=True)
+    box = axes.get_window_extent().transformed(canvas.transFigure.inverted())
+
+    def way(start: float, end: float, limits: tuple[float, float], axis: Axis) -> Way:
+        low, high = (float(one) * axis.size for one in limits)
+        return Way(float(start), float(end), low, high, axis.is_log)
+
+    across = way(box.x0, box.x1, axes.get_xlim(), panel.x)
+    return across, way(1.0 - box.y0, 1.0 - box.y1, axes.get_ylim(), panel.y)
 
 
 def _places(axes: Axes, panel: Panel) -> Iterator[tuple[float, float, str]]:
@@ -146,7 +168,7 @@ def _places(axes: Axes, panel: Panel) -> Iterator[tuple[float, float, str]]:
 def formula(latex: str) -> Drawing:
     """Return a formula as SVG."""
     buffer = io.BytesIO()
-    with mpl.rc_context({**STYLE, "savefig.transparent": True}):
+    with ONE_AT_A_TIME, mpl.rc_context({**STYLE, "savefig.transparent": True}):
         math_to_image(f"${latex}$", buffer, prop=FontProperties(size=11), format="svg")
     return _small(buffer.getvalue().decode())
 
@@ -181,12 +203,9 @@ def _drawn(spec: Figure) -> Canvas:
         figure.suptitle(lines, x=0.008, ha="left", fontsize=7.0, linespacing=1.35)
     parts = figure.subfigures(len(spec.rows), 1, squeeze=False)[:, 0]
     for part, row in zip(parts, spec.rows, strict=True):
-        widths = spec.widths if len(spec.widths) == len(row) else None
-        across = part.subplots(1, len(row), squeeze=False, width_ratios=widths)[0]
+        across = part.subplots(1, len(row), squeeze=False)[0]
         for axes, panel in zip(across, row, strict=True):
             draw_panel(axes, panel)
-    for one in spec.legend:
-        _trace(figure.axes[0], one, spec.panels[0])
     _legend(figure)
     layout = figure.get_layout_engine()
     for _ in range(2):  # labels beside axes, and axes of equal scales, are known after the first
@@ -210,11 +229,8 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
         _mark(axes, mark, panel)
     _axis(axes, "x", panel.x)
     _axis(axes, "y", panel.y)
-    if not panel.has_frame:
-        axes.spines[:].set_visible(False)
-        axes.xaxis.label.set(fontsize=6.5, x=0.0, ha="left")
     if panel.is_to_scale:
-        is_given = not panel.has_frame or None not in (panel.x.low, panel.y.low)
+        is_given = None not in (panel.x.low, panel.y.low)
         axes.set_aspect("equal", adjustable="box" if is_given else "datalim", anchor="N")
     if panel.labels:
         _labels(axes, panel)
@@ -238,10 +254,6 @@ def _mark(axes: Axes, mark: Mark, panel: Panel) -> None:
             _cells(axes, mark, panel)
         case Hatched():
             _hatched(axes, mark, panel)
-        case Words():
-            place = mark.x / panel.x.size, mark.y / panel.y.size
-            look = {"textcoords": "offset points", "fontsize": 7.0, "annotation_clip": False}
-            axes.annotate(symbols(mark.text), place, color=mark.colour, **look, **SIDES[mark.side])
 
 
 def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
@@ -252,16 +264,12 @@ def _axis(axes: Axes, way: Literal["x", "y"], one: Axis) -> None:
     ticks = getattr(axes, f"set_{way}ticks")
     if one.is_log:
         _log_ticks(axes.xaxis if way == "x" else axes.yaxis)
-    if one.most_ticks:
-        axes.locator_params(axis=way, nbins=one.most_ticks)
     if one.names:
         axes.tick_params(axis=way, length=0)
         ticks(range(len(one.names)), [_literal(name) for name in one.names])
     if one.ticks:
         ticks([at / one.size for at, _ in one.ticks], [_literal(name) for _, name in one.ticks])
         ticks([], minor=True)
-    if not one.has_ticks:
-        ticks([])
 
 
 def _log_ticks(axis: Any) -> None:
@@ -279,8 +287,6 @@ def _scaled(values: Numbers, axis: Axis) -> Array:
 
 def _trace(axes: Axes, one: Trace, panel: Panel) -> None:
     x, y = _scaled(one.x, panel.x), _scaled(one.y, panel.y)
-    if one.fill:
-        axes.fill(x, y, color=one.colour, alpha=one.fill, lw=0)
     if one.face:
         axes.fill(x, y, facecolor=one.face, lw=0, zorder=2)
     if one.low:

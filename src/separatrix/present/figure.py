@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -25,8 +25,7 @@ Numbers = Sequence[float | None]
 class Axis:
     """An axis: its label with symbol and unit, the size of that unit, its ends [SI].
 
-    `names` are those of the places 0, 1, ...; `ticks` are places with a name each, in the place of others;
-    `most_ticks` is a bound for numbers of many digits.
+    `names` are those of the places 0, 1, ...; `ticks` are places with a name each, in the place of others.
     """
 
     label: str
@@ -36,16 +35,14 @@ class Axis:
     is_log: bool = False
     names: tuple[str, ...] = ()
     ticks: tuple[tuple[float, str], ...] = ()
-    has_ticks: bool = True
-    most_ticks: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trace:
     """A line, marks, or both, with the interval of each point along x or y; `hover` is a text for each point.
 
-    `fill` is the opacity inside a closed line, `face` a colour there that hides what was drawn before,
-    `has_halo` a white edge above colours. A trace without points stands only in the legend.
+    `face` is a colour inside a closed line that hides what was drawn before, `has_halo` a white edge above
+    colours.
     """
 
     x: Numbers
@@ -60,7 +57,6 @@ class Trace:
     low: Numbers = ()
     high: Numbers = ()
     ends_along: str = "y"
-    fill: float = 0.0
     opacity: float = 1.0
     has_halo: bool = False
     face: str = ""
@@ -88,7 +84,6 @@ class Across:
     name: str = ""
     colour: str = BLACK
     line: str = "-"
-    hover: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,17 +114,6 @@ class Hatched:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Words:
-    """A text at a place of a panel, in data; `side` is where it stands beside the place."""
-
-    x: float
-    y: float
-    text: str
-    colour: str = BLACK
-    side: str = "right"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Label:
     """A text at the right of a panel, at a height, with a mark before it or a line to its place."""
 
@@ -139,15 +123,12 @@ class Label:
     marker: str = ""
 
 
-Mark = Trace | Band | Across | Cells | Hatched | Words
+Mark = Trace | Band | Across | Cells | Hatched
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Panel:
-    """Marks over two axes, that of y with both ends where there are `labels`; `head` is above these.
-
-    A drawing has no frame: the label of x is what stands below it.
-    """
+    """Marks over two axes, that of y with both ends where there are `labels`; `head` is above these."""
 
     title: str
     x: Axis
@@ -156,23 +137,18 @@ class Panel:
     labels: tuple[Label, ...] = ()
     head: str = ""
     is_to_scale: bool = False
-    has_frame: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Figure:
     """Rows of panels; what is named in them stands below, once; `heading` says of what it is.
 
-    `height` is that of a row [inch], and the width that of a page; `widths` are shares of the panels of a
-    row. `alt` tells what is seen to who does not see it. `legend` are signs that stand only below.
+    `height` is that of a row [inch], and the width that of a page.
     """
 
     rows: tuple[tuple[Panel, ...], ...]
     heading: tuple[str, ...] = ()
-    alt: str
     height: float = 2.5
-    widths: tuple[float, ...] = ()
-    legend: tuple[Trace, ...] = field(default=())
 
     @property
     def panels(self) -> list[Panel]:
@@ -182,13 +158,7 @@ class Figure:
     @property
     def named(self) -> list[Any]:
         """What has a name in the legend."""
-        marks = [one for panel in self.panels for one in panel.marks]
-        return [one for one in (*marks, *self.legend) if getattr(one, "name", "")]
-
-
-def sign(marker: str, colour: str, name: str, *, line: str = "", is_open: bool = False) -> Trace:
-    """Return what stands only below the panels, to explain a mark."""
-    return Trace(x=(), y=(), line=line, marker=marker, colour=colour, name=name, size=5.0, is_open=is_open)
+        return [one for panel in self.panels for one in panel.marks if getattr(one, "name", "")]
 
 
 def apart(wanted: Sequence[float], gap: float = 0.055) -> list[float]:

@@ -100,7 +100,7 @@ def body(
     view: Callable[[View], str] | None = None,
 ) -> str:
     """Return the blocks of a page; `picture` shows a picture otherwise than as SVG, `view` a view."""
-    return "\n".join(_block(one, picture or _picture, view or _view) for one in page.at(level).blocks)
+    return "\n".join(_block(one, picture or drawn, view or _view) for one in page.at(level).blocks)
 
 
 def _static(name: str) -> str:
@@ -171,12 +171,12 @@ def _meant(cell: Cell, text: str) -> str:
     return f'<span title="{escape(meaning)}">{inline(text)}</span>' if meaning else inline(text)
 
 
-def _picture(one: Picture) -> str:
-    spec = one.figure()
-    return picture_html(one, draw.save(spec), spec.alt)
+def drawn(one: Picture) -> str:
+    """Return a picture as SVG that is drawn for it."""
+    return picture_html(one, draw.save(one.figure()))
 
 
-def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
+def picture_html(one: Picture, drawing: draw.Drawing) -> str:
     """Return a picture as it was drawn, with the places that a reader can point at."""
     circles = "".join(
         f'<circle cx="{x}" cy="{y}" r="4" tabindex="{0 if place == 0 else -1}" role="img" '
@@ -188,9 +188,10 @@ def picture_html(one: Picture, drawing: draw.Drawing, alt: str) -> str:
         f'aria-label="Points of the figure: arrow keys move from one to the next">{circles}</svg>'
     )
     hint = ' <span class="screen">Point at a mark for its numbers.</span>' if circles else ""
-    image = _image(drawing, alt)
+    image = _image(drawing, one.caption)
     caption = f"<figcaption>{inline(one.caption)}{hint}</figcaption>"
-    return f'<figure><div class="paper">{image}{over if circles else ""}</div>{caption}</figure>'
+    paper = f'<div class="paper" data-ways="{json.dumps(drawing.ways)}">'
+    return f"<figure>{paper}{image}{over if circles else ''}</div>{caption}</figure>"
 
 
 def _view(one: View) -> str:

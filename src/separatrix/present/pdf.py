@@ -60,9 +60,8 @@ def _block(block: Block) -> dict[str, Any]:
         case Equation(latex=latex, words=words):
             return {"kind": "equation", "alt": latex, "caption": _spans(words)} | _drawn(draw.formula(latex))
         case Picture():
-            spec = block.figure()
-            found = {"kind": "picture", "alt": spec.alt, "caption": _spans(block.caption)}
-            return found | _drawn(draw.save(spec))
+            found = {"kind": "picture", "alt": block.caption, "caption": _spans(block.caption)}
+            return found | _drawn(draw.save(block.figure()))
         case _:
             raise TypeError(type(block).__name__)
 

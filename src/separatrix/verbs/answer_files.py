@@ -1,4 +1,4 @@
-"""The document of an answer, its arrays, and its files: its page as text, HTML, workbook and pictures."""
+"""The document of an answer, and its files: its page as text, HTML, workbook and pictures, its arrays."""
 
 from __future__ import annotations
 
@@ -12,9 +12,6 @@ from separatrix.ground.files import staged
 from separatrix.verbs.verb import Tool, Verb
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
     from separatrix.present.blocks import Page, Picture
     from separatrix.study.study import Study
     from separatrix.verbs import Computed
@@ -124,9 +121,8 @@ def _draw(page: Page, stage: Path, name: str) -> None:
 
     def picture(one: Picture) -> str:
         if one.name not in drawn:
-            spec = one.figure()
-            drawing = draw.save(spec, stage / f"{one.name}.png", stage / f"{one.name}.svg")
-            drawn[one.name] = picture_html(one, drawing, spec.alt)
+            drawing = draw.save(one.figure(), stage / f"{one.name}.png", stage / f"{one.name}.svg")
+            drawn[one.name] = picture_html(one, drawing)
         return drawn[one.name]
 
     for one in page.blocks:
@@ -137,51 +133,3 @@ def _draw(page: Page, stage: Path, name: str) -> None:
     if name:
         level = Level.REPORT | Level.FULL
         (stage / f"{name}.html").write_text(html(page, level=level, picture=picture), encoding="utf-8")
-
-
-def to_xarray(answer: object) -> xr.Dataset:
-    """Return the labelled arrays of an answer, with their units, without the study behind it."""
-    from separatrix.ground.plain_data import Group, node_of, plain, shape, units_of
-    from separatrix.present.dataset import arrays_of
-    from separatrix.verbs import cage_answers  # noqa: F401 - with the shapes of all records
-
-    node = Group(shape(answer))
-    return arrays_of(node_of(plain(node, left_out=[]), units_of(node)))
-
-
-def to_dataframe(answer: object, *dims: str) -> pd.DataFrame:
-    """Return the arrays of an answer that have the same dimensions as a table, a row for each place.
-
-    Parameters
-    ----------
-    answer : record
-        What a verb computed.
-    *dims : str
-        Names of the dimensions; by default those of its main table: the balls of a bearing, the points of
-        traction curves, of a stability curve and of a map, the samples of a run, the candidates in each
-        environment, the cases of a sweep. ``("environment", "material", "sample")`` are the single bearings
-        behind the probabilities of `sensitivity`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Values in SI units. A variable with one more dimension has a column for each place on it.
-    """
-    import xarray as xr
-
-    data = to_xarray(answer)
-    wanted = dims or next(one for one in MAIN if set(one) <= set(data.dims))
-    columns: dict[str, xr.DataArray] = {}
-    for name, variable in data.data_vars.items():
-        if variable.dims == wanted:
-            columns[str(name).removeprefix(f"{wanted[-1]}_")] = variable
-        elif len(wanted) == 1 and variable.dims[:1] == wanted and variable.ndim == 2:
-            columns |= {f"{name}_{i}": variable[:, i] for i in range(variable.shape[1])}
-    return xr.Dataset(columns).reset_coords(drop=True).to_dataframe(dim_order=list(wanted))
-
-
-MAIN = (
-    *(("case",), ("y", "x"), ("time",), ("environment", "material"), ("restitution_factor",)),
-    *(("race", "increment"), ("push",), ("ball",), ("race",)),
-)
-"""Dimensions of the main tables; an answer has that of the first that it has."""

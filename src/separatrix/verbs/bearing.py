@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Equation, Heading, Page, Picture, Table, facts, text_column
-from separatrix.present.figure import BLUE, VERMILION, Figure, Panel, Trace
-from separatrix.verbs.parts.answer_page import figure, page_of
+from separatrix.present.blocks import Equation, Heading, Page, Table, facts, text_column
+from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
-from separatrix.verbs.parts.quantity_text import axis, by_race, cell, column, fact, show
+from separatrix.verbs.parts.quantity_text import by_race, column, fact, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -55,7 +54,6 @@ def page(answer: Part) -> Page:
         ),
         Heading("Balls"),
         balls(answer),
-        *([] if are_alike(answer) else [Picture("bearing-balls", lambda: balls_figure(answer), AROUND)]),
         Heading("Contacts of the most loaded ball"),
         by_race("contacts", *contacts, *CONTACT),
         Equation(
@@ -90,29 +88,6 @@ def are_alike(answer: Part) -> bool:
     """Whether every ball carries the same to the digits shown."""
     names = ("load_inner", "load_outer", "contact_angle_inner", "contact_angle_outer", "orbital_speed")
     return len({tuple(show(ball, name) for name in names) for ball in answer.balls}) == 1
-
-
-AROUND = "Ball loads and contact angles around the bearing."
-
-
-def balls_figure(answer: Part) -> Figure:
-    """Return load and contact angle around the bearing; a contact without a load has no angle."""
-    balls, panels = answer.balls, []
-    for name, title in (("load", "a  Ball load"), ("contact_angle", "b  Contact angle")):
-        marks, every = [], []
-        for race, colour, marker in (("inner", BLUE, "o"), ("outer", VERMILION, "s")):
-            key = f"{name}_{race}"
-            known = [
-                ball.get(key) if name == "load" or ball.get(f"{race}_contact") else None for ball in balls
-            ]
-            hover = tuple(f"ball {ball.ball + 1}, {race} race: {cell(ball, key).text}" for ball in balls)
-            look: dict[str, Any] = {"colour": colour, "marker": marker, "name": f"{race} race"}
-            marks.append(Trace(x=[ball.azimuth for ball in balls], y=known, hover=hover, width=0.8, **look))
-            every += [one for one in known if one is not None]
-        x = axis("azimuth", "rad", [ball.azimuth for ball in balls])
-        y = axis(name, balls[0].unit(key), every, low=0.0 if name == "load" else None)
-        panels.append(Panel(title=title, x=x, y=y, marks=tuple(marks)))
-    return figure(answer, tuple(panels), alt=AROUND)
 
 
 VERB = Verb(name="bearing", compute=compute, page=page)

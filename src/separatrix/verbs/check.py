@@ -165,4 +165,4 @@ def assumed(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [(name, "; ".join(each)) for name, each in grouped(found).items()]
 
 
-VERB = Verb(name="check", compute=compute, page=page, has_full=True, writes_data=False)
+VERB = Verb(name="check", compute=compute, page=page, writes_data=False)

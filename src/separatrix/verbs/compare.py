@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from separatrix.ground.document import Document, Part, part_of
 from separatrix.ground.errors import InputError
@@ -66,7 +66,7 @@ MOST_ROWS = 500
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
-    """A result in one answer, with its 95 % interval if it has one."""
+    """A result in one answer, or its change, with its 95 % interval if it has one."""
 
     value: float | int | str | bool | None  # null where this answer lacks it
     low: float | None = None  # lower end of its 95 % interval
@@ -82,11 +82,8 @@ class Row:
     unit: str = "-"  # SI unit of the numbers
     first: Value  # value of the first answer
     second: Value  # value of the second one
-    change: float | None = None  # second less first
-    change_low: float | None = None  # ends of its 95 % interval
-    change_high: float | None = None  # upper end
-    relative: float | None = None  # change over the larger of both
-    beyond_noise: bool | None = None  # whether 0 is outside that interval; null without one
+    change: Value | None = None  # second less first; null of texts
+    beyond_noise: bool | None = None  # whether 0 is outside its interval; null without one
 
 
 NOT_RESULTS = (
@@ -102,13 +99,11 @@ GRIDS = ("curve", "linear_limit")
 """Numbers that name a row, and lists whose rows need not be at the same values in two answers."""
 
 DECISIONS = ("verdict", "paper_verdict", "uncertain_verdict", "decision", "outcome", "rank")
-"""Names of verdicts, of a decision of a map, of the outcome of a run, and of a rank."""
-
 MAIN = (
     *("safety_factor", "restitution_threshold", "margin", "probability_stable"),
     *("own_critical_friction", "critical_friction", "restitution_factor"),
 )
-"""Names of other results that a reader decides by; beside them are the numbers behind them."""
+"""Names of results that a reader decides by: verdicts, outcomes and ranks, and the numbers behind them."""
 
 NORMAL_95 = 1.959963984540054
 
@@ -198,12 +193,11 @@ def _judged(row: Row) -> Row:
     a, b = row.first, row.second
     if not is_number(a.value) or not is_number(b.value):
         return row
-    change = float(b.value) - float(a.value)
-    row = replace(row, change=change, relative=change / (max(abs(a.value), abs(b.value)) or 1.0))
     if a.low is None or a.high is None or b.low is None or b.high is None:
-        return row
+        return replace(row, change=Value(value=b.value - a.value))
     low, high = difference_interval((a.value, a.low, a.high), (b.value, b.low, b.high))
-    return replace(row, change_low=low, change_high=high, beyond_noise=not low <= 0.0 <= high)
+    change = Value(value=b.value - a.value, low=low, high=high)
+    return replace(row, change=change, beyond_noise=not low <= 0.0 <= high)
 
 
 def order(row: Row) -> tuple[bool, bool, int, int, int, float]:
@@ -212,7 +206,9 @@ def order(row: Row) -> tuple[bool, bool, int, int, int, float]:
     noise = (True, None, False).index(row.beyond_noise)
     places = row.place.count(" / ")
     others = row.name not in DECISIONS, row.name not in MAIN
-    return *others, places, names.index(row.name), noise, -abs(row.relative or 0.0)
+    sides = row.first, row.second, row.change
+    first, second, change = (abs(one.value) if one and is_number(one.value) else 0.0 for one in sides)
+    return *others, places, names.index(row.name), noise, -change / (max(first, second) or 1.0)
 
 
 def compared(
@@ -277,7 +273,7 @@ def inputs_of_answer(one: Document) -> dict[str, tuple[object, str | None]]:
 
 
 # --- the page -----------------------------------------------------------------------------------
-ON_A_SCREEN = 8
+ON_A_SCREEN = 12
 
 LEGEND = (
     f"{MARK} more than counting noise: the 95 % interval of the change excludes 0 (of shares of runs: "
@@ -287,9 +283,7 @@ ONE_RUN = "A single run of each is not evidence: repeated runs of the same cages
 
 
 def page(answer: Part) -> Page:
-    """Return the page of `compare`: what a reader decides first, then inputs, then the largest changes."""
-    decisions = [one for one in answer.rows if one.name in DECISIONS]
-    others = [one for one in answer.rows if one.name not in DECISIONS]
+    """Return the page of `compare`: what a reader decides first, then the largest changes, then inputs."""
     named = [
         f"{one.title} ({printable(one.path, 80)}, seed {one.seed}){', interrupted' * (not one.complete)}"
         for one in answer.answers
@@ -300,55 +294,52 @@ def page(answer: Part) -> Page:
         f"Compared by separatrix {answer.separatrix_version}",
         (
             facts(("First", named[0]), ("Second", named[1]), ("Environment", place)),
-            Note(" ".join(_lead(answer)), "lead"),
-            *_tables("Verdicts and ranks that changed", decisions, (*PLACE, *SIDES)),
-            *_tables("Inputs that differ", answer.inputs or (), INPUTS),
-            *_tables("Results that differ", others, (*PLACE, *SIDES, CHANGE)),
+            Note(_lead(answer), "lead"),
+            *_table("Results that differ", answer.rows or (), RESULTS),
             *(Note(text, "legend") for text in _notes(answer)),
+            *_table("Inputs that differ", answer.inputs or (), INPUTS),
         ),
     )
 
 
-def _lead(answer: Part) -> Iterator[str]:
-    """Yield what a reader decides by."""
-    rows = answer.rows
-    if not rows:
-        yield "The two answers are equal in every result."
-    changed = grouped((row.name.replace("_", " "), row) for row in rows if row.name in DECISIONS)
-    if changed:
-        yield f"Changed: {', '.join(f'{name} ({len(each)})' for name, each in changed.items())}."
-    elif rows:
-        yield "No verdict or rank changed."
-    beyond = grouped((_words(row.name), row) for row in rows if row.name in MAIN and row.beyond_noise)
-    if beyond:
-        counts = ", ".join(f"{name} ({len(each)})" for name, each in beyond.items())
-        yield f"Changed by more than counting noise: {counts}."
+def _lead(answer: Part) -> str:
+    """Return the decisions that changed, and the numbers behind them that did so beyond noise."""
+    if not answer.rows:
+        return "The two answers are equal in every result."
+    known = [row for row in answer.rows if row.name in DECISIONS or (row.name in MAIN and row.beyond_noise)]
+    changed = ", ".join(f"{name} ({len(each)})" for name, each in grouped(_named(known)).items())
+    if not any(row.name in DECISIONS for row in known):
+        more = f" Changed by more than counting noise: {changed}." if changed else ""
+        return f"No verdict or rank changed.{more}"
+    return f"Changed, numbers by more than counting noise: {changed}."
 
 
-def _tables(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Iterator[Block]:
-    """Yield a table under its title: the first rows on a screen; else all."""
-    more = f"{len(rows) - ON_A_SCREEN} more differ: `--full`." if len(rows) > ON_A_SCREEN else ""
-    yield Heading(title)
-    yield Table(title, columns, tuple(rows[:ON_A_SCREEN]), more, Level.BRIEF)
-    yield Table(title, columns, tuple(rows), "", Level.LONG)
+def _named(rows: Sequence[Part]) -> Iterator[tuple[str, Part]]:
+    return ((_words(row.name), row) for row in rows)
 
 
 def _words(name: str) -> str:
     return quantity(name).label if name else "in the answer"
 
 
-def _cell(row: Part, value: Any, low: float | None = None, high: float | None = None) -> Cell:
-    """Return a value of a row as a cell; a text or a truth as words."""
+def _table(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Iterator[Block]:
+    """Yield a table under its title: the first rows on a screen; else all."""
+    more = f"{len(rows) - ON_A_SCREEN} more differ: `--full`." if len(rows) > ON_A_SCREEN else ""
+    yield Heading(title)
+    yield Table(title, columns, tuple(rows[:ON_A_SCREEN]), more, Level.BRIEF)
+    yield Table(title, columns, tuple(rows), level=Level.LONG)
+
+
+def _cell(row: Part, name: str) -> Cell:
+    """Return a side of a row, or its change; a text or a truth as words."""
+    found = row.get(name)
+    value, low, high = (found.value, found.low, found.high) if found else (None, None, None)
     if not is_number(value):
         return Cell(ABSENT if value is None else str(value))
     form = ".0f" if isinstance(value, int) else ""
     known = Quantity(label=row.name, unit=quantity(row.name).unit, form=form)
-    return Cell(Estimate(value, low, high), known, row.get("unit"))
-
-
-def _side(row: Part, which: str) -> Cell:
-    side = row.get(which)
-    return _cell(row, side.value, side.low, side.high)
+    mark = MARK * bool(name == "change" and row.beyond_noise)
+    return Cell(Estimate(value, low, high), known, row.get("unit"), mark)
 
 
 def _input(row: Part, which: str) -> str:
@@ -356,10 +347,10 @@ def _input(row: Part, which: str) -> str:
 
 
 BOTH = ("first", "second")
-PLACE = text_column("where", lambda row: row.place), text_column("what", lambda row: _words(row.name))
-SIDES = tuple(Column(which, partial(_side, which=which), is_text=True) for which in BOTH)
-CHANGE = Column(
-    "change", lambda row: replace(_cell(row, row.change), mark=MARK * bool(row.beyond_noise)), is_text=True
+RESULTS = (
+    text_column("where", lambda row: row.place),
+    text_column("what", lambda row: _words(row.name)),
+    *(Column(which, partial(_cell, name=which), is_text=True) for which in (*BOTH, "change")),
 )
 INPUTS = (
     text_column("input", lambda row: row.key),
@@ -386,5 +377,4 @@ VERB = Tool(
     options=Options,
     rows="rows",
     folder="compare",
-    has_full=True,
 )

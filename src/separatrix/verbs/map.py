@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
-from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace, sign
-from separatrix.verbs.parts.answer_page import figure_heading, is_chosen, page_of
+from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
+from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
 from separatrix.verbs.parts.curve_blocks import linear_law, pocket_friction
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
@@ -249,14 +249,9 @@ def map_figure(answer: Part) -> Figure:
         for one in (answer.x, answer.y)
     )
     kick = "" if KICK in _names(answer) else fill(answer, ", initial disturbance {kick}")
-    title, marks = f"Share of the runs that whirl{kick}", (*_cells(answer), *_overlays(answer))
-    return Figure(
-        rows=((Panel(title=title, x=x, y=y, marks=marks),),),
-        heading=figure_heading(answer, varied=[one.rpartition(".")[2] for one in _names(answer)]),
-        alt="Map of the share of runs that whirl over two inputs of the study.",
-        height=4.1,
-        legend=(sign("|", VERMILION, "begins to whirl between these points"),) if answer.changes else (),
-    )
+    marks = (*_cells(answer), *_overlays(answer))
+    panel = Panel(title=f"Share of the runs that whirl{kick}", x=x, y=y, marks=marks)
+    return figure(answer, (panel,), height=4.1, varied=_names(answer))
 
 
 def _cells(answer: Part) -> Iterator[Mark]:
@@ -295,7 +290,9 @@ def _overlays(answer: Part) -> Iterator[Mark]:
         yield replace(law, colour=BLACK, has_halo=True)
     if found:
         place, low, high = ([one.get(name) for one in found] for name in ("x", "y_low", "y_high"))
-        yield Trace(x=place, y=low, low=low, high=high, line="", colour=VERMILION)
+        middle = [0.5 * (one.y_low + one.y_high) for one in found]
+        bar: dict[str, Any] = {"line": "", "marker": "|", "colour": VERMILION, "low": low, "high": high}
+        yield Trace(x=place, y=middle, name="begins to whirl between these points", **bar)
     if _has_here(x) and _has_here(y):
         look: dict[str, Any] = {"line": "", "marker": "D", "size": 6.0, "is_open": True, "has_halo": True}
         yield Trace(x=[x.here], y=[y.here], name="the study itself", **look)

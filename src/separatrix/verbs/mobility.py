@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
-from separatrix.present.blocks import Equation, Heading, Level, Note, Page, Picture, Table, facts
+from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, facts
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
-from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, place_column, show
+from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, places_table, show
 from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
@@ -58,12 +58,7 @@ def page(answer: Part) -> Page:
             ("Largest error of the law", fill(answer, "{law_error} of the capacity")),
             ("Forward and backward differ by", fill(answer, "up to {asymmetry} of the capacity")),
         ),
-        Table(
-            "pushes",
-            tuple(place_column(answer, name) for name in PUSH),
-            tuple(range(len(answer.speed))),
-            level=Level.SHEET,
-        ),
+        places_table("pushes", answer, *PUSH),
         Picture("mobility", lambda: push_figure(answer), PUSHED),
     )
 
@@ -93,7 +88,7 @@ def push_figure(answer: Part) -> Figure:
     label, most = "force of the races $F$", 1.25 * capacity
     y = axis("force_law", answer.unit("capacity"), [capacity], label=label, low=0.0, high=most)
     panel = Panel(title="Ball pushed along its orbit", x=x, y=y, marks=tuple(marks))
-    return figure(answer, (panel,), alt=PUSHED, height=3.2)
+    return figure(answer, (panel,), height=3.2)
 
 
 VERB = Verb(

@@ -45,7 +45,6 @@ from separatrix.verbs.parts.quantity_text import (
     fact,
     fill,
     known_columns,
-    number_of,
     quantity,
     show,
 )
@@ -86,15 +85,6 @@ SHORT = (
     "largest_land_force",
     "rubbing_power",
 )
-MOTION = (
-    "growth_rate",
-    "whirl_frequency",
-    "whirl_ratio",
-    "mean_offset",
-    "end_energy",
-    "cone_ratio",
-    "axial_travel",
-)
 NAME = text_column("material", lambda row: row.name)
 POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_radius")
 
@@ -127,23 +117,21 @@ def page(answer: Part) -> Page:
     others = [one for one in answer.environments if one.name != answer.environment]
     rows = own.materials
     known = [row for row in rows if is_judged(row)]
-    motion = (NAME, *known_columns(map(evidence_column, MOTION), known))
+    apart = [row.name for row in known if row.get("paper_verdict") not in (None, row.verdict)]
     kicks = ", ".join(disturbances(answer))
     overall = verdicts("Overall: mean friction over the measured environments", answer.overall, LONG)
     return page_of(
         answer,
         Note(" ".join([verdict_sentences(rows, own.name), *deciding(answer, rows)]), "lead"),
         *verdicts(own.name, rows),
-        *by_paper(answer, known),
+        *by_paper(answer, known, apart),
         *over_inputs(answer, rows),
         *pictures(answer, own),
         Heading(fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
-        Table(f"{own.name}, motion", motion, tuple(known), explained(motion), LONG),
-        *(Note(f"{row.name}: {row.reason}", level=BRIEF) for row in known if row.verdict == "UNDECIDED"),
+        *undecided(known),
         reasons(rows),
-        Note(f"`--full` has all evidence{', and the other environments' * bool(others)}.", level=BRIEF),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
         Heading("Ball on pocket", LONG, 3),
@@ -154,6 +142,11 @@ def page(answer: Part) -> Page:
         *(overall if others else []),
         candidate_numbers(answer),
         draws=True,
+        more=[
+            *[f"the paper's method{'' if apart else ' (the same verdicts)'}"] * has_safety(rows),
+            "all evidence",
+            *["the other environments"] * bool(others),
+        ],
     )
 
 
@@ -177,8 +170,7 @@ def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> li
     )
     table = Table(name, columns, tuple(rows), level=level)
     legend = [Note(explained(columns), "legend", LONG)] if level == Level.ALWAYS else []
-    notes = [one for one in footnotes(rows) if one.level & level]
-    return [Heading(begun(name), LONG), table, *legend, *notes]
+    return [Heading(begun(name), LONG), table, *legend, *footnotes(rows, level)]
 
 
 def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
@@ -186,37 +178,26 @@ def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
     return dict(zip((row.name for row in rows), rank_texts(row.get("rank") for row in rows), strict=True))
 
 
-def by_paper(answer: Part, judged: Sequence[Part]) -> list[Block]:
-    """Return the answer of the paper's model beside another one, and where the two differ."""
+def by_paper(answer: Part, judged: Sequence[Part], apart: Sequence[str]) -> list[Block]:
+    """Return the answer of the paper's model beside another one, and for whom the two stand apart."""
     rows = [row for row in judged if row.get("paper_verdict") is not None]
     if not has_safety(rows):
         return []
-    threshold = "restitution_threshold"
-
-    def numbers(row: Part) -> str:
-        return f"{number_of(row, threshold, row.restitution_threshold)}, {show(row, 'margin')}"
-
-    columns = (
-        NAME,
-        column(threshold),
-        column("margin"),
-        column("paper_probability_stable"),
-        text_column("verdict", lambda row: row.paper_verdict),
-    )
+    numbers = ("restitution_threshold", "margin", "paper_probability_stable")
+    columns = (NAME, *map(column, numbers), text_column("verdict", lambda row: row.paper_verdict))
     model = fill(answer.chain, "in the plane, balls as dampers of {race_damping}, Eq. 18")
-    apart = [row.name for row in rows if row.paper_verdict != row.verdict]
-    why = ""
-    if apart:
-        why = f" It differs for {', '.join(apart)}: " + fill(
-            answer.chain,
-            "a ball that may spin yields to a slow push by {race_damping_free_spin}, and takes more energy "
-            "from an impact.",
-        )
-    each = grouped((row.paper_verdict, f"{row.name} ({numbers(row)})") for row in rows)
-    words = f"The paper's method ({model}; threshold, margin): {by_verdict(each)}.{why}"
-    heading = Heading("The paper's method", LONG, 3)
-    table = Table("The paper's method", columns, tuple(rows), f"{begun(model)}.{why}", LONG)
-    return [Note(words, level=BRIEF), heading, table]
+    why = fill(
+        answer.chain,
+        f" It differs for {', '.join(apart)}: a ball that may spin yields to a slow push by "
+        "{race_damping_free_spin}, and takes more energy from an impact.",
+    )
+    each = by_verdict(grouped((row.paper_verdict, row.name) for row in rows))
+    caption = f"{begun(model)}.{why if apart else ''}"
+    return [
+        *([Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF)] if apart else []),
+        Heading("The paper's method", LONG, 3),
+        Table("The paper's method", columns, tuple(rows), caption, LONG),
+    ]
 
 
 def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
@@ -246,19 +227,26 @@ def reasons(rows: Sequence[Part]) -> Block:
     return facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)
 
 
+def undecided(rows: Sequence[Part]) -> list[Block]:
+    """Return why candidates are undecided, for a screen."""
+    each = grouped((row.reason, row.name) for row in rows if row.verdict == "UNDECIDED")
+    return [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in each.items()]
+
+
 # Words.
 
 
-def footnotes(rows: Sequence[Part]) -> list[Note]:
-    """Return in what respect frictions are extrapolated; on a screen, that of all of them."""
+def footnotes(rows: Sequence[Part], level: Level) -> list[Note]:
+    """Return in what respect frictions are extrapolated; on a screen, the first one."""
     measured = [row for row in rows if "friction" in row]
     who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
-    of_all = [f"{one}." for one, names in who.items() if len(names) == len(measured)]
-    some = [f"{one} ({', '.join(names)})." for one, names in who.items() if len(names) < len(measured)]
-    words = " ".join([f"{MARK} extrapolated beyond the tests:", *of_all])
-    found = [Note(" ".join([words, *some]), "legend", LONG)]
-    found += [Note(words + " More, by material: `--full`." * bool(some), "legend", BRIEF)]
-    return found if who else []
+    each = [
+        one if len(names) == len(measured) else f"{one} ({', '.join(names)})" for one, names in who.items()
+    ]
+    words = f"{MARK} extrapolated beyond the tests: {{}}."
+    brief = f"{each[0]}; more: `--full`" if each[1:] else each[0] if each else ""
+    notes = (Note(words.format("; ".join(each)), "legend", LONG), Note(words.format(brief), "legend", BRIEF))
+    return [one for one in notes if each and one.level & level]
 
 
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
@@ -322,11 +310,7 @@ def on_the_curve(answer: Part, own: Part) -> Figure:
         labels=labels,
         head="candidate  friction  verdict",
     )
-    alt = (
-        "Critical friction against restitution factor, with the friction of each candidate at the bearing's "
-        "own restitution factor; the table has the numbers."
-    )
-    return figure(answer, (panel,), alt=alt, height=4.3, more=(f"seed {answer.seed}",))
+    return figure(answer, (panel,), height=4.3, more=(f"seed {answer.seed}",))
 
 
 def look_of(word: str) -> dict[str, Any]:
@@ -390,8 +374,6 @@ def overview(answer: Part, own: Part) -> Figure:
     return figure(
         answer,
         (Panel(title=title, x=x, y=y, marks=tuple(found), labels=labels, head="verdict"),),
-        alt=f"{what} of each candidate in each environment, where the bearing runs with their interval; the "
-        "table has the numbers.",
         height=0.9 + 0.32 * len(place),
         more=(f"seed {answer.seed}",),
     )
@@ -403,7 +385,6 @@ VERB = Verb(
     page=page,
     needs=("cage", "ranking"),
     moves_a_cage=True,
-    has_full=True,
     keeps_runs=True,
     refusals=refusals,
 )

@@ -117,7 +117,7 @@ def film_figure(answer: Part, curve: Part) -> Figure:
         y=axis(ETA, curve.unit(ETA), [1.0], low=-0.02, high=1.0),
         marks=tuple(marks),
     )
-    return figure(answer, (panel,), alt=TITLE, height=3.0)
+    return figure(answer, (panel,), height=3.0)
 
 
 VERB = Verb(

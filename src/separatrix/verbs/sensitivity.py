@@ -14,31 +14,17 @@ from separatrix.present.blocks import (
     Level,
     Note,
     Page,
-    Picture,
     Table,
     explained,
     facts,
     grouped,
     text_column,
 )
-from separatrix.present.figure import (
-    GREY,
-    VERDICT_COLOURS,
-    VERDICT_MARKERS,
-    Across,
-    Axis,
-    Figure,
-    Mark,
-    Panel,
-    Words,
-    sign,
-)
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
     column,
     fill,
-    marks,
     number_of,
     show,
 )
@@ -47,7 +33,6 @@ from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
     evidence_column,
-    is_judged,
     judged,
     motion_column,
     verdict,
@@ -66,7 +51,6 @@ SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
 GUESS = "?"
 """After a friction whose scatter is a guess."""
 
-PICTURE = "Probability that a bearing's cage settles, of each candidate."
 LISTED, LEAST = 12, 0.02
 """Rows of sources, and the least share of an input shown; the workbook has all."""
 
@@ -132,7 +116,6 @@ def page(answer: Part) -> Page:
         *footnotes(answer, rows),
         Heading("Main sources of uncertainty"),
         *sources(answer),
-        Picture("sensitivity-probabilities", lambda: probabilities_figure(answer), PICTURE),
         Heading("Basis of this answer", Level.LONG),
         facts(*ensemble_facts(answer), level=Level.LONG),
         all_numbers("all numbers", ("material",), ((row.name, row) for row in rows)),
@@ -227,40 +210,6 @@ def is_friction(name: str) -> bool:
     return name.startswith("ranking.") and ".material." not in name
 
 
-# The picture.
-
-
-def probabilities_figure(answer: Part) -> Figure:
-    """Return P(stable) of every candidate, best at the top."""
-    order = sorted(answer.materials, key=lambda row: -1.0 if not is_judged(row) else row.probability_stable)
-    found: list[Mark] = [Across(at=at, colour=GREY, line=":") for at in (0.5, 0.9)]
-    for place, row in enumerate(order):
-        if not is_judged(row):
-            found.append(Words(x=0.0, y=float(place), text=verdict(row), colour=GREY))
-            continue
-        look = {"colour": VERDICT_COLOURS[row.verdict], "marker": VERDICT_MARKERS[row.verdict], "size": 4.5}
-        at = Part({**row.values, "place": place}, row.units)
-        found.append(marks([at], "probability_stable", "place", hover=_hover, **look))
-    names = tuple(row.name + MARK * bool(row.extrapolation) for row in order)
-    x = Axis(label="P(stable) [-]", low=-0.02, high=1.02)
-    y = Axis(label="", low=-0.6, high=len(names) - 0.4, names=names)
-    signs = [sign(marker, VERDICT_COLOURS[word], word) for word, marker in VERDICT_MARKERS.items()]
-    signs.append(sign("", GREY, "95 % interval", line="-"))
-    signs.append(sign("", GREY, "probabilities of 0.5 and 0.9", line=":"))
-    signs.append(sign("", GREY, f"{MARK} extrapolated beyond the tests"))
-    return Figure(
-        rows=((Panel(title=f"Drawn bearings in {answer.environment}", x=x, y=y, marks=tuple(found)),),),
-        heading=figure_heading(answer, f"seed {answer.seed}"),
-        alt=PICTURE,
-        height=0.75 + 0.25 * len(names),
-        legend=tuple(signs),
-    )
-
-
-def _hover(row: Part) -> str:
-    return f"{row.name}: {row.verdict}, P(stable) {show(row, 'probability_stable')}"
-
-
 VERB = Verb(
     name="sensitivity",
     epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
@@ -270,7 +219,6 @@ VERB = Verb(
     options=Options,
     needs=("cage", "ranking"),
     moves_a_cage=True,
-    has_full=True,
     keeps_runs=True,
     refusals=refusals,
 )

@@ -17,16 +17,14 @@ from separatrix.present.blocks import (
     Note,
     Page,
     Picture,
-    Table,
     View,
     facts,
-    text_column,
 )
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.curve_blocks import pocket_friction
-from separatrix.verbs.parts.quantity_text import fill, place_column, show
+from separatrix.verbs.parts.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
@@ -141,7 +139,7 @@ def page(answer: Part) -> Page:
         run_facts(answer),
         Heading("Motion and forces: means of the judged part"),
         motion_facts(answer),
-        pockets(answer),
+        places_table("pockets", answer, *POCKET, level=Level.REPORT | Level.SHEET, caption=POCKETS),
         Picture("simulation", lambda: _figure(answer), CAPTION),
         View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
         *(clearance_blocks(clearances) if clearances else []),
@@ -217,16 +215,7 @@ def _tilt(answer: Part) -> str | None:
 
 
 POCKET = ("pocket_angle", "half_play", "pocket_impacts", "impacts_per_turn", "pocket_rubbing_power")
-"""Numbers of each pocket."""
-
-
-def pockets(answer: Part) -> Table:
-    """Return a row for each pocket: its place, its clearance, its impacts and rubbing."""
-    number = text_column("pocket", lambda place: str(place + 1))
-    level = Level.REPORT | Level.SHEET
-    numbers = (place_column(answer, name) for name in POCKET if name in answer)
-    rows = tuple(range(len(answer.pocket_angle)))
-    return Table("pockets", (number, *numbers), rows, "Each pocket over the whole run.", level)
+POCKETS = "Each pocket over the whole run."
 
 
 CAPTION = (
@@ -244,7 +233,7 @@ def _figure(answer: Part) -> Figure:
         (panels.offset(answer), panels.forces(answer)),
     ]
     rows += [(panels.tilt(answer),)] if "lean" in answer else []
-    return figure(answer, *rows, alt=CAPTION, height=2.2)
+    return figure(answer, *rows, height=2.2)
 
 
 def _view(answer: Part) -> str:

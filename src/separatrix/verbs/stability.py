@@ -45,25 +45,16 @@ def page(answer: Part) -> Page:
     """Return the page of `stability`."""
     below = "disturbances decay, but the cage drifts" if answer.drifts else "the cage is stable"
     caption = f"Critical friction against restitution factor: below the band {below}, above it unstable."
-    here = answer.get("here")
-    is_overdamped = here is not None and here.restitution_factor == 0.0
     friction = ("Pocket friction", pocket_friction(answer) or "not stated")
     return page_of(
         answer,
         Note(" ".join([*own_words(answer), *friction_words(answer), *drift_words(answer)]), "lead"),
         *([Picture("stability-curve", lambda: curve_figure(answer), caption)] if answer.curve else []),
-        *([Note(OVERDAMPED, "legend")] if is_overdamped else []),
         Heading("Stability curve"),
         *curve_blocks(answer),
         Heading("Basis of this answer", Level.LONG),
         facts(*basis_facts(answer), friction, level=Level.LONG),
     )
-
-
-OVERDAMPED = (
-    "Impacts of this bearing are overdamped: its critical friction is found with its own race damping, the "
-    "curve's point at 0 with the largest damping that leaves no rebound."
-)
 
 
 def own_words(answer: Part) -> Iterator[str]:
@@ -117,8 +108,7 @@ def curve_figure(answer: Part) -> Figure:
         look: dict[str, Any] = {"line": "", "marker": "s", "size": 4.5, "name": name}
         own = [Trace(x=[answer.chain.restitution_factor], y=[friction], **look)]
     panel = curve_panel(answer, answer, more=own, frictions=[friction] if words else [])
-    alt = "Stability curve with its band and limits, and the bearing's own restitution factor."
-    return figure(answer, (panel,), alt=alt, height=3.6)
+    return figure(answer, (panel,), height=3.6)
 
 
 VERB = Verb(

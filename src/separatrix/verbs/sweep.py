@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from separatrix.ground.document import Part
 from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import CYCLE, GREY, MARKERS, Across, Axis, Figure, Mark, Panel
-from separatrix.verbs.parts.answer_page import figure_heading, page_of
+from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import (
     all_numbers,
     at,
@@ -228,12 +228,8 @@ def envelope_figure(answer: Part) -> Figure:
         found = (*_curves(answer, curves, known, name, is_line=is_line), *_upright(answer, name))
         title += "; dashed: its threshold" * ("restitution_threshold" in known)
         panels.append(Panel(title=title, x=x, y=y, marks=found))
-    return Figure(
-        rows=tuple(tuple(panels[i : i + 2]) for i in range(0, len(panels), 2)),
-        heading=figure_heading(answer, varied=[one.name.rpartition(".")[2] for one in answer.parameters]),
-        alt=ENVELOPE,
-        height=2.4,
-    )
+    rows = (tuple(panels[i : i + 2]) for i in range(0, len(panels), 2))
+    return figure(answer, *rows, height=2.4, varied=[one.name for one in answer.parameters])
 
 
 def _curves(

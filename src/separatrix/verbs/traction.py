@@ -102,7 +102,7 @@ def curves_figure(answer: Part) -> Figure:
     y = axis("traction_coefficient", answer.inner.unit("traction_coefficient"), [], low=-high, high=high)
     titles = "a  Ball on inner race", "b  Ball on outer race"
     panels = tuple(curves_panel(part, title, y) for part, title in zip(races, titles, strict=True))
-    return figure(answer, panels, (shear_panel(answer),), alt=CURVES, height=2.6)
+    return figure(answer, panels, (shear_panel(answer),), height=2.6)
 
 
 def curves_panel(part: Part, title: str, y: Axis) -> Panel:

@@ -38,7 +38,7 @@ from separatrix.present.figure import (
     Panel,
     Trace,
 )
-from separatrix.verbs.parts.quantity_text import column, itself, known_columns, quantity, show
+from separatrix.verbs.parts.quantity_text import column, fill, itself, known_columns, quantity
 from separatrix.verbs.verb import Option, Tool
 
 if TYPE_CHECKING:
@@ -74,13 +74,14 @@ FRICTION = Quantity(label="friction", digits=4)
 
 EXPONENT = Quantity(label="exponent", form=".3f")
 
-LEGEND = "friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
+LEGEND = "Friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
 NUMBERS = (
-    "scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. drift: of "
+    "Scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. Drift: of "
     "the steady part."
 )
+COURSE = "Friction along the test with its steady part; the tables have the numbers."
 FIT_LEGEND = (
-    "friction: of the material, at the middle of its tested conditions. standard error: of that. scatter: "
+    "Friction of the material at the middle of its tested conditions, with its standard error. Scatter: "
     "standard deviation of a new sample about it."
 )
 
@@ -182,7 +183,6 @@ def page(answer: Part) -> Page:
             Heading("Tests"),
             _table(tests, flags),
             *(Note(f"{i}: {flag}", "legend") for i, flag in enumerate(flags, 1)),
-            Note(LEGEND, "legend"),
             _numbers(tests),
             *(Note(f"End of running-in: {one}.", "legend", Level.LONG) for one in methods),
             *(_fits(answer) if answer.fits else ()),
@@ -191,7 +191,7 @@ def page(answer: Part) -> Page:
             *(Note(one, "caveat") for one in answer.notes),
             Note(kept if "friction_file" in answer else "Nothing written; use `--out friction.toml`."),
             Heading("Course of each test", Level.REPORT),
-            *(Picture(file_name(one.source), partial(_figure, one), one.source) for one in tests),
+            *(Picture(file_name(one.source), partial(_figure, one), COURSE) for one in tests),
         ),
     )
 
@@ -220,10 +220,10 @@ def _along(test: Part, name: str) -> Cell:
 
 def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
     """Yield the answer: friction of each material, or of the tests."""
+    words = "{standard_error}, scatter of a new sample {standard_deviation}"
     for one in answer.fits or ():
-        error, scatter = (show(one, name) for name in ("standard_error", "standard_deviation"))
         friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
-        yield f"{friction} (standard error {error}, scatter of a new sample {scatter})."
+        yield f"{friction} (standard error {fill(one, words)})."
     if not answer.fits and len(tests) == 1:
         yield f"{tests[0].source}: {_summary(tests[0])}."
     elif not answer.fits:
@@ -258,7 +258,7 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
         text_column("notes", numbers),
     )
-    return Table("tests", known_columns(columns, tests), tuple(tests))
+    return Table("tests", known_columns(columns, tests), tuple(tests), LEGEND)
 
 
 def _word(name: str, of: Callable[[Part], Part] = itself) -> Column:
@@ -287,8 +287,7 @@ def _fits(answer: Part) -> Iterator[Block]:
         column("standard_deviation", head="scatter of a sample"),
         text_column("rests on", lambda one: one.scatter_source),
     )
-    yield Table("materials", columns, tuple(answer.fits))
-    yield Note(FIT_LEGEND, "legend")
+    yield Table("materials", columns, tuple(answer.fits), FIT_LEGEND)
     for one in answer.fits:
         yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
 
@@ -361,8 +360,7 @@ def _figure(test: Part) -> Figure:
             Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),
         ),
     )
-    alt = "Friction along the test with its steady part; the tables have the numbers."
-    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), alt=alt, height=2.0)
+    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)
 
 
 VERB = Tool(
@@ -374,5 +372,4 @@ VERB = Tool(
     options=Options,
     rows="tests",
     takes_time=True,
-    has_full=True,
 )

@@ -72,7 +72,6 @@ class Tool:
     page: Callable[[Part], Page]
     options: type = NoOptions
     epilog: str | None = None
-    has_full: bool = False
     takes_time: bool = False
     help: str = ""
     rows: str = ""

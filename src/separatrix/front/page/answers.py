@@ -10,8 +10,7 @@ from typing import Any, TypeVar
 from urllib.parse import quote
 
 from fastapi import APIRouter
-from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
-from markupsafe import escape
+from fastapi.responses import FileResponse, HTMLResponse, Response
 
 from separatrix.front.page.folder import LOG, Form, Page
 from separatrix.ground.document import part_of
@@ -19,7 +18,6 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.files import reading_only_in
 from separatrix.ground.units import shown
 from separatrix.present import blocks, html
-from separatrix.present.hover import plotly
 from separatrix.study.reading import read_study
 from separatrix.verbs import tool_named, verb_named
 from separatrix.verbs.map import at_point
@@ -59,10 +57,10 @@ def routes(page: Page) -> APIRouter:
             **body_of(page, verb, name),
         )
 
-    @router.get("/figure/{verb}/{of}/{name:path}")
+    @router.get("/figure/{verb}/{of}/{name:path}", response_class=HTMLResponse)
     def figure(verb: str, of: str, name: str) -> Response:
         with refusing_damage(name):
-            return JSONResponse(plotly(block(verb, name, of, blocks.Picture).figure()), headers=FRESH)
+            return HTMLResponse(html.drawn(block(verb, name, of, blocks.Picture)), headers=FRESH)
 
     @router.get("/view/{verb}/{of}/{name:path}", response_class=HTMLResponse)
     def view(verb: str, of: str, name: str, script: str = "") -> Response:
@@ -146,10 +144,8 @@ def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:
 
     def picture(one: blocks.Picture) -> str:
         place = f"/figure/{verb}/{quote(one.name)}/{quote(name)}"
-        return (
-            f'<figure class="plot" data-source="{place}"><div class="canvas" role="group" '
-            f'aria-label="{escape(one.caption)}"></div><figcaption>{html.inline(one.caption)}</figcaption></figure>'
-        )
+        caption = f"<figcaption>{html.inline(one.caption)}</figcaption>"
+        return f'<figure hx-get="{place}" hx-trigger="load" hx-swap="outerHTML">{caption}</figure>'
 
     def view(one: blocks.View) -> str:
         place = f"/view/{verb}/{quote(one.name)}/{quote(name)}"

@@ -8,7 +8,6 @@ import secrets
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable, MutableMapping
 from http import HTTPStatus
-from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs
@@ -34,7 +33,6 @@ IDLE = 10
 STATIC = {
     "static": Path(__file__).with_name("static"),
     "blocks": Path(present.__file__).with_name("static"),  # how a page of blocks looks, in a report as here
-    "plotly": Path(str(distribution("plotly").locate_file("plotly"))) / "package_data",
 }
 """Folders of style and script, by their addresses."""
 
@@ -53,7 +51,7 @@ POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
     "connect-src 'self'; font-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
 )
-"""Only own files; no inline script. Plotly writes styles of its own, which cannot run anything."""
+"""Only own files; no inline script. Styles in a figure cannot run anything."""
 
 HEADERS = {
     "content-security-policy": POLICY,

@@ -27,11 +27,13 @@ Json = Mapping[str, Any]
 APPENDIX = Level.REPORT | Level.SHEET
 
 
-def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level = APPENDIX) -> Page:
+def page_of(
+    answer: Part, *blocks: Block, draws: bool = False, appendix: Level = APPENDIX, more: Sequence[str] = ()
+) -> Page:
     """Return the page of an answer: what is asked, its blocks, its notes, inputs and provenance.
 
     `draws` says that the verb draws uncertain inputs; another takes them at their means, and says so.
-    `appendix` is where inputs and provenance are shown.
+    `appendix` is where inputs and provenance are shown; `more` is what a screen lacks of the blocks.
     """
     missing = [Note(INTERRUPTED)] if answer.get("complete") is False else []
     uncertain = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
@@ -41,8 +43,9 @@ def page_of(answer: Part, *blocks: Block, draws: bool = False, appendix: Level =
         Note(text, "caveat", Level.ALWAYS if place < MOST_NOTES else Level.LONG)
         for place, text in enumerate(texts)
     ]
-    if len(texts) > MOST_NOTES:
-        caveats.append(Note(f"`--full` has {len(texts) - MOST_NOTES} more.", "caveat", Level.BRIEF))
+    hidden = [*more, *([f"{len(texts) - MOST_NOTES} more notes"] if texts[MOST_NOTES:] else [])]
+    if hidden:
+        caveats.append(Note(f"`--full` has {', '.join(hidden)}.", level=Level.BRIEF))
     return Page(
         answer.title,
         f"Study {answer.name}, computed by separatrix {answer.separatrix_version}",
@@ -163,15 +166,19 @@ def is_chosen(model: Json) -> bool:
 
 def figure_heading(answer: Part, *more: str, varied: Sequence[str] = ()) -> tuple[str, ...]:
     """Return what stands above a figure: the title, and the operating point but for the inputs `varied`."""
-    study = answer.values["study"]
-    return answer.title, _listed("; ", operation_words(study, varied), coat_words(study, varied), *more)
+    study, keys = answer.values["study"], [one.rpartition(".")[2] for one in varied]
+    return answer.title, _listed("; ", operation_words(study, keys), coat_words(study, keys), *more)
 
 
 def figure(
-    answer: Part, *rows: tuple[Panel, ...], alt: str, height: float = 2.5, more: Sequence[str] = ()
+    answer: Part,
+    *rows: tuple[Panel, ...],
+    height: float,
+    more: Sequence[str] = (),
+    varied: Sequence[str] = (),
 ) -> Figure:
-    """Return a figure of an answer, with its operating point, and `more`, above it."""
-    return Figure(rows=rows, heading=figure_heading(answer, *more), alt=alt, height=height)
+    """Return a figure of an answer below its heading."""
+    return Figure(rows=rows, heading=figure_heading(answer, *more, varied=varied), height=height)
 
 
 def _listed(between: str, *words: str | None) -> str:

@@ -101,9 +101,7 @@ def bearing_picture(answer: Part, contacts: Part | None) -> Picture:
     caption = f"Section through the axis, to scale: {', '.join(sizes)}. {dashed}."
 
     def drawing() -> Figure:
-        panel = section_panel(of, angles)
-        alt = "Section to scale: rings, ball with its lines of contact, cage with pocket and land."
-        return figure(answer, (panel,), alt=alt, height=3.4)
+        return figure(answer, (section_panel(of, angles),), height=3.4)
 
     return Picture("bearing", drawing, caption)
 

@@ -9,7 +9,6 @@ from scipy.interpolate import CubicHermiteSpline
 
 from separatrix.ground.document import Part
 from separatrix.ground.units import Array, Hertz, Metre
-from separatrix.present.view import RIM, Scene
 
 AROUND = np.linspace(0.0, 2 * np.pi, 721)
 """Directions in which boundaries are drawn: half a degree apart."""
@@ -33,8 +32,16 @@ MOST_FRAMES, MOST_NUMBERS = 1200, 75_000
 BAR_SHARE, FARTHEST = 0.4, 0.25
 """Least share of the bar in the room between two balls; largest movement drawn over the pitch radius."""
 
-THICK, WIDE = 0.28, 1.35
-"""Half the radial thickness of the cage over the ball's diameter; its width over that, if not stated."""
+THICK, WIDE, RIM = 0.28, 1.35, 0.88
+"""Half the radial thickness of the cage over the ball's diameter; its width over that, if not stated; largest
+size of a pocket along the axis over that width."""
+
+NANO = 1e9
+POCKET_POINTS, BAR_POINTS = 24, 6
+"""Points around a pocket; pieces of a bar between two pockets, in the plane of the balls."""
+
+VIEWS = ((0.5 * np.pi, 0.0), tuple(np.deg2rad([28.0, -62.0])))
+"""Height of the eye over the plane of the bearing, and angle around it [rad]: in the plane, in space."""
 
 
 def array(part: Part, name: str) -> Array:
@@ -142,11 +149,14 @@ def turned_by(cage: Part, time: Array) -> Array:
     return np.asarray(speed * (time - (1 - start) * within + (1 - start) * within**2 / (2 * ramp)))
 
 
-def scene(answer: Part) -> Scene:
-    """Return sizes and movements of a run at some samples.
+def scene(answer: Part) -> dict[str, Any]:
+    """Return what cage.js draws, by its names: sizes [m], and movements at some moments of a run.
 
-    Movements are enlarged so that a wall touches its ball when it does so: as much as leaves a bar between
-    two pockets, the pockets within the cage, and the cage in the picture.
+    Movements are true, in the frame of the ball set, in whole nanometres and nanoradians; what only a cage in
+    space has is null in the plane. Forces are the largest since the moment before, in 1/255 of the largest.
+    `enlarged` is the factor by which movements and clearances are drawn too large at first, so that a wall
+    touches its ball when it does so: as much as leaves a bar between two pockets, the pockets within the
+    cage, and the cage in the picture.
     """
     most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (9 + 3 * len(answer.pocket_angle))))
     parts, time, cage = frame_moments(answer, most), array(answer, "time"), answer.cage
@@ -157,48 +167,63 @@ def scene(answer: Part) -> Scene:
     stated = answer.values["study"]["cage"]["width"]["value"]
     half_width, axial_play = max(0.5 * float(stated or 0.0), WIDE * ball), axial_half_play(answer)
 
-    def at(name: str, *shape: int) -> Array:
-        return array(answer, name)[moments] if name in answer else np.zeros((moments.size, *shape))
+    def moved(name: str) -> list[int] | None:
+        return whole(NANO * array(answer, name)[moments]) if name in answer else None
 
-    centre, lean, axial = at("position"), at("lean", 2), at("axial_place")
     peaks = [array(answer, name) for name in ("contact_force", "land_force")]
-    force, land_force = (_largest_since(one, moments) for one in peaks)
-    ways = (np.hypot(*centre.T), radius * np.hypot(*lean.T), axial)
+    largest = [float(one.max()) for one in peaks]
+    scales = [one or 1.0 for one in largest]
+    force, land_force = (
+        whole(255.0 * _largest_since(one, moments) / scale) for one, scale in zip(peaks, scales, strict=True)
+    )
+    ways = [np.hypot(*array(answer, "position")[moments].T)]
+    if in_space:
+        lean, axial = (array(answer, name)[moments] for name in ("lean", "axial_place"))
+        ways += [radius * np.hypot(*lean.T), axial]
     limits = [
         (0.5 * (1.0 - BAR_SHARE) * (pitch - 2.0 * ball), float(plays.max())),
         (RIM * half_width - ball, axial_play),
         (FARTHEST * radius, max(float(np.abs(one).max(initial=0.0)) for one in ways)),
     ]
-    enlarged = min((largest / size for largest, size in limits if size > 0.0), default=1.0)
+    enlarged = min((size / movement for size, movement in limits if movement > 0.0), default=1.0)
     side = 0 if land is None else (-1 if cage.guidance == "inner" else 1)
-    return Scene(
-        radius=radius,
-        ball=ball,
-        half_width=half_width,
-        half_thickness=2.0 * THICK * ball,
-        angles=array(answer, "pocket_angle"),
-        plays=plays,
-        axial_play=axial_play,
-        is_square=cage.pocket_shape == "square",
-        land=radius + side * 2.0 * THICK * ball,
-        side=side,
-        heights=tuple(land_heights(answer).tolist()),
-        gap=0.0 if land is None else float(land.max()),
-        in_space=in_space,
-        time=time[moments],
-        parts=tuple((float(time[one[0]]), float(time[one[-1]])) for one in parts),
-        turned=turned_by(cage, time[moments]),
-        centre=centre,
-        lean=lean,
-        axial=axial,
-        rotation=at("rotation"),
-        lead=at("ball_lead"),
-        ball_axial=at("ball_axial", plays.size),
-        force=force,
-        land_force=land_force,
-        largest=(float(peaks[0].max()), float(peaks[1].max())),
-        enlarged=float(f"{max(1.0, enlarged):.2g}"),
-    )
+    return {
+        "radius": radius,
+        "ball": ball,
+        "halfWidth": half_width,
+        "halfThickness": 2.0 * THICK * ball,
+        "angles": answer.pocket_angle,
+        "plays": plays.tolist(),
+        "axialPlay": axial_play,
+        "square": cage.pocket_shape == "square",
+        "land": radius + side * 2.0 * THICK * ball,
+        "side": side,  # 1 for a land outside the cage, -1 inside, 0 without one
+        "heights": land_heights(answer).tolist(),
+        "gap": 0.0 if land is None else float(land.max()),
+        "view": VIEWS[in_space],
+        "enlarged": float(f"{max(1.0, enlarged):.2g}"),
+        "around": POCKET_POINTS,
+        "barPoints": BAR_POINTS,
+        "rim": RIM,
+        "most": scales,
+        "largest": largest,
+        "parts": [(float(time[one[0]]), float(time[one[-1]])) for one in parts],
+        "time": [float(f"{one:.7g}") for one in time[moments]],
+        "turned": np.mod(turned_by(cage, time[moments]), 2.0 * np.pi).round(4).tolist(),
+        "centre": moved("position"),
+        "lean": moved("lean"),
+        "axial": moved("axial_place"),
+        "rotation": moved("rotation"),
+        "lead": moved("ball_lead"),
+        "ballAxial": moved("ball_axial"),
+        "force": force,
+        "landForce": land_force,
+    }
+
+
+def whole(values: Array) -> list[int]:
+    """Return rounded values in one list."""
+    return np.rint(values).astype(int).ravel().tolist()
 
 
 def _largest_since(values: Array, moments: Array) -> Array:

@@ -119,7 +119,7 @@ def _damping(eta: float) -> float:
 def own_marks(answer: Part, curve: Part) -> list[Mark]:
     """Return the restitution factor of the bearing as an upright line, and its critical friction."""
     text = f"this bearing, $eta$ = {show(answer.chain, 'restitution_factor')}"
-    found: list[Mark] = [Across(at=answer.chain.restitution_factor, name=text, hover=text)]
+    found: list[Mark] = [Across(at=answer.chain.restitution_factor, name=text)]
     here = curve.get("here")
     if here is not None and "critical_friction" in here:
         name = f"its critical friction, {show(here, 'critical_friction')}"

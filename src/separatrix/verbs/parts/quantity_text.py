@@ -104,6 +104,14 @@ def place_column(part: Part, name: str, *, head: str = "") -> Column:
     )
 
 
+def places_table(
+    name: str, part: Part, *columns: str, level: Level = Level.SHEET, caption: str = ""
+) -> Table:
+    """Return lists of a part as columns, their places as rows, by default for a workbook."""
+    shown = tuple(place_column(part, one) for one in columns if one in part)
+    return Table(name, shown, tuple(range(len(part.get(columns[0])))), caption, level)
+
+
 def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]) -> Table:
     """Return what some parts have for a workbook; a row is a value for each of `heads`, and then its part."""
     known = tuple(rows)

@@ -107,6 +107,7 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     margin = _safety(first) if has_safety(first) else _margin(first)
     others = grouped((verdict(row), row.name) for row in rows if row not in first)
     rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
+    rest = f"All others: {next(iter(others))}." if len(others) == 1 else rest
     return f"{lead} {margin} {rest}"
 
 

@@ -1,15 +1,6 @@
 // Figures, and parts of the page that are replaced in place. All data come from this server.
 "use strict";
 
-const dark = window.matchMedia("(prefers-color-scheme: dark)");
-
-function looks() {
-  const style = getComputedStyle(document.documentElement);
-  const of = (name) => style.getPropertyValue(name).trim();
-  const look = { paper_bgcolor: of("--paper"), plot_bgcolor: of("--paper"), font: { color: of("--ink"), family: "inherit" } };
-  return { ink: of("--ink"), look };
-}
-
 function message(text) {
   const box = document.getElementById("message");
   box.replaceChildren();
@@ -29,43 +20,22 @@ async function asked(place, options = {}) {
   throw new Error(words || `The server answered ${response.status}.`);
 }
 
-async function show(figure) {
-  const canvas = figure.querySelector(".canvas");
-  try {
-    figure.found ||= await (await asked(figure.dataset.source)).text();
-    const { ink, look } = looks();
-    const { data, layout } = JSON.parse(figure.found.replaceAll('"#000000"', `"${ink}"`));
-    canvas.style.height = `${layout.height}px`;
-    const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
-    await Plotly.react(canvas, data, { ...layout, ...look }, options);
-  } catch (error) {
-    message(error.message);
-  }
-}
-
-// A click in the first panel, not a drag: a point of a map is simulated, running-in of a log ends there.
-function choosing(figure) {
-  const canvas = figure.querySelector(".canvas");
-  const { point, cut } = figure.closest(".answer").dataset;
-  let down = [];
-  canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; }, true);
-  document.addEventListener("pointerup", ({ clientX, clientY }) => {
-    const [x0, y0] = down;
-    down = [];
-    if (!(Math.hypot(clientX - x0, clientY - y0) < 4)) return;
-    const box = canvas.getBoundingClientRect();
-    const { xaxis, yaxis } = canvas._fullLayout;
-    const across = clientX - box.left - xaxis._offset;
-    const up = clientY - box.top - yaxis._offset;
-    if (across < 0 || up < 0 || across > xaxis._length || up > yaxis._length) return;
-    const [[ofX, ofY]] = canvas.layout.meta;
-    const at = { x: xaxis.p2d(across) * ofX, y: yaxis.p2d(up) * ofY };
-    if (point) htmx.ajax("POST", point, { target: "#jobs", values: at });
-    const field = document.getElementById("run-in");
-    if (!cut || !field) return;
-    field.value = `${Number(at.x.toPrecision(4))} ${cut}`;
-    field.form.requestSubmit();
-  }, true);
+// A click in the first panel of a figure: a point of a map is simulated, running-in of a log ends there.
+function chosen(event) {
+  const paper = event.target.closest(":is([data-point], [data-cut]) .paper");
+  if (!paper) return;
+  const box = paper.getBoundingClientRect();
+  const shares = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+  const along = JSON.parse(paper.dataset.ways).map(([start, end], i) => (shares[i] - start) / (end - start));
+  if (along.some((one) => one < 0 || one > 1)) return;
+  const [x, y] = JSON.parse(paper.dataset.ways).map(([, , low, high, isLog], i) =>
+    isLog ? low * (high / low) ** along[i] : low + (high - low) * along[i]);
+  const { point, cut } = paper.closest(".answer").dataset;
+  if (point) htmx.ajax("POST", point, { target: "#jobs", values: { x, y } });
+  const field = document.getElementById("run-in");
+  if (!cut || !field) return;
+  field.value = `${Number(x.toPrecision(4))} ${cut}`;
+  field.form.requestSubmit();
 }
 
 // Each fault of a text is written at its line, over the text.
@@ -197,10 +167,6 @@ function ended(event) {
 }
 
 document.addEventListener("DOMContentLoaded", () => {
-  const figures = document.querySelectorAll(".plot");
-  for (const figure of figures) show(figure);
-  for (const figure of document.querySelectorAll(":is([data-point], [data-cut]) .plot")) choosing(figure);
-  dark.addEventListener("change", () => figures.forEach(show));
   for (const code of document.querySelectorAll(".code")) paint(code);
   for (const kind of ["input", "scroll"]) {
     document.body.addEventListener(kind, ({ target }) => target.id === "text" && paint(target.parentElement), true);
@@ -210,6 +176,7 @@ document.addEventListener("DOMContentLoaded", () => {
   document.body.addEventListener("click", ({ target }) => {
     if (target.matches(".at")) goTo(document.getElementById("text"), Number(target.dataset.line));
   });
+  document.body.addEventListener("click", chosen);
   document.body.addEventListener("htmx:beforeRequest", sending);
   document.body.addEventListener("htmx:beforeSwap", inPlace);
   document.body.addEventListener("htmx:afterRequest", ended);
