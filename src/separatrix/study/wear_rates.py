@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from separatrix.friction.prediction import FRICTION_LIMIT
+from separatrix.friction.friction_file import FRICTION_LIMIT
 from separatrix.ground.schema import all_or_none, between, key, positive, record
 from separatrix.ground.units import CubicMetre, Metre, Ratio, SpecificWear
 

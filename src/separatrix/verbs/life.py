@@ -194,7 +194,7 @@ def life_figure(answer: Part) -> Figure:
             Trace(x=revolutions, y=each("film_outer"), colour=GREEN, line="--", name="outer race"),
         ),
     )
-    return figure(answer, (chance, film), alt=CAPTION, height=2.6)
+    return figure(answer, (chance, film), height=2.6)
 
 
 VERB = Verb(
@@ -206,7 +206,6 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    has_full=True,
     keeps_runs=True,
     refusals=refusals,
 )

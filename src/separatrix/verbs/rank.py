@@ -132,6 +132,7 @@ def page(answer: Part) -> Page:
         Note(EVIDENCE, "legend", LONG),
         *undecided(known),
         reasons(rows),
+        *effects(answer, rows),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
         Heading("Ball on pocket", LONG, 3),
@@ -231,6 +232,18 @@ def undecided(rows: Sequence[Part]) -> list[Block]:
     """Return why candidates are undecided, for a screen."""
     each = grouped((row.reason, row.name) for row in rows if row.verdict == "UNDECIDED")
     return [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in each.items()]
+
+
+def effects(answer: Part, rows: Sequence[Part]) -> list[Block]:
+    """Return what else moves the critical friction of the reference cage; nothing if no input allows it."""
+    own = [row for row in rows if row.name == answer.candidate and "own_critical_friction_low" in row]
+    columns = (
+        text_column("with", lambda row: row.get("change") or "all inputs as stated"),
+        column("own_critical_friction"),
+    )
+    title = f"What else moves the critical friction of {answer.candidate}"
+    known = (*own, *answer.effects) if answer.effects else ()
+    return [Heading(title, LONG, 3), Table("effects", columns, known, level=LONG)] if known else []
 
 
 # Words.

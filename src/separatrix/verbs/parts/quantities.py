@@ -176,7 +176,6 @@ QUANTITIES: dict[str, Quantity] = {
     "safety_factor": Q(
         label="safety factor", head="S", symbol="S", form=".2f", meaning="critical friction over friction"
     ),
-    "wide_land_critical_friction": Q(label="critical friction on that wider land", form=".3f"),
     "margin": Q(label="margin", form="+.2f", meaning="threshold less the bearing's own eta"),
     "probability_stable": Q(
         label="P(stable)",

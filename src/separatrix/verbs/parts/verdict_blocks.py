@@ -140,14 +140,14 @@ def deciding(answer: Part, rows: Sequence[Part]) -> Iterator[str]:
         return
     best = judged[0]
     both = fill(best, "land clearance {land_clearance}, pocket clearance {pocket_clearance}")
-    if answer.get("wide_land_clearance") is not None:
-        least = answer.wide_land_critical_friction_low
-        critical = answer.get("wide_land_critical_friction")
-        above = [row.name for row in judged if row.friction > (least if critical is None else critical)]
-        words = f"The land stops the cage before its pockets can drive it ({both}): at a land clearance of "
-        words += f"{{wide_land_clearance}} the critical friction of {answer.candidate} would be "
+    wide = next((one for one in answer.effects or () if one.name == "wide_land"), None)
+    if wide is not None:
+        critical = wide.get("own_critical_friction") or wide.own_critical_friction_low
+        above = [row.name for row in judged if row.friction > critical]
+        words = f"The land stops the cage before its pockets can drive it ({both}): with {wide.change} the "
+        words += f"critical friction of {answer.candidate} would be {{own_critical_friction}}"
         whose = f", less than the friction of {', '.join(above)}" if above else ""
-        yield fill(answer, words + "{wide_land_critical_friction}") + f"{whose}."
+        yield f"{fill(wide, words)}{whose}."
     elif best.get("land_clearance") is not None and any(row.verdict != "STABLE" for row in judged):
         yield fill(
             best, "The pockets decide, not the land (clearances {pocket_clearance}, {land_clearance})."
