@@ -42,8 +42,13 @@ restitution_factors = [0.4, 0.6]
 model = "full"
 [bearing]
 contact_angle = "20 deg +- 1 deg"
+[wear]
+film_wear = "5e-9 mm3/(N m)"
+cage_wear = "1e-6 mm3/(N m)"
+bare_friction = 0.35
 """
 CALLS = {
+    "life": {"revolutions": 1e6, "samples": 64},
     "simulate": {"kick": "0.4 m/s"},
     "map": {"x": "restitution_factor=0.2..0.8:2", "y": "ball_cage_friction=0..0.4:3", "runs": 2},
     "sensitivity": {"samples": 64},
@@ -66,6 +71,8 @@ KEYS = {
     ("stability", "curve"): CRITICAL,
     ("stability", "linear_limit"): "restitution_factor critical_friction",
     ("rank", ""): "restitution_factor",
+    ("life", ""): "candidate revolutions_10 revolutions_50 revolutions_90 unstable_at_start never_unstable",
+    ("life", "course"): "time revolutions probability_stable race_friction pocket_friction pocket_clearance",
     ("rank", "overall"): MATERIAL,
     ("rank", "environments.materials"): MATERIAL,
 }
