@@ -28,7 +28,7 @@ from separatrix.verdict import long_jobs
 COMMAND = [sys.executable, "-m", "separatrix"]
 VERBS = [
     *("new", "check", "bearing", "traction", "restitution", "mobility", "stability", "map", "simulate"),
-    *("rank", "sensitivity", "sweep", "tribometer", "compare"),
+    *("rank", "sensitivity", "sweep", "life", "tribometer", "compare"),
     *("reproduce", "report", "app", "materials"),
 ]
 OPTIONS = {

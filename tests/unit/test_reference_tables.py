@@ -34,6 +34,9 @@ SMALL = replace(
     ranking=replace(FULL.ranking, candidates=FULL.ranking.candidates[:2]),
 )
 IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.study.MotionModel.SPACE))
+WEARS = replace(
+    SMALL, wear=separatrix.study.study.WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+)
 WORN = replace(SMALL, film=replace(SMALL.film, wear=separatrix.study.study.Wear(friction=0.3, share=0.2)))
 
 ASKED = {
@@ -48,6 +51,7 @@ ASKED = {
     "rank": lambda: separatrix.rank(SMALL, jobs=1),
     "sensitivity": lambda: separatrix.sensitivity(SMALL, samples=64, jobs=1),
     "sweep": lambda: separatrix.sweep(SMALL, "film.thickness=0.2..1um:2", jobs=1),
+    "life": lambda: separatrix.life(WEARS, samples=64, revolutions=1e5, jobs=1),
     "simulate, in space": lambda: separatrix.simulate(IN_SPACE),
     "compare": lambda: separatrix.compare(*(separatrix.simulate(SMALL, run=run) for run in (0, 1))),
 }
