@@ -7,8 +7,9 @@ import matplotlib.pyplot as plt
 
 import separatrix
 
-study = separatrix.read_study("momentum-wheel")
-quick = replace(study, stability=replace(study.stability, runs=8, duration=0.02))
+study = separatrix.read_study("cryogenic-turbopump")
+settings = replace(study.stability, kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6, 0.9))
+quick = replace(study, stability=settings)
 
 
 def stop(done: float, total: float) -> None:
@@ -19,15 +20,15 @@ def stop(done: float, total: float) -> None:
 
 with tempfile.TemporaryDirectory() as folder:
     try:
-        separatrix.rank(quick, folder=folder, progress=stop)
+        separatrix.stability(quick, folder=folder, progress=stop)
     except separatrix.Interrupted as interrupted:
-        part = interrupted.finished
-    resumed = separatrix.rank(quick, folder=folder)
+        part = interrupted.finished.curve
+    resumed = separatrix.stability(quick, folder=folder).curve
 
-print(f"complete: {part.ranking.complete}, then {resumed.ranking.complete}")
-same = repr(resumed.ranking) == repr(separatrix.rank(quick).ranking)
+print(f"complete: {part.complete}, then {resumed.complete}")
+same = resumed == separatrix.stability(quick).curve
 
-rows = resumed.ranking.environments[0].materials
 figure, axes = plt.subplots(layout="constrained")
-axes.bar([row.name for row in rows], [row.judgement.probability_stable for row in rows])
-axes.set_ylabel("P(stable) [-]")
+factors = [point.restitution_factor for point in resumed.curve]
+axes.plot(factors, [point.critical_friction for point in resumed.curve], "o-")
+axes.set(xlabel="restitution factor [-]", ylabel="critical friction [-]")

@@ -1,0 +1,9 @@
+"""Inputs that hypothesis makes are the same each time, and no clock decides: a loaded machine is slow."""
+
+from hypothesis import HealthCheck, settings
+
+NO_MATTER = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+settings.register_profile(
+    "ours", derandomize=True, deadline=None, max_examples=60, suppress_health_check=NO_MATTER
+)
+settings.load_profile("ours")
