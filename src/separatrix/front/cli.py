@@ -62,7 +62,6 @@ def _new(given: Given) -> int:
     if path.suffix not in (".toml", ".xlsx") or path.is_dir():
         cure = 'Name a file like "my-bearing.toml", or "my-bearing.xlsx" for a workbook.'
         raise InputError(str(path), "must name a file that ends in .toml or .xlsx", cure=cure)
-    refuse_existing(path)
     from separatrix.study.template import template, template_workbook
 
     write_new(path, template().encode() if path.suffix == ".toml" else template_workbook())
