@@ -13,6 +13,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from commands import SMALL
 from playwright import sync_api as playwright_api
 
 CHROMIUM = next((found for name in ("chromium", "chromium-browser") if (found := shutil.which(name))), None)
@@ -23,23 +24,7 @@ PATIENCE = 200_000
 
 playwright_api.expect.set_options(timeout=60_000)  # what is expected comes at once where the machine is idle
 
-STUDY = """\
-extends = "cryogenic-turbopump"
-title = "A small ensemble"
-
-[film]
-thickness = "0.5 um" # ours
-
-[stability]
-kicks = ["0.5 m/s"]
-runs = 4
-duration = "4 ms"
-restitution_factors = [0.3, 0.6, 0.9]
-
-[ranking]
-friction = "pin-on-disk-77K"
-materials = ["Armalon", "Meldin HTC 100"]
-"""
+STUDY = SMALL.replace("[cage]", '[film]\nthickness = "0.5 um" # ours\n\n[cage]')
 
 
 class Server:
@@ -53,21 +38,14 @@ class Server:
         self.link = next(found[0] for line in lines if (found := re.search(r"http://\S+", line)))
         self.address = self.link.partition("/?")[0]
 
-    def kill(self) -> None:
-        """End it and its process as a power cut does."""
-        if self.process.poll() is None:
-            os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.wait()
-        self.process.stdout.close()
-
     def close(self) -> None:
-        """End it as Ctrl-C does."""
+        """End it as Ctrl-C does; with its process where that takes too long."""
         self.process.send_signal(signal.SIGINT)
         try:
             self.process.wait(20)
-            self.process.stdout.close()
         except subprocess.TimeoutExpired:
-            self.kill()
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.stdout.close()
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,8 @@ MOTIONS = ("plane", "space")
 def written(request, tmp_path_factory):
     """The page of a short run."""
     place = tmp_path_factory.mktemp(request.param)
-    moved = f'[cage]\nmotion = "{request.param}"\n'
-    (place / "small.toml").write_text(STUDY + moved, encoding="utf-8")
+    moved = STUDY.replace("[cage]", f'[cage]\nmotion = "{request.param}"')
+    (place / "small.toml").write_text(moved, encoding="utf-8")
     command = [sys.executable, "-m", "separatrix", "simulate", str(place / "small.toml")]
     subprocess.run([*command, "--out", str(place / "out"), "--quiet"], check=True)
     return place / "out" / "moving-cage.html"

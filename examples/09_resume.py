@@ -3,31 +3,27 @@
 import tempfile
 from dataclasses import replace
 
-import matplotlib.pyplot as plt
-
 import separatrix
 
-study = separatrix.read_study("momentum-wheel")
-quick = replace(study, stability=replace(study.stability, runs=8, duration=0.02))
+study = separatrix.read_study("cryogenic-turbopump")
+quick = replace(study, stability=replace(study.stability, duration=0.02))
+plane = "cage.pocket_clearance=0.3..0.6mm:3", "ball_cage_friction=0..0.5:6"
+how = {"kick": "0.5 m/s", "runs": 8}
 
 
 def stop(done: float, total: float) -> None:
-    """Press Ctrl-C once half of the work is done."""
+    """Press Ctrl-C once half of the points are done."""
     if done > 0.5 * total:
         raise KeyboardInterrupt
 
 
 with tempfile.TemporaryDirectory() as folder:
     try:
-        separatrix.rank(quick, folder=folder, progress=stop)
+        separatrix.map(quick, *plane, **how, folder=folder, progress=stop)
     except separatrix.Interrupted as interrupted:
         part = interrupted.finished
-    resumed = separatrix.rank(quick, folder=folder)
+    resumed = separatrix.map(quick, *plane, **how, folder=folder)
 
-print(f"complete: {part.ranking.complete}, then {resumed.ranking.complete}")
-same = repr(resumed.ranking) == repr(separatrix.rank(quick).ranking)
-
-rows = resumed.ranking.environments[0].materials
-figure, axes = plt.subplots(layout="constrained")
-axes.bar([row.name for row in rows], [row.judgement.probability_stable for row in rows])
-axes.set_ylabel("P(stable) [-]")
+print(f"complete: {part.map.complete}, then {resumed.map.complete}")
+same = resumed.map == separatrix.map(quick, *plane, **how).map
+figure = resumed.plot()

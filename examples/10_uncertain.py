@@ -8,13 +8,18 @@ import matplotlib.pyplot as plt
 import separatrix
 
 TEXT = """
-extends = "momentum-wheel"
+extends = "cryogenic-turbopump"
 [cage]
-mass = "3.5 g +- 10 %"
-pocket_clearance = "0.3 mm +- 20 %"
+mass = "25 g +- 10 %"
+pocket_clearance = "0.6 mm +- 20 %"
 [stability]
+kicks = ["0.5 m/s"]
 runs = 32
 duration = "20 ms"
+restitution_factors = [0.3, 0.6, 0.9]
+[ranking]
+friction = "pin-on-disk-77K"
+materials = ["Armalon", "PEEK 450 GL 30"]
 """
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "uncertain.toml"
@@ -23,7 +28,7 @@ with tempfile.TemporaryDirectory() as folder:
 
 figure, axes = plt.subplots(layout="constrained")
 probabilities = {}
-for row in found.environments[0].materials:
+for row in found.environments[-1].materials:  # that of the bearing
     drawn = row.over_inputs  # the verdict over the uncertain inputs
     share, low, high = drawn.probability_stable, drawn.probability_low, drawn.probability_high
     probabilities[row.name] = share

@@ -1,7 +1,6 @@
-"""From a tribometer log to a ranking: steady friction of a test, and the cage that has it."""
+"""From a tribometer log to the steady friction of its test; 05_ranking.py ranks a material by one."""
 
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -19,16 +18,6 @@ with tempfile.TemporaryDirectory() as folder:
     path.write_text("Time [s],COF\n" + "\n".join(rows), encoding="utf-8")
     test = separatrix.tribometer(path).tests[0]
 print(f"friction {test.friction:.4f} +- {test.half_width:.4f}, running-in ends at {test.run_in_end:.0f} s")
-
-study = separatrix.read_study("momentum-wheel")
-test_mean = separatrix.Friction(mean=test.friction)
-environment = study.ranking.environments[0]
-mine = separatrix.Candidate(name="My compound", friction={environment: test_mean})
-question = replace(study.ranking, candidates=(*study.ranking.candidates, mine))
-quick = replace(study.stability, runs=8, duration=0.02)
-found = separatrix.rank(replace(study, ranking=question, stability=quick), jobs=2).ranking
-for row in found.environments[0].materials:
-    print(f"{row.rank}  {row.name}: friction {row.friction:.3f}, {row.judgement.verdict.name}")
 
 steady = test.friction
 figure, axes = plt.subplots(layout="constrained")

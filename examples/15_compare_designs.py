@@ -1,4 +1,4 @@
-"""Compare two designs: the same wheel with a tighter pocket."""
+"""Compare two designs: the same cage with tighter pockets."""
 
 from dataclasses import replace
 
@@ -6,23 +6,22 @@ import matplotlib.pyplot as plt
 
 import separatrix
 
-study = separatrix.read_study("momentum-wheel")
-quick = replace(study.stability, kicks=(0.4,), runs=8, duration=0.05)
-first = replace(study, stability=quick)
-second = replace(first, cage=replace(study.cage, pocket_clearance=0.15e-3))
+study = separatrix.read_study("cryogenic-turbopump")
+settings = replace(study.stability, kicks=(0.5,), runs=8, duration=0.02, restitution_factors=(0.3, 0.6, 0.9))
+first = replace(study, stability=settings)
+second = replace(first, cage=replace(study.cage, pocket_clearance=0.3e-3))
 
-shares = {}
-for name, design in (("0.30 mm", first), ("0.15 mm", second)):
-    rows = separatrix.rank(design, jobs=2).ranking.environments[0].materials
-    shares[name] = {row.name: row.judgement.probability_stable for row in rows}
+margins = {}
+for name, design in (("0.6 mm", first), ("0.3 mm", second)):
+    rows = separatrix.rank(design, jobs=2).ranking.overall
+    margins[name] = {row.name: row.margin for row in rows}
     for row in rows:
-        print(
-            f"pocket clearance {name}: {row.name:<13} margin {row.margin:+.2f}  {row.judgement.verdict.name}"
-        )
+        verdict = row.judgement.verdict.name
+        print(f"pocket clearance {name}: {row.name:<15} margin {row.margin:+.2f}  {verdict}")
 
-tight = shares["0.15 mm"]["Vespel SP-3"]
+best = max(margins["0.3 mm"], key=margins["0.3 mm"].get)
 figure, axes = plt.subplots(layout="constrained")
-for name, row in shares.items():
-    axes.plot(list(row), list(row.values()), "o", label=f"pocket clearance {name}")
-axes.set(ylabel="P(stable) [-]", ylim=(-0.05, 1.05))
+for name, row in margins.items():
+    axes.plot(list(row.values()), list(row), "o", label=f"pocket clearance {name}")
+axes.set_xlabel("margin of the restitution factor [-]")
 axes.legend()

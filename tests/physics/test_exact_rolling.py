@@ -6,13 +6,11 @@ from itertools import chain
 
 import numpy as np
 import pytest
-from exact_cases import MU, P0, body, contact, kalker, saturation, strip, strip_force
-from scipy.optimize import brentq
+from exact_cases import MU, P0, body, contact, kalker, saturation, strip_force
 from scipy.special import ellipe, ellipk
 
 from separatrix.chain.exact.influence import flexibility, half_space_flexibility
 from separatrix.chain.exact.rolling import rigid_slip, solve, solve_each
-from separatrix.chain.exact.slip import settle
 from separatrix.ground.errors import ConvergenceError
 
 BARE = (body(0.25), body(0.25))
@@ -103,30 +101,6 @@ def test_films_thinner_than_a_cell(h):
     bodies = body(0.285), body(0.285, (0.00215, 0.46, h))
     found, fine = (np.mean([strip_force(n, bodies, fraction=f) for f in CUTS]) for n in (28, 224))
     assert found == pytest.approx(fine, rel=0.13 / 28)
-
-
-def creep_of_unlike_bodies(columns, friction=1e-4):
-    """Creep of a free plane strip over 2 beta p0/E*: the pressure's slip there is 2 beta p/E*."""
-    op, grid = strip(columns, BARE)
-    edges = np.append(grid.x - 0.5 * grid.dx, grid.x[-1] + 0.5 * grid.dx)
-    pressure = np.diff(circle_area(edges / edges[-1]))[None, :] / MU / grid.dx
-    driving = np.zeros((2, *grid.shape))
-
-    def force(creep):
-        driving[0] = (pressure - creep) * grid.dx
-        return settle(op, friction * pressure, driving, tolerance=1e-7).traction[0].sum()
-
-    return brentq(force, 0.2, 1.0, xtol=1e-6)
-
-
-def test_bentall_and_johnson():
-    """Unlike plane bodies, little friction: the creep of free rolling is 0.91477 times 2 beta p0/E*.
-
-    No net force where x0 sqrt(1 - x0^2) + asin x0 = pi/4 (Bentall & Johnson 1967). 0.1 % at 160 columns.
-    """
-    x0 = brentq(lambda x: x * math.sqrt(1.0 - x * x) + math.asin(x) - math.pi / 4.0, 0.0, 1.0)
-    assert math.sqrt(1.0 - x0 * x0) == pytest.approx(0.91477, abs=1e-5)
-    assert creep_of_unlike_bodies(160) == pytest.approx(0.91477, rel=1e-3)
 
 
 def test_film_alone():

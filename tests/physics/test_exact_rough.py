@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from separatrix.chain.exact.rolling import ContactProblem, rolling_contact
 from separatrix.chain.exact.slip import FrictionLaw, rough_compliance
 
-quick = settings(derandomize=True, max_examples=12, deadline=None)
+quick = settings(max_examples=12)
 B = 0.2
 
 

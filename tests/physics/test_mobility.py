@@ -32,9 +32,10 @@ from separatrix.chain.contacts import Rolling, race_tracks
 from separatrix.chain.grooved_ball import slip_coefficients, touch
 from separatrix.chain.race_traction import exact_slope
 from separatrix.chain.slip_friction import friction_resultants
+from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array
-from separatrix.study.study import KinematicModel, TractionModel, TractionSettings
+from separatrix.study.study import KinematicModel, TractionModel, TractionSettings, Wear, Worn
 
 FOUR_RATES = {
     "cryo": (666.06, 31384.0, 178112.0, 347702.0), "wheel 2000": (62.755, 263886.0, 720685.0, 1742155.0),
@@ -328,3 +329,12 @@ def test_a_radial_bearing_has_no_pitch():
     found = moved("cryo", film=film, axial_load=0.0, radial_load=1000.0).linear
     assert found.damping == pytest.approx(found.damping_relaxed, rel=1e-6)
     assert found.pitch_angle == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_worn_film_is_noted():
+    """Its friction is not in the slip fields."""
+    study = study_of("cryo")
+    worn = replace(study.film, wear=Wear(width=0.2e-3, friction=0.3, races=Worn.INNER))
+    solution = solve(replace(study, film=worn))
+    assert np.isfinite(solution.mobility.force_law).all()
+    assert any(note.startswith("The film is worn: the mobility") for note in solution.notes)

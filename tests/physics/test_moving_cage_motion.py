@@ -81,20 +81,6 @@ def test_a_brief_duration_asks_for_fewer_looks(duration, looks):
     assert numbers_of(TURNING, 0.5, 10.0).limits[outcome.MOST] == math.ceil(10.0 / look_time(TURNING))
 
 
-def test_same_bits_beside_any_neighbours():
-    """Runs 0 to 11 and 12 to 39, beside other disturbances: not one bit differs."""
-    cage = replace(ON_A_LAND, **SPIN, traction=LAW, ball_cage_friction=0.3)
-    whole = run_ensemble(cage, SETTINGS, kicks=[0.5, 2.0], runs=40)
-    parts = [
-        run_ensemble(cage, SETTINGS, kicks=[2.0], runs=12),
-        run_ensemble(cage, SETTINGS, kicks=[2.0], runs=28, first_run=12),
-    ]
-    across = "outcome", "end_energy", "largest_offset", "pocket_impacts", "pocket_rubbing", "energy_imbalance"
-    for name in across:
-        joined = np.concatenate([getattr(part, name) for part in parts], axis=1)
-        np.testing.assert_array_equal(getattr(whole, name)[1], joined[0])
-
-
 @pytest.mark.parametrize("space", [{}, SPACE], ids=["plane", "space"])
 def test_a_bearing_that_turns_backward_is_its_mirror_image(space):
     """The same evidence run by run, with the balls counted the other way round."""

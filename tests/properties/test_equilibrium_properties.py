@@ -31,7 +31,7 @@ operations = st.builds(
     radial_load=st.sampled_from([0.0, 0.0, 300.0]),
 )
 models = st.sampled_from(list(KinematicModel))
-some = settings(max_examples=25, derandomize=True, deadline=None)
+some = settings(max_examples=25)
 
 
 def numbers(result: Equilibrium) -> dict[str, np.ndarray]:

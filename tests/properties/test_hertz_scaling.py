@@ -1,7 +1,7 @@
 """Scaling of Hertz contacts for loads and shapes that nobody chose."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from separatrix.chain.hertz import contact_ellipse
@@ -9,7 +9,6 @@ from separatrix.chain.hertz import contact_ellipse
 ROUNDING = 1e-11  # cube roots and the root of the shape, both to about 1e-15, over many magnitudes
 
 
-@settings(max_examples=60, derandomize=True, deadline=None)
 @given(
     load=st.floats(1e-3, 1e6),
     curvature=st.floats(1.0, 1e4),

@@ -1,6 +1,6 @@
 """Ranks for thresholds nobody thought of."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from separatrix.verdict.ranking_records import ranks
@@ -9,10 +9,8 @@ threshold = st.tuples(st.floats(0, 1), st.floats(0, 0.2), st.floats(0, 0.2)).map
     lambda t: (t[0], t[0] - t[1], t[0] + t[2])
 )
 thresholds = st.lists(threshold, max_size=8)
-quick = settings(derandomize=True, max_examples=60, deadline=None)
 
 
-@quick
 @given(thresholds)
 def test_ranks_are_shared_and_then_skipped(given_ones):
     """Each rank is one more than the number of candidates ranked better: 1, 1, 3, never 1, 1, 2."""
@@ -21,7 +19,6 @@ def test_ranks_are_shared_and_then_skipped(given_ones):
     assert all(rank == 1 + sum(other < rank for other in found) for rank in found)
 
 
-@quick
 @given(thresholds)
 def test_a_better_threshold_never_ranks_worse(given_ones):
     """Ranks follow the thresholds."""
@@ -29,7 +26,6 @@ def test_a_better_threshold_never_ranks_worse(given_ones):
     assert all(r1 <= r2 for v1, r1 in pairs for v2, r2 in pairs if v1 > v2)
 
 
-@quick
 @given(thresholds, st.randoms(use_true_random=False))
 def test_the_order_of_the_candidates_does_not_matter(given_ones, random):
     """Shuffled candidates keep their ranks, if no two have the same threshold and different scatter."""
@@ -41,7 +37,6 @@ def test_the_order_of_the_candidates_does_not_matter(given_ones, random):
         assert shuffled == [ranks(given_ones)[i] for i in order]
 
 
-@quick
 @given(thresholds)
 def test_equal_ones_tie(given_ones):
     """A candidate and its double share a rank."""

@@ -1,7 +1,7 @@
 """The restitution factor for inputs nobody thought of."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from separatrix.chain.impact_restitution import (
@@ -16,7 +16,6 @@ from separatrix.chain.impact_restitution import (
 positive = st.floats(1e-3, 1e5)
 
 
-@settings(derandomize=True, max_examples=50, deadline=None)
 @given(st.floats(1e-6, 0.9999), st.floats(1e5, 1e8), st.floats(1e-3, 1.0))
 def test_the_inverse_undoes_the_factor(eta, stiffness, mass):
     """From eta to C_mu and back; tolerance: rounding, magnified by 1/(1-eta) near 1."""
@@ -24,7 +23,6 @@ def test_the_inverse_undoes_the_factor(eta, stiffness, mass):
     assert restitution_factor(damping_ratio(stiffness, mass, damping)) == pytest.approx(eta, rel=1e-9)
 
 
-@settings(derandomize=True, max_examples=50, deadline=None)
 @given(positive, positive)
 def test_free_spin_never_damps_more_than_the_sum(inner, outer):
     """4ab/(a+b) <= a+b, equal at a = b, and swapping the races changes nothing."""
@@ -33,7 +31,6 @@ def test_free_spin_never_damps_more_than_the_sum(inner, outer):
     assert race_damping_free_spin(inner, inner) == pytest.approx(2.0 * inner, rel=1e-15)
 
 
-@settings(derandomize=True, max_examples=50, deadline=None)
 @given(positive, positive, st.floats(1.01, 10.0))
 def test_more_damping_returns_more(inner, outer, factor):
     """The paper, section 2.1.1: eta near one is insufficient lubrication, a ball gripped by its races."""
@@ -45,7 +42,6 @@ def test_more_damping_returns_more(inner, outer, factor):
     assert 0.0 <= less.restitution_factor_free_spin <= less.restitution_factor + 1e-15 < 1.0
 
 
-@settings(derandomize=True, max_examples=50, deadline=None)
 @given(st.floats(1e-6, 1e3), st.floats(1.01, 100.0))
 def test_a_hertzian_impact_returns_between_all_and_nothing(zeta, factor):
     """Strictly between 0 and 1, less for more damping, and beside the linear one as the docs say."""

@@ -25,8 +25,7 @@ LAWS = {
 }
 UNCERTAIN = with_distributions(BASE, LAWS)
 
-FEW = settings(deadline=None, max_examples=30)
-"""The first call imports scipy.stats."""
+FEW = settings(max_examples=30)
 
 
 @FEW

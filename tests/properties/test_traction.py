@@ -20,7 +20,7 @@ film = st.floats(-3.0, 2.0).map(lambda x: 10.0**x)  # lam
 rise = st.floats(1.05, 3.0)
 size = st.floats(-3.0, 2.0).map(lambda x: 10.0**x)
 signed = st.tuples(size, st.sampled_from([-1.0, 1.0])).map(lambda t: t[0] * t[1])
-quick = settings(derandomize=True, max_examples=40, deadline=None)
+quick = settings(max_examples=40)
 
 
 def creep(spin, heathcote=0.0):
@@ -46,7 +46,7 @@ def test_a_softer_film_never_raises_the_slope(mu, lam, factor, spin):
     assert slope(creep(spin), mu, lam * factor) <= slope(creep(spin), mu, lam) * (1.0 + NOISE)
 
 
-@settings(quick, max_examples=80)
+@settings(max_examples=80)
 @given(friction, film, rise, size, st.one_of(st.just(0.0), signed))
 def test_with_heathcote_the_trends_hold_within_three_percent(mu, lam, factor, spin, heathcote):
     """The moving offset may lift the slope by up to 3 % as the film softens; friction never lowers it.

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from separatrix.ground.errors import InputError
@@ -13,8 +13,6 @@ from separatrix.study.reading import read_study
 from separatrix.study.sources import resolved
 from separatrix.study.study import shipped_studies
 
-seeded = settings(derandomize=True, deadline=None, max_examples=60)
-in_a_folder = settings(seeded, suppress_health_check=[HealthCheck.function_scoped_fixture])
 units = st.sampled_from([(si, unit) for si, known in UNITS.items() for unit in known])
 EXAMPLE = shipped_studies()["cryogenic-turbopump"].read_text(encoding="utf-8")
 
@@ -31,7 +29,6 @@ def refused_in_one_line(call):
     return None
 
 
-@seeded
 @given(units, st.floats(-1e9, 1e9, allow_nan=False))
 def test_a_number_with_a_unit_is_read_back(unit, number):
     """Scaling by the unit and back returns the number, to rounding; temperatures are shifted too."""
@@ -47,7 +44,7 @@ def test_a_number_with_a_unit_is_read_back(unit, number):
 nearly = st.from_regex(r"[-+]?[0-9.,_eE*/ ]{1,12} ?[A-Za-z0-9/* ]{0,6}", fullmatch=True)
 
 
-@settings(seeded, max_examples=120)
+@settings(max_examples=120)
 @given(st.text(max_size=70) | nearly, st.sampled_from(sorted(UNITS)))
 def test_any_text_is_a_finite_number_or_refused(text, si):
     """And text in the neighbourhood of the grammar: no exception but ours, no hang, no NaN."""
@@ -55,7 +52,6 @@ def test_any_text_is_a_finite_number_or_refused(text, si):
     assert value is None or math.isfinite(value)
 
 
-@seeded
 @given(st.floats(-1e12, 1e12, allow_nan=False), st.sampled_from([*sorted(UNITS), "-"]))
 def test_a_shown_value_reads_back_to_its_digits(value, si):
     """format_quantity and parse speak the same units; four digits are kept, powers of ten aside."""
@@ -64,7 +60,6 @@ def test_a_shown_value_reads_back_to_its_digits(value, si):
     assert number == pytest.approx(value, rel=6e-4, abs=1e-300)  # half a unit of the fourth digit
 
 
-@in_a_folder
 @given(st.binary(max_size=400))
 def test_any_bytes_are_refused_in_one_line(tmp_path: Path, content: bytes):
     """A file of noise."""
@@ -73,7 +68,6 @@ def test_any_bytes_are_refused_in_one_line(tmp_path: Path, content: bytes):
     assert refused_in_one_line(lambda: read_study(path)) is None
 
 
-@in_a_folder
 @given(st.integers(0, len(EXAMPLE) - 1), st.integers(1, 40), st.text(max_size=12))
 def test_a_damaged_study_is_read_or_refused_in_one_line(tmp_path: Path, start: int, length: int, insert: str):
     """Some characters cut out of the example and others put in."""

@@ -11,7 +11,7 @@ from separatrix.cage import Cause, Ensemble, RunOutcome
 from separatrix.verdict.judgement import ENDS, KickCount, Verdict, judge
 from separatrix.verdict.reasons import CageMotion
 
-quick = settings(derandomize=True, max_examples=150, deadline=None)
+quick = settings(max_examples=150)
 
 CAGE = replace(ON_A_LAND, ball_count=3)
 SETTLES, WHIRLS, ROLLS = int(RunOutcome.SETTLES), int(RunOutcome.WHIRLS), int(RunOutcome.ROLLS)

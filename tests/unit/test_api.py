@@ -5,28 +5,18 @@ import html
 from dataclasses import replace
 
 import pytest
+from commands import SMALL, written
 
 import separatrix
 from separatrix.front import api
 from separatrix.ground.errors import InputError
 from separatrix.verdict.long_jobs import Interrupted
 
-SMALL = """
-extends = "momentum-wheel"
-[stability]
-kicks = ["0.4 m/s"]
-runs = 4
-duration = "2 ms"
-restitution_factors = [0.4, 0.6]
-"""
-
 
 @pytest.fixture
 def small(tmp_path):
-    """The shipped wheel with an ensemble of no weight."""
-    path = tmp_path / "small.toml"
-    path.write_text(SMALL, encoding="utf-8")
-    return path
+    """A study with an ensemble of no weight."""
+    return written(tmp_path, SMALL)
 
 
 def test_an_answer_has_the_names_of_its_record(small):
@@ -49,12 +39,8 @@ def test_a_figure_by_its_name(small):
 
 def test_notes_are_in_the_answer_and_its_document(tmp_path):
     """MoS2 on the races: eta is 0; and what the reading of the study notes, if it was read before, too."""
-    path = tmp_path / "slippery.toml"
-    text = (
-        'extends = "cryogenic-turbopump"\n[film]\nrace_friction = 0.02\n[operation]\ntemperature = "120 K"\n'
-    )
-    path.write_text(text, encoding="utf-8")
-    answer = api.restitution(separatrix.read_study(path))
+    slippery = '[film]\nrace_friction = 0.02\n[operation]\ntemperature = "120 K"\n'
+    answer = api.restitution(separatrix.read_study(written(tmp_path, SMALL + slippery)))
     read, eta = answer.notes
     assert "not stated at 120 K" in read
     assert eta.startswith("eta = 0")
@@ -70,13 +56,13 @@ def test_an_interrupt_carries_the_answer_of_what_was_finished(small, tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as caught:
-        api.rank(small, jobs=1, folder=tmp_path / "kept", progress=stop)
+        api.stability(small, jobs=1, folder=tmp_path / "kept", progress=stop)
     part = caught.value.finished
-    assert part.verb == "rank"
+    assert part.verb == "stability"
     assert part.document()["complete"] is False
-    whole = api.rank(small, folder=tmp_path / "kept")
+    whole = api.stability(small, folder=tmp_path / "kept")
     assert whole.document()["complete"] is True
-    assert whole.document() == api.rank(small).document()
+    assert whole.document() == api.stability(small).document()
 
 
 def test_a_report_of_a_study_is_a_document(small):

@@ -7,7 +7,6 @@ import signal
 import time
 import zipfile
 from io import BytesIO
-from pathlib import Path
 
 import pytest
 from commands import SMALL, work_undrawn
@@ -16,7 +15,6 @@ from fastapi.testclient import TestClient
 from separatrix.front.page import editing
 from separatrix.front.page.server import application
 from separatrix.ground.errors import InputError
-from separatrix.verbs.verb import Option
 
 LONG = SMALL.replace('duration = "4 ms"', 'duration = "400 ms"').replace("runs = 4", "runs = 64")
 PATIENCE = 1200.0
@@ -126,32 +124,16 @@ def test_everything_is_downloaded_at_once(page):
         assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}
 
 
-def test_options_are_fields_of_their_types(monkeypatch, page, root):
+def test_options_are_fields_of_their_types(page, root):
     """A number in digits, a line each, a file beside the study, a flag; empty ones are left out."""
-    kinds = {"runs": int, "vary": tuple[str, ...], "cases": Path | None, "full": bool, "x": str | None}
-    shown = {name: (kind, Option("", ""), None) for name, kind in kinds.items()}
-    verb = type("V", (), {"shown_options": lambda _: shown, "moves_a_cage": True})()
-    monkeypatch.setattr(editing, "verb_named", lambda _: verb)
-    (root / "duty.csv").write_text("film.thickness\n1 um\n")
-    own = page.app.state.page
-    sent = {
-        "runs": "4",
-        "vary": "a=1\n b=2 \n",
-        "cases": "duty.csv",
-        "full": "on",
-        "x": "",
-        "model": "paper",
-    }
-    expected = {
-        "runs": 4,
-        "vary": ("a=1", "b=2"),
-        "cases": root / "duty.csv",
-        "full": True,
-        "model": "paper",
-    }
-    assert editing.asked(own, "small.toml", "any", sent) == expected
+    own, table = page.app.state.page, root / "duty.csv"
+    table.write_text("film.thickness\n1 um\n")
+    sent = {"vary": "a=1\n b=2 \n", "cases": "duty.csv", "margins": "on", "verdicts": "", "model": "paper"}
+    expected = {"vary": ("a=1", "b=2"), "cases": table, "margins": True, "model": "paper"}
+    assert editing.asked(own, "small.toml", "sweep", sent) == expected
+    assert editing.asked(own, "small.toml", "map", {"runs": "4"}) == {"runs": 4}
     with pytest.raises(InputError, match="--runs must be a whole number"):
-        editing.asked(own, "small.toml", "any", {"runs": "4.5"})
+        editing.asked(own, "small.toml", "map", {"runs": "4.5"})
 
 
 def test_a_log_is_dropped_corrected_and_cut(page, root):

@@ -8,7 +8,6 @@ from separatrix.cage import MovingCage, moving_cage, settings_for
 from separatrix.chain.impact_restitution import ball_pocket_stiffness, hertz_coefficient
 from separatrix.chain.solution import solve
 from separatrix.ground.errors import InputError
-from separatrix.study.candidates import require_friction
 from separatrix.study.reading import read_study
 from separatrix.study.study import (
     Candidate,
@@ -140,16 +139,6 @@ def test_the_chain_of_a_study_is_solved_once():
         known.inner.traction_coefficient[0] = 0.0
     bare = study(film=Film(race_friction=0.1))
     assert solve(bare).lubrication is None  # which film it would be is not known
-
-
-def test_pocket_friction_is_given_or_that_of_the_named_material():
-    """The study's own, else that of the cage's candidate in the bearing's environment, else a refusal."""
-    assert solve(cage(ball_cage_friction=0.2)).friction.mean == 0.2
-    assert solve(STUDY).friction.mean == 0.08  # Armalon in liquid nitrogen on 440C
-    with pytest.raises(InputError, match="ball_cage_friction is missing"):
-        require_friction(study(ranking=None))
-    # a curve runs through all frictions: none known is no fault
-    assert solve(study(ranking=None)).friction is None
 
 
 def test_the_cage_in_the_plane_takes_the_design_as_it_is():

@@ -124,7 +124,7 @@ WRONG = {  # what follows the verb, and the words of the line
     "out exists, whatever the logs": ("no.csv --map no.toml --out map.toml", "map.toml exists"),
     "out is no toml": ("a.csv --out friction.csv", "--out must name a file that ends in .toml"),
     "out is empty": ("a.csv --out ''", "--out needs the name of a file"),
-    "a name too long": (f"a.csv --out {'x' * 300}/f.toml", "cannot be written; got File name too long"),
+    "a name too long": (f"a.csv --out {'x' * 300}/f.toml", "(the folder: File name too long)"),
     "a log of a name too long": ("x" * 300, "cannot be read: file name too long"),
     "out in a file": ("a.csv b.csv --map map.toml --out a.csv/f.toml", "cannot be written"),
     "running-in in newtons": ("a.csv --run-in '5 N'", "--run-in must be a time"),

@@ -21,8 +21,3 @@ def test_a_notebook_runs_and_is_stored_without_outputs(path, monkeypatch):
     assert any("image/png" in output.get("data", {}) for output in shown)
     assert any(output.output_type == "stream" and output.name == "stdout" for output in shown)
     assert not [output.text for output in shown if output.output_type == "stream" and output.name == "stderr"]
-
-
-def test_there_are_three_notebooks():
-    """A first ranking, a parameter study, logs to friction."""
-    assert [path.stem for path in NOTEBOOKS] == ["first-ranking", "logs-to-friction", "parameter-study"]

@@ -9,14 +9,13 @@ the process, which no neighbour on the machine changes: ``report`` [s], or for a
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from separatrix.front.console import FIRST_PART, Pace
+from separatrix.front.console import Pace
 from separatrix.ground.compiling import COMPILING
 from separatrix.verdict.long_jobs import Load, Work
 
@@ -106,12 +105,3 @@ def test_a_slow_place_under_way_is_left_at_its_own_pace():
         work.finish(place)
     done, total = work.so_far(1)
     assert (done, total - done) == (12.0, pytest.approx(2.0))  # rounding
-
-
-def test_unknown_work_has_neither_share_nor_time():
-    """Of a total that is not known yet, and of none."""
-    pace = Pace()
-    for done, total in ((0.0, math.inf), (2.0, math.inf), (0.0, 0.0)):
-        pace(done, total)
-        assert (pace.share, pace.left) == (0.0, None)
-    assert FIRST_PART == 0.1

@@ -27,11 +27,11 @@ from separatrix.verdict.ranking_records import Ranked
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}
 """Parts of a document that are not records: their keys are those of a study, of a log, or conditions."""
 
-FULL = separatrix.read_study("momentum-wheel")
+FULL = separatrix.read_study("cryogenic-turbopump")
 SMALL = replace(
     FULL,
     stability=replace(FULL.stability, runs=1, duration=0.01, kicks=(0.5,), restitution_factors=(0.3, 0.6)),
-    ranking=replace(FULL.ranking, candidates=FULL.ranking.candidates[:2]),
+    ranking=replace(FULL.ranking, candidates=FULL.ranking.candidates[1:3]),
 )
 IN_SPACE = replace(SMALL, cage=replace(SMALL.cage, motion=separatrix.study.study.MotionModel.SPACE))
 WEARS = replace(

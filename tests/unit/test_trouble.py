@@ -35,9 +35,6 @@ SHORT = StabilitySettings(kicks=(0.5,), runs=4, duration=0.01)
 
 ANSWERED = {
     "land tighter than the pockets": '[cage]\nland_clearance = "20 um"',
-    "no pocket clearance": '[cage]\npocket_clearance = "0 mm"',
-    "no friction in the pockets": "[cage]\nball_cage_friction = 0",
-    "no friction on the land": "[cage]\nland_friction = 0",
     "a land that returns nothing": "[cage]\nland_restitution = 0",
     "a land that returns all": "[cage]\nland_restitution = 1",
     "no land": '[cage]\nguidance = "ball"',

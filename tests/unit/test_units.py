@@ -17,14 +17,10 @@ PINT_NAMES = {
     "kgf": "kilogram_force",
     "g0": "standard_gravity",
     "t": "metric_ton",
-    "lb": "pound",
     "rev/s": "revolution/s",
     "rev/min": "revolution/min",
-    "degC": "degC",
     "°C": "degC",
     "°": "degree",
-    "deg": "degree",
-    "deg/s": "degree/s",
 }
 """Spelling for pint where it is not ours; spaces are products and a final digit is a power elsewhere."""
 

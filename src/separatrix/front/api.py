@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
 from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
-from separatrix.study.reading import read_study, require
+from separatrix.study.reading import read_study
 from separatrix.study.study import Study
-from separatrix.verbs import computed, tool_named, verb_named
+from separatrix.verbs import asked_study, computed, tool_named, verb_named
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
 
@@ -152,10 +152,10 @@ def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **ho
     """Answer of a verb; `how` is as for `computed`."""
     from separatrix.verbs.answer_files import document
 
-    study, verb = study if isinstance(study, Study) else read_study(study), verb_named(name)
-    require(study, name, *verb.needs)
-    found = computed(verb, study, verb.options(**(options or {})), **how)
-    answer = Answer(asked=verb, record=found.record, study=study, made=partial(document, verb, found))
+    verb = verb_named(name)
+    asked = asked_study(verb, study)
+    found = computed(verb, asked, verb.options(**(options or {})), **how)
+    answer = Answer(asked=verb, record=found.record, study=asked, made=partial(document, verb, found))
     if not found.is_complete:
         raise Interrupted(answer)
     return answer

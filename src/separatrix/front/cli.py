@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -15,30 +16,29 @@ import click
 from separatrix.front.commands import (
     ANSWERED,
     Given,
+    answered,
     beside,
     command,
-    computed_with_progress,
-    deliver,
+    document_of,
     folder,
     named,
     options_of,
-    print_place,
+    result_of,
     threads,
     tool_command,
     verb_command,
-    with_progress,
 )
 from separatrix.front.console import answer, answer_json, complain, interrupted, interruptible
 from separatrix.ground.errors import InputError, SeparatrixError, harmless
 from separatrix.ground.files import refuse_existing, staged, writable_folder, write_new
-from separatrix.ground.units import printable, shown
+from separatrix.ground.units import shown
 from separatrix.verbs import TOOLS, VERBS, tool_named, verb_named
 from separatrix.verbs.verb import Option, shown_options
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
     from separatrix.verbs.report import Report
-    from separatrix.verbs.verb import Tool, Verb
+    from separatrix.verbs.verb import Tool
 
 FAULT, WRONG_INPUT = 1, 2
 
@@ -62,7 +62,6 @@ def _new(given: Given) -> int:
     if path.suffix != ".toml" or path.is_dir():
         cure = 'Name a file like "my-bearing.toml".'
         raise InputError(str(path), "must name a file that ends in .toml", cure=cure)
-    refuse_existing(path)
     from separatrix.study.template import template
 
     write_new(path, template().encode())
@@ -147,7 +146,6 @@ def _report(given: Given) -> int:
         typesetter()
     from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
-    from separatrix.verbs.answer_files import document
     from separatrix.verbs.report import report_of, report_of_study
     from separatrix.verbs.saved_answers import read_folder
 
@@ -161,12 +159,8 @@ def _report(given: Given) -> int:
         if study is None:
             made: Report | None = report_of(read_folder(usual), where=str(usual))
         else:
-            how: dict[str, Any] = {"quiet": quiet, "jobs": count, "folder": place}
-
-            def computed(verb: Verb) -> Document:
-                return document(verb, computed_with_progress(verb, study, **how))
-
-            made = report_of_study(study, computed, place)
+            how: Any = {"quiet": quiet, "jobs": count, "folder": place}
+            made = report_of_study(study, lambda verb: document_of(verb, study, **how), place)
         if made is None:
             return interrupted("no report was written. Run the same command to resume.")
         files = [] if place is None else made.write(place, with_pdf=pdf)
@@ -192,23 +186,13 @@ class Written:
 
 def _reduce(tool: Tool, given: Given) -> int:
     """Reduce logs; write a friction file and pictures of the tests."""
-    from separatrix.ground.document import part_of
-    from separatrix.verbs.answer_files import save_pictures
-
     to = named(given["out"], "--out", "a file")
-    pages = None if to is None else to.with_name(f"{to.stem}-plots")
+    pictures = None if to is None else to.with_name(f"{to.stem}-plots")
     with interruptible("no friction file was written."), contextlib.ExitStack() as stack:
-        if to is not None and pages is not None:
+        if to is not None:
             _refuse_out(to)
-            for place in (to.parent, pages):
-                stack.enter_context(writable_folder(place))
-        found = _reduced(tool, given, to)
-        page = tool.page(part_of(found))
-        if pages is not None:
-            save_pictures(pages, page)
-        deliver(found, lambda: page, given)
-        if pages is not None:
-            print_place("Pictures of the tests", pages, given)
+            stack.enter_context(writable_folder(to.parent))
+        answered(tool, given, partial(_reduced, tool, given, to), pictures, only_pictures=True)
     return ANSWERED
 
 
@@ -219,7 +203,7 @@ def _reduced(tool: Tool, given: Given, to: Path | None) -> Document:
 
     try:
         compute = partial(reduced, options_of(tool, given), complete=to is not None)
-        found = with_progress(tool, compute, given)
+        found = result_of(tool, compute, given)
     except UnmappedError as error:
         raise error.with_draft_written() from None
     if to is not None and found.friction_tests is not None:
@@ -232,12 +216,7 @@ def _reduced(tool: Tool, given: Given, to: Path | None) -> Document:
 
 
 def _refuse_out(out: Path) -> None:
-    try:
-        is_folder = out.is_dir()
-    except OSError as error:
-        where = f"--out {printable(str(out), 200)}"
-        raise InputError(where, "cannot be written", error.strerror or type(error).__name__) from None
-    if out.suffix != ".toml" or is_folder:
+    if out.suffix != ".toml" or os.path.isdir(out):
         cure = 'Name a file like "friction.toml".'
         raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
     refuse_existing(out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -28,9 +28,7 @@ from separatrix.verbs.verb import Option, Shown, kind_of, shown_options
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
-    from separatrix.present.blocks import Page
     from separatrix.study.study import Study
-    from separatrix.verbs import Computed
     from separatrix.verbs.verb import Tool, Verb
 
 Result = TypeVar("Result")
@@ -157,7 +155,42 @@ def options_of(asked: Tool, given: Given) -> Any:
     return asked.options(**{name: given[name] for name in asked.shown_options()})
 
 
-# The command of a verb.
+# What a command does, from its question to its files.
+
+
+def answered(
+    asked: Tool,
+    given: Given,
+    compute: Callable[[], Document],
+    to: Path | None,
+    *,
+    only_pictures: bool = False,
+) -> Document:
+    """Compute a document, print it or its page, and save it in `to`, tested before the work; return it.
+
+    With `--quiet` the page is without its notes.
+    """
+    from separatrix.present.blocks import Level
+    from separatrix.present.text import text
+    from separatrix.verbs.answer_files import page_of_document, save_answer, save_pictures
+
+    json, quiet = given["json"], given.get("quiet", False)
+    with contextlib.nullcontext() if to is None else writable_folder(to):
+        made = compute()
+        page = page_of_document(asked, made) if to is not None or not json else None
+        if page is None or json:
+            answer_json(made)
+        else:
+            shown = page.without_notes() if quiet else page
+            answer(text(shown, Level.FULL if given.get("full") else Level.BRIEF))
+        if page is None or to is None:
+            return made
+        with progress_bar("files", quiet=quiet):  # this takes as long again
+            save_pictures(to, page) if only_pictures else save_answer(to, asked, made, page=page)
+        if not json and not quiet:
+            what = "Pictures of the tests" if only_pictures else "Text, figures and data"
+            answer(f"\n{what} are in {to}/\n")
+    return made
 
 
 def verb_command(verb: Verb, about: str) -> click.Command:
@@ -168,36 +201,24 @@ def verb_command(verb: Verb, about: str) -> click.Command:
 
 
 def run(verb: Verb, given: Given) -> int:
-    """Answer one question and return the exit status."""
-    from separatrix.verbs.answer_files import document, page_of_document, save_answer
-
-    json, cluster, quiet = given["json"], given.get("cluster"), given["quiet"]
-    named(cluster, "--cluster", "a scheduler, or local:N")
+    """Answer one question to a study and return the exit status."""
+    named(given.get("cluster"), "--cluster", "a scheduler, or local:N")
     place, jobs = folder(given["out"]), threads(given["jobs"])
-    is_kept = verb.keeps_runs and not (json and place is None)
-    ended = "runs that were finished are kept." if is_kept else "no file was written."
-    with interruptible(ended), contextlib.ExitStack() as stack:
+    is_kept = verb.keeps_runs and not (given["json"] and place is None)
+    with interruptible("runs that were finished are kept." if is_kept else "no file was written."):
         options = options_of(verb, given)
         study = asked_study(verb, given["study"], given.get("model"))
-        to = Path(study.name) if place is None and verb.writes_data and not json else place
-        if to is not None:
-            stack.enter_context(writable_folder(to))
-        how = {"quiet": quiet, "jobs": jobs, "folder": to, "cluster": cluster}
-        found = computed_with_progress(verb, study, options, **how)
-        made = document(verb, found)
-        page = cache(partial(page_of_document, verb, made))
-        deliver(made, page, given)
-        if to is not None:  # this takes as long again
-            with progress_bar("files", quiet=quiet):
-                save_answer(to, verb, made, page=page())
-            print_place("Text, figures and data", to, given)
-    if found.is_complete:
+        usual = Path(study.name) if verb.writes_data and not given["json"] else None
+        to = place or usual
+        how = {"quiet": given["quiet"], "jobs": jobs, "folder": to, "cluster": given.get("cluster")}
+        made = answered(verb, given, partial(document_of, verb, study, options, **how), to)
+    if made.get("complete") is not False:
         return ANSWERED
     more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
     return interrupted(f"the answer has what was finished, and is marked complete: false.{more}")
 
 
-def computed_with_progress(
+def document_of(
     verb: Verb,
     study: Study,
     options: Any = None,
@@ -206,8 +227,10 @@ def computed_with_progress(
     jobs: int,
     folder: Path | None,
     cluster: str | None = None,
-) -> Computed:
+) -> Document:
     """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
+    from separatrix.verbs.answer_files import document
+
     how: dict[str, Any] = {"jobs": jobs, "folder": folder, "cluster": cluster}
     with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
         found = breakable(partial(computed, verb, study, options, progress=progress, **how))
@@ -216,66 +239,30 @@ def computed_with_progress(
 
         kept = f"{folder}/{NAME}"
         complain(f"{found.runs_taken} runs were taken from {kept}, where an earlier call had kept them.")
-    return found
-
-
-def deliver(made: Document, page: Callable[[], Page], given: Given) -> None:
-    """Print a document, or its page; with `--quiet` without its notes."""
-    from separatrix.present.blocks import Level
-    from separatrix.present.text import text
-
-    if given["json"]:
-        answer_json(made)
-        return
-    shown = page().without_notes() if given.get("quiet") else page()
-    answer(text(shown, Level.FULL if given.get("full") else Level.BRIEF))
-
-
-def print_place(what: str, folder: Path, given: Given) -> None:
-    """Print where files are."""
-    if not given["json"] and not given["quiet"]:
-        answer(f"\n{what} are in {folder}/\n")
-
-
-# The command of a tool.
+    return document(verb, found)
 
 
 def tool_command(tool: Tool, about: str) -> click.Command:
     """Return the command of a tool."""
-    is_long = tool.takes_time or tool.folder
-    names = {
-        "full": True,
-        "json": True,
-        "out": tool.folder,
-        "quiet": is_long,
-        "jobs": tool.takes_time,
-    }
+    names = {"full": True, "json": True, "out": tool.folder, "quiet": tool.takes_time or tool.folder}
+    names["jobs"] = tool.takes_time
     takes = tool.shown_options() | beside(*(name for name, is_taken in names.items() if is_taken))
     return command(tool.name.split()[-1], partial(run_tool, tool), takes, about, tool.epilog)
 
 
 def run_tool(tool: Tool, given: Given) -> int:
     """Answer a tool's question and return the exit status."""
-    from separatrix.ground.document import part_of
-    from separatrix.verbs.answer_files import save_answer
-
     usual = Path(tool.folder) if tool.folder and not given["json"] else None
-    to = folder(given.get("out")) or usual
-    place = contextlib.nullcontext() if to is None else writable_folder(to)
-    with interruptible("no answer was given."), place:
+    with interruptible("no answer was given."):
         compute = partial(tool.compute, options_of(tool, given))
-        found = with_progress(tool, compute, given) if tool.takes_time else breakable(compute)
-        page = tool.page(part_of(found))
-        if to is not None:
-            save_answer(to, tool, found, page=page)
-        deliver(found, lambda: page, given)
-        if to is not None:
-            print_place("Text, data and figures", to, given)
+        answered(tool, given, partial(result_of, tool, compute, given), folder(given.get("out")) or usual)
     return ANSWERED
 
 
-def with_progress(tool: Tool, compute: Callable[..., Result], given: Given) -> Result:
-    """Return what takes threads and progress, with a bar."""
+def result_of(tool: Tool, compute: Callable[..., Result], given: Given) -> Result:
+    """Return what a tool computes; with a bar, if it takes threads and progress."""
+    if not tool.takes_time:
+        return breakable(compute)
     count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:
         return breakable(partial(compute, count, progress))

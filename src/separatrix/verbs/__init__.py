@@ -70,8 +70,8 @@ def refusals(study: Study) -> Iterator[tuple[str, str]]:
             yield name, sentence
 
 
-def asked_study(verb: Verb, study: str | Path, model: str | None = None) -> Study:
-    """Return the study of a file or a shipped name, with another model of its cage if one is named.
+def asked_study(verb: Verb, study: Study | str | Path, model: str | None = None) -> Study:
+    """Return a study, that of a file or of a shipped name, with another model of its cage if one is named.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def asked_study(verb: Verb, study: str | Path, model: str | None = None) -> Stud
     """
     from separatrix.study.reading import read_study, require
 
-    found = read_study(study, model)
+    found = read_study(study, model) if isinstance(study, str | Path) else study
     require(found, verb.name, *verb.needs)
     return found
 
