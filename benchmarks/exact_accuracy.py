@@ -20,7 +20,6 @@ from test_exact_rolling import (
     PLANE,
     cauchy_slope,
     circle_area,
-    creep_of_unlike_bodies,
 )
 from test_exact_slope import BARE_SLOPES, INNER, OUTER, OWN_PRESSURE, WORN, problem, worn
 
@@ -83,7 +82,6 @@ def strips_table():
     for n in (20, 40, 80):
         force = strip_force(n, bare, creep=0.4 * 2.0 * MU * 0.75, bound=circle_area)
         print("Carter", n, force / (math.pi / 2.0 * MU))
-    print("Bentall-Johnson 0.91477", *(creep_of_unlike_bodies(n) for n in (40, 160)))
     print("## plane layer by the Cauchy equation, n = 40, 160; per cent")
     worst, bare = np.zeros(2), math.pi / 2.0 / (1.0 - 0.285)
     for ratio, nu, expected in PLANE:

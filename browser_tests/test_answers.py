@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 
 import pytest
-from conftest import PATIENCE, ended, opened, run
 from playwright.sync_api import expect
+
+from conftest import PATIENCE, ended, opened, run
 
 
 @pytest.fixture(scope="module")

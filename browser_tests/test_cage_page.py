@@ -6,8 +6,9 @@ import subprocess
 import sys
 
 import pytest
-from conftest import STUDY, opened, run
 from playwright.sync_api import expect
+
+from conftest import STUDY, opened, run
 
 MOTIONS = ("plane", "space")
 

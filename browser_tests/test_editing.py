@@ -7,8 +7,9 @@ import re
 import time
 
 import pytest
-from conftest import ended, opened
 from playwright.sync_api import expect
+
+from conftest import ended, opened
 
 THICKNESS = "#f-film-thickness"
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from conftest import PATIENCE, opened, run
 from playwright.sync_api import expect
+
+from conftest import PATIENCE, opened, run
 
 SIZES = {
     "light": {},

@@ -19,7 +19,7 @@ from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import Array, Metre, Ratio, Watt
 from separatrix.study.candidates import reference_candidate
-from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study
+from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
 from separatrix.verdict.crossing import SEARCHED_FRICTION
 from separatrix.verdict.draws import Case, frictions_to_draw, sobol_points, uncertain_inputs
 from separatrix.verdict.judgement import is_calm
@@ -93,7 +93,7 @@ def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None 
         raise InputError(study.name, "lacks the section [wear]", cure=TEST)
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
-    worn, inputs, fixed = _drawn(solution, candidate, draws)
+    worn, inputs, fixed = _drawn(solution, study.wear, candidate, draws)
     frictions = np.geomspace(worn.film_friction.min(), max(worn.bare_friction.max(), 1e-3), FRICTIONS)
     clearances = [factor * solution.stated_design.pocket_clearance for factor in WIDENINGS]
     cage = moving_cage(solution, 0.0)
@@ -160,11 +160,10 @@ def _table(found: Mapping[Place, Node], frictions: Array, clearances: Array) -> 
 
 
 def _drawn(
-    solution: Solution, candidate: Candidate | None, draws: int
+    solution: Solution, wear: WearRates, candidate: Candidate | None, draws: int
 ) -> tuple[Worn, dict[str, Array], list[str]]:
     """Draws of what wear depends on, those that are uncertain by name, and uncertain inputs that stay."""
-    study, wear = solution.study, solution.study.wear
-    assert wear is not None  # `life` refuses a study without it
+    study = solution.study
     frictions = frictions_to_draw(study) if study.ranking else {}
     known = {one.key: one.distribution for one in uncertain_inputs(study, frictions)}
     own = next((key for key in known if candidate and key.startswith(f"ranking.{candidate.name}.")), "")
