@@ -223,6 +223,7 @@ VERBS = {
     "simulate": Verb((cage_answers.SimulationAnswer, *CHAIN_RECORDS), RUN),
     "rank": Verb((cage_answers.RankingAnswer, *CHAIN_RECORDS), ROWS),
     "sensitivity": Verb((cage_answers.SensitivityAnswer, *CHAIN_RECORDS), OF_CAGE),
+    "life": Verb((cage_answers.LifeAnswer, *CHAIN_RECORDS), OF_CAGE),
     "sweep": Verb(
         (Sweep, WorstCase, Duty),
         (

@@ -99,7 +99,7 @@ def test_a_verb_that_lacks_a_section_is_refused_for_that():
     """Every verb of a cage, where the study has none, and the first sentence says so."""
     found = answer("check", read_study("le7"))
     assert {one.verb for one in found.refusals} == {
-        *("restitution", "stability", "map", "simulate", "rank", "sensitivity")
+        *("restitution", "stability", "map", "simulate", "rank", "sensitivity", "life")
     }
     lead = verb_named("check").page(found).lead[0]
     assert lead.startswith("The study is valid. It has no [cage] and no [ranking]. `restitution`,")

@@ -48,7 +48,7 @@ cage_wear = "1e-6 mm3/(N m)"
 bare_friction = 0.35
 """
 CALLS = {
-    "life": {"revolutions": 1e6, "samples": 64},
+    "life": {"revolutions": "1e6", "samples": 64},
     "simulate": {"kick": "0.4 m/s"},
     "map": {"x": "restitution_factor=0.2..0.8:2", "y": "ball_cage_friction=0..0.4:3", "runs": 2},
     "sensitivity": {"samples": 64},

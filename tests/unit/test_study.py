@@ -130,6 +130,8 @@ def test_every_line_that_is_off_in_the_template_can_be_switched_on(read):
     beside = {
         "elastic_modulus": "poisson_ratio = 0.38",
         "ramp_start": 'ramp_time = "50 ms"',
+        "worn_pocket_friction": 'worn_pocket_depth = "10 um"',
+        "worn_pocket_depth": "worn_pocket_friction = 0.3",
         "pocket_axial_clearance": 'pocket_shape = "elongated"',
         "pocket_axial_offset": 'pocket_shape = "cylindrical"',
         "land_lobes": 'land_out_of_round = "20 um"',
@@ -297,7 +299,8 @@ def test_the_page_on_study_files_is_complete_and_its_examples_are_right(read):
     page = (Path(__file__).parents[2] / "docs" / "reference" / "study-file.md").read_text(encoding="utf-8")
     assert [section for section in ORDER if f"## [{section}]" not in page] == []
     table = page.partition("| quantity |")[2].partition("Both micro signs")[0]
-    listed = {word.strip() for word in table.replace("|", ",").replace("(", ",").split(",")}
+    rows = table.replace("|", ","), table.replace("|", ",").replace("(", ",")
+    listed = {word.strip() for one in rows for word in one.split(",")}
     assert {unit for known in UNITS.values() for unit in known} <= listed
     variant, wear, candidate = (block.partition("```")[0] for block in page.split("```toml\n")[1:])
     assert read(BASE + wear).film.wear.width == pytest.approx(2e-4)

@@ -13,6 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from separatrix.chain.contact_table import contact_table
 from separatrix.chain.grooved_ball import (
     CONTROLLED,
     FREE,
@@ -22,7 +23,6 @@ from separatrix.chain.grooved_ball import (
     STATIC,
     STEEPEST,
     Problem,
-    contact_table,
     eliminate,
     problem,
     solve_balls,

@@ -37,14 +37,16 @@ class WearRates:
     """Share of what is worn off the pockets that stays on tracks and balls."""
 
     worn_pocket_friction: Ratio | None = key(
-        between(0.0, FRICTION_LIMIT), default=None, without="not given: as new"
+        between(0.0, FRICTION_LIMIT), default=None, example="0.3", without="not given: as new"
     )
     """Friction of a pocket whose surface is worn off: fibres come out."""
 
-    worn_pocket_depth: Metre | None = key(positive(1e-9, 1e-2), default=None, without="not given: as new")
+    worn_pocket_depth: Metre | None = key(
+        positive(1e-9, 1e-2), default=None, example='"10 um"', without="not given: as new"
+    )
     """Depth of wear by which friction has gone 63 % of that way."""
 
     reservoir: CubicMetre | None = key(
-        positive(1e-15, 1e-3), default=None, without="not given: it never ends"
+        positive(1e-15, 1e-3), default=None, example='"1 mm3"', without="not given: it never ends"
     )
     """Volume of the cage that may wear off before it gives no more film."""

@@ -59,12 +59,8 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
 
 
 def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no life."""
-    from separatrix.verdict.life_table import TEST
-
-    if study.wear is None:
-        yield f"The study has no [wear]. {TEST}"
-    elif study.cage is not None:
+    """Yield why there is no life of a study that states how it wears; of another none is asked."""
+    if study.wear is not None and study.cage is not None:
         yield from refused(study, cage_motion)
 
 

@@ -60,7 +60,11 @@ def parameters() -> dict[str, Parameter]:
     for section, record in SECTIONS.items():
         names |= {f"{section}.{key}": unit for key, unit in numbers_of(record).items()}
     names |= {f"film.wear.{key}": unit for key, unit in numbers_of(Wear).items()}
-    left = {name: unit for name, unit in names.items() if name not in (*SETTINGS, *SHORT)}
+    left = {
+        name: unit
+        for name, unit in names.items()
+        if name not in (*SETTINGS, *SHORT) and not name.startswith("wear.")  # of slow time
+    }
     return {name: Parameter(name, unit) for name, unit in left.items()}
 
 

@@ -23,7 +23,7 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.special import expit
 
 from separatrix.chain.slip_work import TrackWork
-from separatrix.ground.units import Array, Metre, Ratio, Rows, Second, SquareMetre
+from separatrix.ground.units import Array, Hertz, Metre, Ratio, Rows, Second, SquareMetre
 
 THICKEST: Metre = 3e-6
 """Of a film by transfer: PTFE films of 1 to 3 um, discontinuous (ESTL, 44th AMS 2018, pp. 518-524)."""
@@ -45,9 +45,9 @@ class LifeTable:
     critical friction is the highest that was searched.
     """
 
-    race_friction: Annotated[Array, "-", ("race_friction",)]
-    pocket_clearance: Annotated[Array, "m", ("pocket_clearance",)]
-    critical_friction: Annotated[Array, "-", ("race_friction", "pocket_clearance")]
+    race_friction: Annotated[Array, "-", ("race_friction",)]  # places of the table, rising
+    pocket_clearance: Annotated[Array, "m", ("pocket_clearance",)]  # the same, as the study states it
+    critical_friction: Annotated[Array, "-", ("race_friction", "pocket_clearance")]  # worst disturbance
     steepness: Annotated[Array, "-", ("race_friction", "pocket_clearance")]
     """Slope of the logit of P(whirl) against the logarithm of friction."""
     calm_sliding: Annotated[Array, "W", ("race_friction", "pocket_clearance")]
@@ -258,16 +258,16 @@ def driven_by(inputs: Mapping[str, Array], life: Array) -> tuple[Driver, ...]:
 class LifeRow:
     """The draws at one time; films and frictions are medians."""
 
-    time: Second
-    revolutions: float  # of one ring against the other
+    time: Second  # from the start
+    revolutions: Ratio  # of one ring against the other
     probability_stable: Ratio  # mean over the draws
     first_decile: Ratio  # of P(stable): below it lies a tenth of the draws
     last_decile: Ratio  # above it lies a tenth of the draws
     film_inner: Metre  # mean over the track of the inner race
     film_outer: Metre  # the same of the outer race
-    race_friction: Ratio
-    pocket_friction: Ratio
-    pocket_clearance: Metre
+    race_friction: Ratio  # mean of both tracks by the load that they carry
+    pocket_friction: Ratio  # of ball on cage
+    pocket_clearance: Metre  # stop to stop, with what is worn off
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -275,23 +275,21 @@ class Life:
     """When a cage becomes unstable, over the draws of what wears it."""
 
     candidate: str  # whose cage it is
-    draws: int
-    revolutions_10: (
-        float | None
-    )  # at which a tenth of the cages have become unstable; null beyond the horizon
-    revolutions_50: float | None  # the same of a half
-    revolutions_90: float | None  # the same of nine in ten
+    draws: int  # bearings that were drawn
+    revolutions_10: Ratio | None  # until a tenth of the cages are unstable; null beyond the horizon
+    revolutions_50: Ratio | None  # the same of a half
+    revolutions_90: Ratio | None  # the same of nine in ten
     unstable_at_start: Ratio  # share of the draws
     never_unstable: Ratio  # share of the draws, up to the horizon
-    horizon: float  # revolutions up to which the draws were followed
-    speed: float  # revolutions in a second
+    horizon: Ratio  # revolutions up to which the draws were followed
+    speed: Hertz  # revolutions in a second
     film_worn: Ratio  # share of the draws that become unstable, mostly because the film is worn
     pocket_opened: Ratio  # mostly because the pockets have opened
     friction_risen: Ratio  # mostly because the friction of worn pockets has risen
     reservoir_empty: Ratio  # share of all draws whose reservoir is empty at the horizon
     film_sustained: Ratio  # share of the draws in which deposit keeps up at least half of the coverage
-    course: Annotated[tuple[LifeRow, ...], Rows("time", "course_")]
+    course: Annotated[tuple[LifeRow, ...], Rows("time", "course_")]  # the draws in the course of time
     drivers: tuple[Driver, ...]  # inputs that the life follows, the strongest first
-    table: LifeTable
-    complete: bool
-    notes: tuple[str, ...] = ()
+    table: LifeTable  # of critical frictions, along which they are led
+    complete: bool  # always: without its whole table there is no life
+    notes: tuple[str, ...] = ()  # where the draws leave the table or a model its range, a sentence each

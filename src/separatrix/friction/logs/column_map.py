@@ -56,11 +56,15 @@ class Conditions:
     """Name of the test."""
 
     temperature: Kelvin | None = key(positive(0.1, 3000.0), default=None)
+    """Of the sample."""
+
     slip_speed: MetrePerSecond | None = key(positive(1e-9, 1e3), default=None)
     pressure: Pascal | None = key(positive(1e-3, 1e12), default=None)
     """Mean contact pressure."""
 
     normal_force: Newton | None = key(positive(1e-9, 1e7), default=None)
+    """Of the sample on what it slides on."""
+
     cycle_time: Second | None = key(positive(1e-6, 1e7), default=None)
     """Of one revolution or of one stroke there and back."""
 
