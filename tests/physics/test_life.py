@@ -189,7 +189,7 @@ def test_the_life_follows_what_it_depends_on():
 
 
 def test_steepness_of_counts_is_their_slope():
-    """Expected counts of a logistic of slope 10: within a third, as 13 slopes from 3 to 100 are possible."""
+    """Expected counts of a logistic of slope 10: within a third, the step of the slopes that are possible."""
     places = np.log(0.2) + np.linspace(-0.35, 0.35, 8)
     counts = {x: Count(round(4000 / (1.0 + math.exp(-10.0 * (x - math.log(0.2))))), 4000) for x in places}
     assert steepness(counts, math.log(0.2) + PLACES, 0.5) == pytest.approx(10.0, rel=0.34)
