@@ -10,7 +10,7 @@ from separatrix.ground.document import Part
 from separatrix.present.blocks import Equation, Heading, Page, Table, facts, text_column
 from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
-from separatrix.verbs.parts.quantity_text import by_race, column, fact, show
+from separatrix.verbs.parts.quantity_text import by_race, column, fact, fill, show
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def compute(study: Study, options: NoOptions) -> BearingState:  # noqa: ARG001
 
 def page(answer: Part) -> Page:
     """Return the page of `bearing`."""
-    contacts = answer.contacts.inner, answer.contacts.outer
+    contacts, most = (answer.contacts.inner, answer.contacts.outer), answer.balls[answer.most_loaded]
     held = "the rings are held parallel" if answer.tilt == 0.0 else "the rings are held at this angle"
     tilt = held if answer.is_tilt_held else "free: the inner ring tilts until the balls balance the moment"
     return page_of(
@@ -51,6 +51,8 @@ def page(answer: Part) -> Page:
             fact(answer, "radial_displacement"),
             ("Tilt", f"{show(answer, 'tilt')} ({tilt})"),
             fact(answer, "moment"),
+            fact(answer, "friction_torque"),
+            ("Heat of friction", fill(most, "{heat_inner} inner, {heat_outer} outer race, most loaded ball")),
         ),
         Heading("Balls"),
         balls(answer),
