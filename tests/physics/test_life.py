@@ -11,7 +11,7 @@ import separatrix
 from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
-from separatrix.study.study import KinematicModel, Operation, Race
+from separatrix.study.study import Film, KinematicModel, Operation, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
 from separatrix.verdict.life_table import life
 from separatrix.verdict.wear_life import (
@@ -196,6 +196,10 @@ def test_steepness_of_counts_is_their_slope():
 
 
 def test_a_study_without_wear_names_the_test():
-    """One line, and no table is computed."""
+    """One line, and no table is computed; bare races have nothing to wear."""
+    shipped = separatrix.read_study("cryogenic-turbopump")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+    with pytest.raises(separatrix.InputError, match="bare races"):
+        life(replace(shipped, wear=rates, film=Film(race_friction=0.1)), revolutions=1e6, draws=64)
     with pytest.raises(separatrix.InputError, match=r"lacks the section \[wear\].*worn volume over load"):
-        life(separatrix.read_study("cryogenic-turbopump"), revolutions=1e6, draws=64)
+        life(shipped, revolutions=1e6, draws=64)

@@ -21,7 +21,13 @@ from separatrix.ground.units import Array, Metre, Ratio, Watt
 from separatrix.study.candidates import reference_candidate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
 from separatrix.verdict.crossing import SEARCHED_FRICTION
-from separatrix.verdict.draws import Case, frictions_to_draw, sobol_points, uncertain_inputs
+from separatrix.verdict.draws import (
+    Case,
+    frictions_to_draw,
+    own_environment,
+    sobol_points,
+    uncertain_inputs,
+)
 from separatrix.verdict.judgement import is_calm
 from separatrix.verdict.long_jobs import Interrupted, Load, Runner
 from separatrix.verdict.parameter_axes import varied
@@ -85,12 +91,14 @@ def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None 
     Raises
     ------
     InputError
-        The study has no [wear], no cage, or no friction of it.
+        The study has no [wear], no film, no cage, or no friction of it.
     Interrupted
         Before the table was finished; its runs are kept.
     """
     if study.wear is None:
         raise InputError(study.name, "lacks the section [wear]", cure=TEST)
+    if study.film.thickness is None:
+        raise InputError("[film] thickness", "is missing: bare races have no film that wears")
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
     worn, inputs, fixed = _drawn(solution, study.wear, candidate, draws)
@@ -166,7 +174,8 @@ def _drawn(
     study = solution.study
     frictions = frictions_to_draw(study) if study.ranking else {}
     known = {one.key: one.distribution for one in uncertain_inputs(study, frictions)}
-    own = next((key for key in known if candidate and key.startswith(f"ranking.{candidate.name}.")), "")
+    own = f"ranking.{candidate.name}.{own_environment(study)}" if candidate else ""
+    own = own if own in known else ""
     friction = solution.friction
     if friction is None:
         cure = "Give [cage] ball_cage_friction, or rank a measured material."
@@ -176,7 +185,7 @@ def _drawn(
         "wear.film_wear": wear.film_wear,
         "wear.cage_wear": wear.cage_wear,
         "wear.transferred": wear.transferred,
-        "film.thickness": study.film.thickness or 0.0,
+        "film.thickness": study.film.thickness or 0.0,  # bare races are refused
         "wear.coverage_thickness": wear.coverage_thickness,
         "film.race_friction": study.film.race_friction,
         "wear.bare_friction": wear.bare_friction,
