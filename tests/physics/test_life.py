@@ -1,6 +1,7 @@
 """Slow time: films, pockets, and when a cage becomes unstable: exact cases and published numbers."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
