@@ -117,9 +117,9 @@ def lead(answer: Part) -> Iterator[str]:
     """Yield after how many revolutions the cage is unstable."""
     whose = f"of the cages of {answer.candidate}"
     if "revolutions_50" in answer:
-        words = f"Half {whose} are unstable after {{revolutions_50}} revolutions"
-        words += ", a tenth after {revolutions_10}"
-        words += ", nine in ten after {revolutions_90}" * ("revolutions_90" in answer)
+        words = f"Half {whose} have become unstable by {{revolutions_50}} revolutions"
+        words += ", a tenth by {revolutions_10}"
+        words += ", nine in ten by {revolutions_90}" * ("revolutions_90" in answer)
         yield fill(answer, f"{words}.")
     else:
         yield fill(answer, f"Up to {{horizon}} revolutions {{never_unstable}} {whose} never become unstable.")
