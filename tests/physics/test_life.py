@@ -82,7 +82,9 @@ def test_work_of_a_pass_is_that_of_an_independent_program(name, inner, outer, pa
     state = bearing_state(bearing, operation, KinematicModel.FREE, friction)
     for race, value, at in ((Race.INNER, inner, state.inner), (Race.OUTER, outer, state.outer)):
         found = track_work(bearing, operation, state, race)
-        assert found.work.max() == pytest.approx(value, rel=1e-3)  # its digits, and another equilibrium
+        assert found.work.max() == pytest.approx(
+            value, rel=1e-3
+        )  # five digits, of an equilibrium that differs by 3e-4
         width = 2.0 * at.ellipse.semi_major / found.work.size
         heat = getattr(state.equilibrium, f"heat_{race.value}")[at.ball]
         # slip that is no longer rounded off near zero: 2 % of the little heat of the wheel's outer race
@@ -152,6 +154,51 @@ def test_a_film_that_wears_ends_a_cage_when_its_critical_friction_is_reached():
     assert why.film_worn[0] > 1.0
     assert why.pocket_opened[0] == pytest.approx(0.0, abs=1e-9)
     assert why.friction_risen[0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("friction", "sliding"), [(0.1, 2.0), (0.8, 200.0)])
+def test_pockets_open_by_what_slides_in_them(friction, sliding):
+    """K N v t over both walls of ten pockets, a cap each; of a cage that whirls by the work of a whirl."""
+    given = {"cage_wear": 1e-16, "worn_friction": friction}
+    found = course(BEARING, TABLE, worn(pocket_friction=friction, **given), 1e4)
+    volume = 1e-16 * sliding * 1e4
+    assert found.volume[-1, 0] == pytest.approx(volume, rel=1e-6)  # P(unstable) is 1e-9 from 0 or 1
+    depth = math.sqrt(volume / 20.0 / (math.pi * 5e-3))
+    assert found.clearance[-1, 0] == pytest.approx(3e-4 + 2.0 * depth, rel=1e-6)
+
+
+def test_a_worn_pocket_goes_over_to_its_friction():
+    """63 % of the way at the stated depth, which 20 caps of that depth have together as volume."""
+    volume = 20.0 * math.pi * 5e-3 * 1e-6**2
+    given = {"worn_friction": 0.2, "worn_depth": 1e-6, "cage_wear": volume / 2.0 / 1e3}
+    found = course(BEARING, TABLE, worn(**given), 1e3)
+    assert found.pocket_friction[-1, 0] == pytest.approx(0.1 + 0.1 * (1.0 - math.exp(-1.0)), rel=1e-4)
+
+
+def test_debris_grows_a_film_that_does_not_wear_until_the_reservoir_is_empty():
+    """A half of K N v over both tracks, 1e-4 m2 each, and half of ten balls; then nothing more."""
+    area = 2e-4 + 0.5 * 10 * math.pi * 1e-2**2
+    given = {"cage_wear": 1e-14, "transferred": 0.5}
+    grown = 0.5 * 1e-14 * 2.0 * 1e4 / area
+    free = course(BEARING, TABLE, worn(**given), 1e4)
+    assert free.films[0][-1, 0] == pytest.approx(0.5 * UM + grown, rel=1e-6)
+    ended = course(BEARING, TABLE, worn(**given, reservoir=1e-30), 1e4)
+    assert ended.films[0][-1, 0] < 0.5 * UM + 1e-3 * grown
+
+
+def test_race_friction_is_the_mean_by_load():
+    """The inner track bare, of three times the load of the outer one, which does not wear."""
+    idle = replace(TRACK, work=np.zeros(2))
+    bearing = replace(BEARING, tracks=(TRACK, idle), loads=(3.0, 1.0))
+    found = course(bearing, TABLE, worn(film_wear=1e-9), 1e6)
+    whole = 0.4 - 0.35 * (1.0 - math.exp(-5.0))
+    assert found.race_friction[-1, 0] == pytest.approx(0.75 * 0.4 + 0.25 * whole, rel=1e-6)
+
+
+def test_what_is_unstable_from_the_start_has_no_life():
+    """Before anything has worn; what becomes so within the first step has some."""
+    assert lives(course(BEARING, TABLE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
+    assert lives(course(BEARING, TABLE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
 
 
 def test_a_reservoir_is_that_of_esa():

@@ -23,7 +23,7 @@ from separatrix.ground.units import Array, Metre, PerSecond, Ratio, SquareMetre
 from separatrix.study.study import BallBearing, Operation, Race
 
 STRIPS = 16
-"""Strips across the contact: their work is within 2 % of that of many more at the edges."""
+"""Strips across the contact: the largest work of one is 2 % less than with 512 (shipped bearing)."""
 
 ALONG = 32
 """Places along rolling."""

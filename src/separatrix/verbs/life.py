@@ -41,7 +41,7 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import reference_candidate
     from separatrix.verbs.cage_answers import LifeAnswer
-    from separatrix.verbs.parts.cage_of_study import cage_of
+    from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
     from separatrix.verdict.life_table import life
     from separatrix.verdict.parameter_axes import plain_number
 
@@ -55,7 +55,8 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
         raise InputError("--samples", rule, got=str(samples), cure=f"Try {DRAWS}.")
     found = life(study, revolutions=revolutions, draws=samples, runner=runner)
     solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
-    return LifeAnswer(solution=solution, cage=cage_of(solution), life=found, notes=found.notes)
+    notes = (*found.notes, *extrapolation_notes(solution))
+    return LifeAnswer(solution=solution, cage=cage_of(solution), life=found, notes=notes)
 
 
 def refusals(study: Study) -> Iterator[str]:
@@ -101,7 +102,8 @@ COURSE = (
     *("race_friction", "pocket_friction", "pocket_clearance"),
 )
 LEGEND = (
-    "Films and frictions: medians of the drawn bearings; P(stable) with what lies between a tenth and nine."
+    "Films and frictions: medians of the drawn bearings. First and last tenth: P(stable) below and above "
+    "which a tenth of them lies."
 )
 CAPTION = (
     "P(stable) against revolutions: mean of the drawn bearings, and the range between a tenth and nine in "

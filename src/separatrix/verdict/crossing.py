@@ -153,8 +153,8 @@ TURNS = 40
 
 NEAR = 4.0  # steps of the ladder on either side in which P is taken as logistic: a factor of 1.5
 SLOPES: Array = np.geomspace(1.0, 100.0, 17)
-"""Slopes of logit P in ln f that are thought possible, equally likely each. Turbopumps have 8 to 50; of a
-light cage whose start decides P rises over a decade of friction, a slope of 2."""
+"""Slopes of logit P in ln f that are thought possible, equally likely each. The shipped turbopump has 5
+to 50; of a light cage whose start decides P rises over a decade of friction, a slope of 2."""
 
 PLACES: Array = np.linspace(-1.3 * NEAR, 1.3 * NEAR, 81) * STEP
 EITHER_SIDE = (0.1, 0.9)

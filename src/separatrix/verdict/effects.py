@@ -18,8 +18,6 @@ WIDE: Ratio = 1.6
 MOVED: Ratio = 0.05
 """Mass of the fluid in a land's gap over the cage's from which it counts."""
 
-WIDE_LAND = "wide_land"
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
@@ -49,7 +47,7 @@ def _effects(solution: Solution, cage: MovingCage) -> Iterator[tuple[str, Change
     if 0.0 < 2.0 * cage.land_gap < cage.pocket_clearance:
         wide = WIDE * cage.pocket_clearance
         yield (
-            WIDE_LAND,
+            "wide_land",
             Change(f"a land clearance of {format_quantity(wide, 'm', 3)}", {"land_clearance": wide}),
         )
     if cage.added_mass > MOVED * cage.mass:

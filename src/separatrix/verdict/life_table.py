@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ from separatrix.cage.outcome import RunOutcome
 from separatrix.chain.slip_work import track_work
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Array, Metre, Ratio, Watt
+from separatrix.ground.units import Array, Metre, Ratio, Watt, format_quantity
 from separatrix.study.candidates import reference_candidate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
 from separatrix.verdict.crossing import SEARCHED_FRICTION
@@ -34,6 +35,7 @@ from separatrix.verdict.parameter_axes import varied
 from separatrix.verdict.safety_factor import cage_limit
 from separatrix.verdict.stability_curve import expected_load
 from separatrix.verdict.wear_life import (
+    THICKEST,
     BearingWear,
     Course,
     Life,
@@ -52,6 +54,18 @@ RUNS = 32
 FRICTIONS, WIDENINGS = 6, (1.0, 1.5, 2.5)
 """Race frictions of the table, and its pocket clearances over that of a new pocket."""
 
+NARROWER = (1.0, 0.5, 0.2, 0.05)
+"""Parts of that widening, the first that the gap between the balls allows."""
+
+LEAST_FRICTION, APART = 1e-3, 1.1
+"""Of a race in the table, and the least ratio of its ends."""
+
+MOST_COVERS = 700.0
+"""Thickness of a film over that at which it covers 63 %: the exponential of more is no number."""
+
+STEEP = 10.0
+"""Steepness where no searched friction is enough: P(unstable) is next to 0 or 1 there by any."""
+
 CALM, WHIRLING = 0.6, 1.5
 """Pocket frictions over the critical one at which the work of calm and of whirling cages is taken."""
 
@@ -60,6 +74,7 @@ DECADE: Ratio = 10.0
 """Factor either way, 95 %, by which a wear coefficient scatters that the study states without one: bearings
 agree with tests to a factor of ten (ESTL, 44th AMS 2018, pp. 518-524)."""
 
+RATES = ("wear.film_wear", "wear.cage_wear")
 STREAM = 0x11FE
 """Separates the draws of a life from others with a study's seed."""
 
@@ -102,8 +117,13 @@ def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None 
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
     worn, inputs, fixed = _drawn(solution, study.wear, candidate, draws)
-    frictions = np.geomspace(worn.film_friction.min(), max(worn.bare_friction.max(), 1e-3), FRICTIONS)
-    clearances = [factor * solution.stated_design.pocket_clearance for factor in WIDENINGS]
+    if max(worn.thickness.max(), THICKEST) > MOST_COVERS * worn.coverage.min():
+        rule = f"must be above a {MOST_COVERS:g}th of any film, {format_quantity(THICKEST, 'm')} by transfer"
+        raise InputError("[wear] coverage_thickness", rule, format_quantity(float(worn.coverage.min()), "m"))
+    every = np.concatenate((worn.film_friction, worn.bare_friction))
+    low = max(float(every.min()), LEAST_FRICTION)
+    frictions = np.geomspace(low, max(float(every.max()), APART * low), FRICTIONS)
+    clearances = _clearances(study, solution.stated_design.pocket_clearance)
     cage = moving_cage(solution, 0.0)
     settings = settings_for(study.stability, cage)
     settings = replace(settings, runs=min(RUNS, settings.runs))
@@ -117,7 +137,14 @@ def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None 
         if len(found) < len(places):
             raise Interrupted
         table = _table(found, frictions, np.array(clearances))
-        return _life(solution, table, worn, inputs, revolutions, [*_notes(found, fixed), *solution.notes])
+        return _life(
+            solution,
+            table,
+            worn,
+            inputs,
+            revolutions,
+            [*_notes(found, fixed, study.distributions), *solution.notes],
+        )
 
     places = [(i, j) for i in range(FRICTIONS) for j in range(len(clearances))]
     return runner.work_out(
@@ -126,6 +153,18 @@ def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None 
         into=answer,
         load=lambda _: Load(len(settings.kicks) * expected_load(settings, band=False).runs),
     )
+
+
+def _clearances(study: Study, new: Metre) -> list[Metre]:
+    """Pocket clearances of the table: as wide as `WIDENINGS`, or as the study takes."""
+    if new == 0.0:
+        raise InputError("[cage] pocket_clearance", "must be > 0 for a pocket that opens by wear")
+    for part in NARROWER:
+        found = [new * (1.0 + part * (factor - 1.0)) for factor in WIDENINGS]
+        with contextlib.suppress(InputError):
+            varied(study, {"cage.pocket_clearance": found[-1]})
+            break
+    return found
 
 
 def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> Node:
@@ -142,7 +181,7 @@ def _node(solution: Solution, settings: StabilitySettings, runner: Runner) -> No
 
     calm = sliding(CALM * critical, whirls=False)
     whirl = sliding(WHIRLING * critical, whirls=True)
-    return Node(critical, limit.steepness or 10.0, calm, whirl or calm, limit.notes)
+    return Node(critical, limit.steepness or STEEP, calm, whirl or calm, limit.notes)
 
 
 def _mean(found: Ensemble, *, whirls: bool) -> Watt:
@@ -199,12 +238,12 @@ def _drawn(
     for place, (name, value) in enumerate(values.items()):
         if name in known:
             column = known[name].quantile(points[:, place])
-        elif name in ("wear.film_wear", "wear.cage_wear"):
+        elif name in RATES:
             column = value * np.exp(math.log(DECADE) / 1.96 * ndtri(points[:, place]))
         else:
             column = np.full(draws, value)
         columns.append(column)
-        if np.ptp(column) > 0.0 if math.isfinite(value) else False:
+        if column.min() < column.max():
             inputs[name] = column
     if wear.worn_pocket_friction is None:  # it stays that of each draw
         columns[8] = columns[7]
@@ -212,8 +251,11 @@ def _drawn(
     return Worn(*columns), inputs, fixed
 
 
-def _notes(found: Mapping[Place, Node], fixed: list[str]) -> list[str]:
+def _notes(found: Mapping[Place, Node], fixed: list[str], stated: Container[str]) -> list[str]:
     notes = [note for one in found.values() for note in one.notes]
+    if rates := [name for name in RATES if name not in stated]:
+        words = ", ".join(name.removeprefix("wear.") for name in rates)
+        notes.append(f"Stated without a distribution, a factor of {DECADE:g} either way is assumed: {words}.")
     if fixed:
         notes.append(f"Uncertain inputs at their means: {', '.join(fixed)}.")
     return list(dict.fromkeys(notes))
@@ -247,11 +289,12 @@ def _life(
     shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
     wide = float(np.mean(found.clearance[-1] > table.pocket_clearance[-1]))
+    widest = format_quantity(float(table.pocket_clearance[-1]), "m", 3)
     if wide > 0.0:
         notes = [
             *notes,
-            f"In {100.0 * wide:.0f} % of the draws the pockets open beyond {WIDENINGS[-1]:g} times their "
-            "clearance by the end: from there on the table's last clearance holds.",
+            f"In {100.0 * wide:.0f} % of the draws the pockets open beyond {widest} by the end: from there "
+            "on the table's last clearance holds.",
         ]
     return Life(
         candidate=solution.candidate.name if solution.candidate else "the cage",
@@ -262,7 +305,7 @@ def _life(
         unstable_at_start=float(np.mean(life == 0.0)),
         never_unstable=float(np.mean(~ends)),
         horizon=revolutions,
-        speed=speed,
+        revolutions_per_second=speed,
         film_worn=shares[0],
         pocket_opened=shares[1],
         friction_risen=shares[2],
@@ -287,7 +330,7 @@ def _rows(found: Course, speed: float) -> list[LifeRow]:
         return float(np.median(values[place]))
 
     rows = []
-    for place, time in enumerate(found.time):
+    for place, time in enumerate(found.time[1:], start=1):
         stable = 1.0 - found.probability_unstable[place]
         low, high = np.quantile(stable, (0.1, 0.9))
         rows.append(
