@@ -19,6 +19,7 @@ from separatrix.chain.clearances import Clearances
 from separatrix.chain.creep import Creep, contact_creep
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
 from separatrix.chain.grooved_ball import LEAST_SHARE
+from separatrix.chain.heat_balance import HeatBalance
 from separatrix.chain.hertz import ContactEllipse
 from separatrix.chain.race_traction import SLOPE_ALONE, RaceTrack, contact_traction
 from separatrix.chain.traction_curve import TractionCurve
@@ -65,6 +66,9 @@ class BearingState:
     notes: tuple[str, ...] = ()  # where a contact leaves the range of its model, a sentence each
     clearances: Clearances | None = None
     """Of the cage as it runs; only in the answer of `bearing`."""
+
+    heat: HeatBalance | None = None
+    """With the fluid; only in the answer of `bearing`, without the friction of the cage."""
 
     @property
     def cage_speed(self) -> RadianPerSecond:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from separatrix.chain.hertz import race_curvatures
-from separatrix.ground.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio
+from separatrix.chain.hertz import ContactEllipse, race_curvatures
+from separatrix.ground.units import Array, Metre, PerMetre, PerMetre2, Radian, Ratio, SquareMetre
 from separatrix.study.study import BallBearing, Race
 
 
@@ -44,3 +45,11 @@ def deformed_radius(ball_diameter: Metre, conformity: Ratio) -> Metre:
     """Radius R_d = 2 f D/(2 f + 1) across the groove of the surface pressed between ball and race [m]."""
     D, f = ball_diameter, conformity
     return 2.0 * f * D / (2.0 * f + 1.0)
+
+
+def track_area(
+    bearing: BallBearing, ellipse: ContactEllipse, contact_angle: Radian, side: Ratio
+) -> SquareMetre:
+    """Area of the track that a contact leaves on its race; side -1 of the inner, 1 of the outer race."""
+    radius = 0.5 * (bearing.pitch_diameter + side * bearing.ball_diameter * math.cos(contact_angle))
+    return 4.0 * math.pi * ellipse.semi_major * radius

@@ -68,7 +68,9 @@ def land_fluid(study: Study, design: CageDesign, cage_speed: float) -> LandFluid
     gap, operation = (design.land_clearance or 0.0) / 2.0, study.operation
     if design.guidance is Guidance.BALL or not (design.land_width and gap) or operation.temperature is None:
         return None
-    density, viscosity = (_property(study, name, operation.temperature) for name in ("density", "viscosity"))
+    density, viscosity = (
+        fluid_property(study, name, operation.temperature) for name in ("density", "viscosity")
+    )
     if density is None or viscosity is None:
         return None
     outer = design.outer_diameter if design.guidance is Guidance.OUTER else design.inner_diameter
@@ -84,7 +86,7 @@ def land_fluid(study: Study, design: CageDesign, cage_speed: float) -> LandFluid
     )
 
 
-def _property(study: Study, name: str, temperature: float) -> float | None:
+def fluid_property(study: Study, name: str, temperature: float) -> float | None:
     """Property of the study's fluid at the nearest temperature that has one; None if that is not near."""
     data = study.fluid["data"].get(name) if study.fluid else None
     known = [one for one in data or () if one["temperature"]]

@@ -17,9 +17,9 @@ from typing import Annotated
 import numpy as np
 
 from separatrix.chain.contacts import BearingState
-from separatrix.chain.creep import deformed_radius
+from separatrix.chain.creep import deformed_radius, track_area
 from separatrix.chain.slip_friction import chebyshev_nodes
-from separatrix.ground.units import Array, Metre, PerSecond, Ratio, SquareMetre
+from separatrix.ground.units import Array, PerSecond, SquareMetre
 from separatrix.study.study import BallBearing, Operation, Race
 
 STRIPS = 16
@@ -71,10 +71,5 @@ def track_work(bearing: BallBearing, operation: Operation, state: BearingState, 
         share=shares,
         work=line * slip / speed if speed > 0.0 else 0.0 * line,
         passes=bearing.ball_count * abs(ring - orbit) / (2.0 * math.pi),
-        area=2.0 * a * 2.0 * math.pi * track_radius(bearing, at.contact_angle, side),
+        area=track_area(bearing, at.ellipse, at.contact_angle, side),
     )
-
-
-def track_radius(bearing: BallBearing, contact_angle: float, side: Ratio) -> Metre:
-    """Radius of the middle of a track about the bearing axis; side -1 of the inner, 1 of the outer race."""
-    return 0.5 * (bearing.pitch_diameter + side * bearing.ball_diameter * math.cos(contact_angle))

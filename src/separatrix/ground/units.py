@@ -62,6 +62,12 @@ Joule = Annotated[float, "J"]
 CubicMetre = Annotated[float, "m3"]
 SpecificWear = Annotated[float, "m3/(N m)"]
 Watt = Annotated[float, "W"]
+WattPerKelvin = Annotated[float, "W/K"]
+WattPerMetre2 = Annotated[float, "W/m2"]
+WattPerMetreKelvin = Annotated[float, "W/(m K)"]
+JoulePerKilogramKelvin = Annotated[float, "J/kg/K"]
+KilogramPerSecond = Annotated[float, "kg/s"]
+PascalSecond = Annotated[float, "Pa s"]
 
 
 class Rows(NamedTuple):
@@ -101,6 +107,10 @@ QUANTITIES = {
     "kg m2": "moment of inertia",
     "m3": "volume",
     "m3/(N m)": "wear coefficient",
+    "W/K": "thermal conductance",
+    "W/(m K)": "thermal conductivity",
+    "kg/s": "mass flow",
+    "J/kg": "latent heat",
 }
 """What each SI unit measures, in a user's words."""
 
@@ -142,6 +152,7 @@ UNITS: dict[str, dict[str, str]] = {
         "lbf in": "0.1129848290276167",
     },
     "N/m": {
+        "mN/m": "1e-3",
         "N/m": "1",
         "N/mm": "1e3",
         "N/um": "1e6",
@@ -168,6 +179,10 @@ UNITS: dict[str, dict[str, str]] = {
     "m/m/K": {"m/m/K": "1", "um/m/K": "1e-6", "ppm/K": "1e-6"},
     "Pa s": {"Pa s": "1", "mPa s": "1e-3", "uPa s": "1e-6"},
     "J/kg/K": {"J/kg/K": "1", "kJ/kg/K": "1e3"},
+    "J/kg": {"J/kg": "1", "kJ/kg": "1e3"},
+    "W/K": {"W/K": "1", "mW/K": "1e-3"},
+    "W/(m K)": {"W/(m K)": "1", "mW/(m K)": "1e-3"},
+    "kg/s": {"kg/s": "1", "g/s": "1e-3", "kg/min": "1/60", "kg/h": "1/3600"},
     "kg m": {"kg m": "1", "kg mm": "1e-3", "g m": "1e-3", "g cm": "1e-5", "g mm": "1e-6", "mg mm": "1e-9"},
     "kg m2": {
         "kg m2": "1",
@@ -354,6 +369,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "kg m2": ((1e-6, "kg mm2"),),
     "J": ((1e-6, "uJ"), (1e-3, "mJ"), (1.0, "J")),
     "W": ((1e-6, "uW"), (1e-3, "mW"), (1.0, "W"), (1e3, "kW")),
+    "W/m2": ((1.0, "W/m2"), (1e3, "kW/m2")),
 }
 _SIZES = {"kN": 1e3}
 

@@ -52,6 +52,7 @@ from separatrix.study.cage_design import PocketContact as PocketContact
 from separatrix.study.candidates import Candidate as Candidate
 from separatrix.study.candidates import RankingQuestion as RankingQuestion
 from separatrix.study.candidates import RankingSection, read_ranking
+from separatrix.study.cooling import Cooling as Cooling
 from separatrix.study.distribution import Distribution
 from separatrix.study.film import ContactPressure as ContactPressure
 from separatrix.study.film import Film as Film
@@ -245,6 +246,7 @@ class Study:
     cage: CageDesign | None = key(default=None)
     stability: StabilitySettings = key(default=StabilitySettings())
     wear: WearRates | None = key(default=None)
+    cooling: Cooling | None = key(default=None)
     origins: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
     """Where each value was given: "bearing.ball_diameter" to "case.toml, line 4"; the absent are defaults."""
 
@@ -269,6 +271,14 @@ def _balls_that_turn(operation: Operation, bearing: BallBearing) -> Faults:
     if (operation.inner_speed or operation.outer_speed) and bearing.ball_material.density is None:
         rule = "needs a density, for the centrifugal force of the balls"
         yield Fault(("bearing", "ball_material"), rule, 'Add density = "7650 kg/m3" or the like.', "")
+
+
+@check(Study)
+def _coolant_that_is_known(cooling: Cooling, operation: Operation) -> Faults:
+    for name in ("temperature", "fluid") if cooling else ():
+        if getattr(operation, name) is None:
+            rule = "is missing beside [cooling]"
+            yield Fault(("operation", name), rule, "Give it, or leave [cooling] out.", "")
 
 
 @check(Study)
@@ -307,7 +317,10 @@ check(Study, after=_SIZES)(cage_body.body_that_can_be)
 check(Study)(cage_body.pockets_for_balls)
 
 
-ORDER = ("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking", "wear")
+ORDER = (
+    *("bearing", "operation", "kinematics", "film", "traction", "cage", "stability", "ranking", "wear"),
+    "cooling",
+)
 """Sections as a reader likes them."""
 
 SECTIONS: dict[str, type] = {name: keys_of(Study)[name].hint for name in ORDER if name != "ranking"}

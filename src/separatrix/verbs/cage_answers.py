@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from math import inf
 
-from separatrix.cage import Cause, CourseAnalysis, History, MovingCage, RunOutcome
+from separatrix.cage import CourseAnalysis, History, MovingCage
 from separatrix.cage.closed_forms import axial_half_play
 from separatrix.chain.solution import Solution
 from separatrix.ground.plain_data import Group, Leaf, Node, Table, absent, fields_of, shape
@@ -17,6 +17,7 @@ from separatrix.verbs.chain_answers import chain_node
 from separatrix.verdict.judgement import Judgement
 from separatrix.verdict.parameter_axes import MapAxis
 from separatrix.verdict.ranking_records import NotFinished, NotMeasured, Ranked, Ranking
+from separatrix.verdict.rig_signs import RigSigns, lasts
 from separatrix.verdict.stability_curve import StabilityCurve
 from separatrix.verdict.stability_map import StabilityMap
 from separatrix.verdict.swept_cases import Sweep
@@ -64,12 +65,12 @@ class SimulationAnswer(OfCage):
     rubbing_power: Watt  # power that rubbing on the land turns to heat at the end of the run
     history: History  # the motion, sampled
     analysis: CourseAnalysis  # means, extremes, whirl and spectra
+    signs: RigSigns | None  # what a test rig sees; null during a start-up
 
     @property
     def whirls(self) -> bool:
-        """Whether the motion lasts: it whirls, rolls in its pockets, or is kept up by the land."""
-        lasts = self.history.outcome in (RunOutcome.WHIRLS, RunOutcome.ROLLS)
-        return lasts or self.history.cause is Cause.LAND_FRICTION
+        """Whether the motion lasts."""
+        return lasts(self.history)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,9 +124,10 @@ def _of_cage(found: OfCage) -> Node:
 
 @shape.register
 def _(found: SimulationAnswer) -> Node:
-    """A motion that does not last has no whirl."""
+    """A motion that does not last has no whirl, a start-up no signs of a steady speed."""
     none = {"whirl_frequency": Leaf(None, "Hz"), "whirl_speed": Leaf(None, "m/s")}
-    return _of_cage(found) | ({} if found.whirls else {**none, "whirl_direction": Leaf(0)})
+    signs: Node = {} if found.signs else absent(RigSigns)
+    return _of_cage(found) | signs | ({} if found.whirls else {**none, "whirl_direction": Leaf(0)})
 
 
 @shape.register

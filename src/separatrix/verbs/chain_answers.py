@@ -120,7 +120,7 @@ def _(at: RaceContact) -> Node:
 
 @shape.register
 def _(found: BearingState) -> Node:
-    return shape(found.equilibrium) | {"contacts": _contacts(found)} | fields_of(found, "clearances")
+    return shape(found.equilibrium) | {"contacts": _contacts(found)} | fields_of(found, "clearances", "heat")
 
 
 def _contacts(found: BearingState) -> Group:

@@ -11,6 +11,7 @@ from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import NUMBER, printable
 from separatrix.present.blocks import (
+    Block,
     Facts,
     Heading,
     Level,
@@ -22,7 +23,7 @@ from separatrix.present.blocks import (
 )
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
-from separatrix.verbs.parts.chain_blocks import clearance_blocks
+from separatrix.verbs.parts.chain_blocks import clearance_blocks, heat_blocks
 from separatrix.verbs.parts.curve_blocks import pocket_friction
 from separatrix.verbs.parts.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.refused import cage_motion, refused
@@ -30,6 +31,7 @@ from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
+    from separatrix.cage import History, MovingCage
     from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import SimulationAnswer
@@ -37,8 +39,16 @@ if TYPE_CHECKING:
 MOST_SHOWN = 20_000
 """Samples of a simulated run, at most: every step of a short one."""
 
+FEW = 4000
+"""Samples of the run at lower speed, of which only means are told."""
+
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
+
+SIGNS = (
+    "A stable cage leaves the torque to balls on races. A whirl shows by its line, and by a torque that "
+    "grows faster with speed than theirs, towards its square (Lewis and others, 44th AMS 2018)."
+)
 
 SINGLE = (
     "A single run is not evidence: another seed may end differently. See `separatrix stability` and "
@@ -76,18 +86,26 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.verdict.crossing import cage_at
     from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.reasons import force_limit, outcome_sentence
+    from separatrix.verdict.rig_signs import SLOWER, rig_signs, slower
 
     if not 0 <= options.run <= MOST_RUNS:
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
     given, eta = None if options.kick is None else kick_speed(options.kick), given_factor(options)
     solution = solve(study)
     require_friction(study)
-    cage = cage_of(solution)
-    settings = settings_for(study.stability, cage)
-    cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
+    settings = settings_for(study.stability, cage_of(solution))
     speed = settings.middle_kick if given is None else given
     asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
-    history = follow(cage, kick=speed, run=options.run, samples=MOST_SHOWN, **asked)
+
+    def followed(chain: Solution, kick: float, samples: int) -> tuple[Solution, MovingCage, History]:
+        cage = cage_of(chain)
+        cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
+        return chain, cage, follow(cage, kick=kick, run=options.run, samples=samples, **asked)
+
+    this = followed(solution, speed, MOST_SHOWN)
+    _, cage, history = this
+    is_steady = not study.operation.ramp_time
+    other = followed(slower(solution), SLOWER * speed, FEW) if is_steady else None
     found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
     limit = found if isfinite(found) else None
     heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
@@ -107,6 +125,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         rubbing_power=heat,
         history=history,
         analysis=analyse(cage, history),
+        signs=rig_signs(this, other) if other else None,
         notes=notes,
     )
 
@@ -139,6 +158,7 @@ def page(answer: Part) -> Page:
         run_facts(answer),
         Heading("Motion and forces: means of the judged part"),
         motion_facts(answer),
+        *sign_blocks(answer),
         places_table("pockets", answer, *POCKET, level=Level.REPORT | Level.SHEET, caption=POCKETS),
         Picture("simulation", lambda: _figure(answer), CAPTION),
         View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
@@ -203,6 +223,31 @@ def motion_facts(answer: Part) -> Facts:
         ("Impacts", f"{sum(answer.pocket_impacts):.0f} in pockets, {answer.land_impacts} at the land"),
         *power_facts(answer),
     )
+
+
+def sign_blocks(answer: Part) -> list[Block]:
+    """Return what a test rig sees of this run; nothing during a start-up."""
+    if "bearing_torque" not in answer:
+        return []
+    line = "none: the motion does not last"
+    if "housing_frequency" in answer:
+        line = fill(answer, "{housing_frequency} in the housing (torque, vibration)")
+    torque = (
+        "{bearing_torque}, of it {cage_torque} by pockets and lands; {pocket_share} of the power at pockets"
+    )
+    law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, this one {answer.outcome}"
+    if "torque_exponent" in answer:
+        law = "{torque_exponent} from 0.8 of the speed ({slower_torque}) on; balls on races {race_exponent}"
+    return [
+        Heading("Signs on a test rig"),
+        facts(
+            ("Torque of the shaft", fill(answer, torque)),
+            ("Line of the whirl", line),
+            ("Torque goes with speed to the power", fill(answer, law)),
+        ),
+        Note(SIGNS, level=Level.LONG),
+        *heat_blocks(answer.get("heat")),
+    ]
 
 
 def _tilt(answer: Part) -> str | None:

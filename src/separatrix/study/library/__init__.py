@@ -126,6 +126,11 @@ class Fluid:
     density: Annotated[Data, "kg/m3"] = data(1e-6, 1e5, default=())
     viscosity: Annotated[Data, "Pa s"] = data(1e-8, 1e3, default=())
     heat_capacity: Annotated[Data, "J/kg/K"] = data(1.0, 1e6, default=())
+    latent_heat: Annotated[Data, "J/kg"] = data(1.0, 1e8, default=())
+    surface_tension: Annotated[Data, "N/m"] = data(1e-6, 1e2, default=())
+    vapour_density: Annotated[Data, "kg/m3"] = data(1e-6, 1e5, default=())
+    """Beside the boiling liquid."""
+
     aliases: tuple[str, ...] = key(default=(), length=(1, 20))
     remark: str | None = key(default=None, letters=LONG)
     replaces: bool = key(default=False)

@@ -32,7 +32,7 @@ def quantity(name: str) -> Quantity:
     if name in QUANTITIES:
         return QUANTITIES[name]
     section, _, key = name.replace("_", " ").rpartition(".")
-    is_known = section in ("", "operation", "wear") or section in key or key == "race friction"
+    is_known = section in ("", "operation", "wear", "cooling") or section in key or key == "race friction"
     return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
 
 

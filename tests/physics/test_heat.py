@@ -1,0 +1,156 @@
+"""Drag, temperatures, flash and boiling of a bearing in its fluid: numbers of another program, limits."""
+
+import math
+
+import pytest
+
+import separatrix
+from separatrix.chain.contacts import bearing_state
+from separatrix.chain.heat_balance import (
+    Fluid,
+    Heat,
+    ball_drag,
+    boiling_limit,
+    cylinder_moment,
+    heat_balance,
+    spin_moment,
+    temperatures,
+)
+from separatrix.ground.errors import InputError
+from separatrix.study.study import Cooling
+
+LN2 = Fluid(807.9576, 1.63216e-4)  # 77 K, 2 bar
+ORBIT, SPEED, RADIUS = 668.9886, 500.0 * math.pi, 0.0325
+COOLING = Cooling(
+    swirl=0.5,
+    flow="50 g/s",
+    race_conductance="5 W/K",
+    inner_cooling="20 W/K",
+    outer_cooling="30 W/K",
+    ball_cooling="25 W/K",
+)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Return the shipped study with its cage's sizes, its coolant and its steel."""
+    path = tmp_path_factory.mktemp("heat") / "cool.toml"
+    path.write_text(
+        'extends = "cryogenic-turbopump"\n[cage]\ninner_diameter = "58 mm"\nouter_diameter = "72 mm"\n'
+        'width = "14 mm"\n[cooling]\nswirl = 0.5\nflow = "50 g/s"\nrace_conductance = "5 W/K"\n'
+        'inner_cooling = "20 W/K"\nouter_cooling = "30 W/K"\nball_cooling = "25 W/K"\n'
+        'cage_cooling = "10 W/K"\n'
+        'steel_conductivity = "12 W/(m K)"\nsteel_heat_capacity = "180 J/kg/K"\n'
+    )
+    return separatrix.read_study(path)
+
+
+@pytest.fixture(scope="module")
+def state(study):
+    """Return its equilibrium."""
+    return bearing_state(study.bearing, study.operation, study.kinematics.model, study.film.race_friction)
+
+
+@pytest.mark.parametrize(("swirl", "force"), [(0.0, 8.1495), (0.5, -0.24676)])
+def test_drag_on_a_ball_in_liquid_nitrogen(swirl, force):
+    """Of another program to its digits; where the fluid turns faster than the ball it drives it."""
+    found = ball_drag(LN2, 11.1125e-3, RADIUS * (ORBIT - swirl * SPEED))
+    assert found == pytest.approx(force, rel=1e-4)
+
+
+def test_drag_of_a_slow_sphere_is_that_of_stokes():
+    """3 pi mu D v at Reynolds numbers of 1e-4, where the next term is 0.15 Re^0.687."""
+    assert ball_drag(LN2, 1e-3, 2e-8) == pytest.approx(3.0 * math.pi * LN2.viscosity * 1e-3 * 2e-8, rel=1e-3)
+
+
+def test_fluid_on_spin_and_faces():
+    """Of another program, to its digits: a ball, the outside and the inside of the cage."""
+    spin = math.hypot(4083.218, 1942.614)
+    assert spin_moment(LN2, 11.1125e-3, spin) == pytest.approx(4.3385e-4, rel=1e-3)  # 0.146 has three digits
+    assert 13 * spin * spin_moment(LN2, 11.1125e-3, spin) == pytest.approx(25.5, abs=0.05)
+    assert cylinder_moment(LN2, 0.036, 0.014, ORBIT) == pytest.approx(0.05416, rel=1e-3)
+    assert cylinder_moment(LN2, 0.029, 0.014, SPEED - ORBIT) == pytest.approx(0.04271, rel=1e-3)
+
+
+def test_steady_temperatures():
+    """Of another program, whose heats are known to 0.05 mW: 1e-5 K of the parts."""
+    inner, outer = 13 * 17.2370 / 2, 13 * 7.1120 / 2
+    heat = Heat(inner, inner + outer, outer, 0.0, 0.0)
+    found = temperatures(heat, COOLING, 0.05, 2038.67, 77.0)
+    assert (found.inner_ring, found.outer_ring, found.balls, found.coolant_out) == pytest.approx(
+        (84.159569, 80.677252, 84.179123, 80.105330), abs=2e-5
+    )
+    assert found.cage is None
+
+
+def test_heat_leaves_by_the_coolant(study, state):
+    """What each part gives the coolant is all heat that is set free outside it, whatever rubs."""
+    for pocket, land in ((0.0, 0.0), (30.0, 7.0)):
+        found, cooling = heat_balance(study, state, pocket_power=pocket, land_power=land), study.cooling
+        middle = 0.5 * (77.0 + found.coolant_out_temperature)
+        given = sum(
+            hold * (at - middle)
+            for hold, at in (
+                (cooling.inner_cooling, found.inner_ring_temperature),
+                (cooling.outer_cooling, found.outer_ring_temperature),
+                (cooling.ball_cooling, found.ball_temperature),
+                (cooling.cage_cooling, found.cage_temperature),
+            )
+        )
+        in_fluid = found.ball_drag_power + found.spin_power + found.cage_drag_power
+        assert given == pytest.approx(found.shaft_power - in_fluid, rel=1e-9)
+        friction = found.shaft_power - in_fluid - pocket - land
+        assert friction / SPEED == pytest.approx(state.equilibrium.friction_torque, rel=1e-9)
+        assert found.shaft_torque * SPEED == pytest.approx(found.shaft_power, rel=1e-12)
+
+
+def test_flash_temperatures(study, state):
+    """Of another program: 16.9 and 6.1 K with an effusivity of 4065."""
+    found = heat_balance(study, state)
+    effusivity = math.sqrt(12.0 * study.bearing.ball_material.density * 180.0)
+    ratio = 4065.0 / effusivity
+    assert (found.flash_inner * ratio, found.flash_outer * ratio) == pytest.approx((16.9, 6.1), abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("fluid", "temperature", "limit"), [("liquid nitrogen", 77.355, 1.6196e5), ("LOX", 90.188, 2.0524e5)]
+)
+def test_boiling_limit(tmp_path, fluid, temperature, limit):
+    """Of another program at 1 atm; the library's properties have five digits."""
+    path = tmp_path / "boils.toml"
+    path.write_text(
+        f'extends = "cryogenic-turbopump"\n[operation]\nfluid = "{fluid}"\ntemperature = "{temperature} K"\n'
+    )
+    assert boiling_limit(separatrix.read_study(path), temperature) == pytest.approx(limit, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        ({}, r"\[cooling\] lacks: swirl"),
+        ({"swirl": 0.5, "flow": "50 g/s"}, r"race_conductance"),
+        ({"swirl": 1.5}, r"must lie between 0 and 1"),
+        ({"swirl": 0.5, "cage_cooling": "1 W/K"}, r"there are no temperatures"),
+        ({"swirl": 0.5, "steel_conductivity": "12 W/(m K)"}, r"steel_heat_capacity"),
+    ],
+)
+def test_what_cooling_refuses(tmp_path, keys, line):
+    """Each fault by its key."""
+    lines = "".join(f"{name} = {value!r}\n" for name, value in keys.items())
+    path = tmp_path / "wrong.toml"
+    path.write_text(f'extends = "cryogenic-turbopump"\n[cooling]\n{lines}')
+    with pytest.raises(InputError, match=line):
+        separatrix.read_study(path)
+
+
+def test_a_coolant_that_nobody_knows(tmp_path):
+    """The library has no such state; or none is named."""
+    path = tmp_path / "warm.toml"
+    path.write_text(
+        'extends = "cryogenic-turbopump"\n[operation]\ntemperature = "200 K"\n[cooling]\nswirl = 0.5\n'
+    )
+    with pytest.raises(InputError, match="has no density near 200 K in the library"):
+        separatrix.bearing(separatrix.read_study(path))
+    path.write_text('extends = "ball-218"\n[cooling]\nswirl = 0.5\n')
+    with pytest.raises(InputError, match=r"\[operation\] fluid is missing beside \[cooling\]"):
+        separatrix.read_study(path)
