@@ -12,13 +12,15 @@ import separatrix
 from separatrix.chain import slip_work
 from separatrix.chain.contacts import bearing_state
 from separatrix.chain.slip_work import TrackWork, track_work
+from separatrix.chain.solution import solve
 from separatrix.study.study import Film, KinematicModel, Operation, Race, WearRates
 from separatrix.verdict.crossing import PLACES, Count, steepness
-from separatrix.verdict.life_table import life
+from separatrix.verdict.life_table import Node, _accelerated, _bearing_wear, life
 from separatrix.verdict.wear_life import (
     THICKEST,
     BearingWear,
     LifeTable,
+    Phase,
     Worn,
     causes,
     course,
@@ -123,6 +125,8 @@ TABLE = LifeTable(
 )
 """Critical friction falls as one over race friction: 0.4 at 0.05."""
 
+PHASE = [Phase(share=1.0, bearing=BEARING, table=TABLE)]
+
 
 def worn(draws=1, **given):
     """Draws that wear by nothing but what is given."""
@@ -136,7 +140,7 @@ def worn(draws=1, **given):
 
 def test_nothing_that_wears_lives_for_ever():
     """P(unstable) stays where it is."""
-    found = course(BEARING, TABLE, worn(), 1e9)
+    found = course(PHASE, worn(), 1e9)
     assert np.ptp(found.probability_unstable) == 0.0
     assert np.isinf(lives(found)).all()
 
@@ -144,13 +148,13 @@ def test_nothing_that_wears_lives_for_ever():
 def test_a_film_that_wears_ends_a_cage_when_its_critical_friction_is_reached():
     """At 0.2 of race friction: coverage (0.4 - 0.2)/(0.4 - 0.05), by the closed form of the film."""
     draws = worn(film_wear=1e-15)
-    found = course(BEARING, TABLE, draws, 1e9)
+    found = course(PHASE, draws, 1e9)
     left = -0.1 * UM * math.log1p(-0.2 / 0.35)
     rate = 1e-15 * 100.0
     time = 0.1 * UM / rate * math.log(math.expm1(5.0) / math.expm1(left / (0.1 * UM)))
     ends = lives(found)
     assert ends[0] == pytest.approx(time, rel=0.16)  # a step of slow time, 10^(1/16)
-    why = causes(found, TABLE, draws, ends, BEARING.clearance)
+    why = causes(found, PHASE, draws, ends)
     assert why.film_worn[0] > 1.0
     assert why.pocket_opened[0] == pytest.approx(0.0, abs=1e-9)
     assert why.friction_risen[0] == pytest.approx(0.0, abs=1e-9)
@@ -160,7 +164,7 @@ def test_a_film_that_wears_ends_a_cage_when_its_critical_friction_is_reached():
 def test_pockets_open_by_what_slides_in_them(friction, sliding):
     """K N v t over both walls of ten pockets, a cap each; of a cage that whirls by the work of a whirl."""
     given = {"cage_wear": 1e-16, "worn_friction": friction}
-    found = course(BEARING, TABLE, worn(pocket_friction=friction, **given), 1e4)
+    found = course(PHASE, worn(pocket_friction=friction, **given), 1e4)
     volume = 1e-16 * sliding * 1e4
     assert found.volume[-1, 0] == pytest.approx(volume, rel=1e-6)  # P(unstable) is 1e-9 from 0 or 1
     depth = math.sqrt(volume / 20.0 / (math.pi * 5e-3))
@@ -171,7 +175,7 @@ def test_a_worn_pocket_goes_over_to_its_friction():
     """63 % of the way at the stated depth, which 20 caps of that depth have together as volume."""
     volume = 20.0 * math.pi * 5e-3 * 1e-6**2
     given = {"worn_friction": 0.2, "worn_depth": 1e-6, "cage_wear": volume / 2.0 / 1e3}
-    found = course(BEARING, TABLE, worn(**given), 1e3)
+    found = course(PHASE, worn(**given), 1e3)
     assert found.pocket_friction[-1, 0] == pytest.approx(0.1 + 0.1 * (1.0 - math.exp(-1.0)), rel=1e-4)
 
 
@@ -180,9 +184,9 @@ def test_debris_grows_a_film_that_does_not_wear_until_the_reservoir_is_empty():
     area = 2e-4 + 0.5 * 10 * math.pi * 1e-2**2
     given = {"cage_wear": 1e-14, "transferred": 0.5}
     grown = 0.5 * 1e-14 * 2.0 * 1e4 / area
-    free = course(BEARING, TABLE, worn(**given), 1e4)
+    free = course(PHASE, worn(**given), 1e4)
     assert free.films[0][-1, 0] == pytest.approx(0.5 * UM + grown, rel=1e-6)
-    ended = course(BEARING, TABLE, worn(**given, reservoir=1e-30), 1e4)
+    ended = course(PHASE, worn(**given, reservoir=1e-30), 1e4)
     assert ended.films[0][-1, 0] < 0.5 * UM + 1e-3 * grown
 
 
@@ -190,15 +194,55 @@ def test_race_friction_is_the_mean_by_load():
     """The inner track bare, of three times the load of the outer one, which does not wear."""
     idle = replace(TRACK, work=np.zeros(2))
     bearing = replace(BEARING, tracks=(TRACK, idle), loads=(3.0, 1.0))
-    found = course(bearing, TABLE, worn(film_wear=1e-9), 1e6)
+    found = course([replace(PHASE[0], bearing=bearing)], worn(film_wear=1e-9), 1e6)
     whole = 0.4 - 0.35 * (1.0 - math.exp(-5.0))
     assert found.race_friction[-1, 0] == pytest.approx(0.75 * 0.4 + 0.25 * whole, rel=1e-6)
 
 
 def test_what_is_unstable_from_the_start_has_no_life():
     """Before anything has worn; what becomes so within the first step has some."""
-    assert lives(course(BEARING, TABLE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
-    assert lives(course(BEARING, TABLE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
+    assert lives(course(PHASE, worn(pocket_friction=0.8), 1e6))[0] == 0.0
+    assert lives(course(PHASE, worn(film_wear=1e-6, pocket_friction=0.2), 1e6))[0] == 0.5
+
+
+def test_phases_of_a_duty_cycle_share_the_time():
+    """Two halves alike are one; one that does not wear doubles the life; the worse one decides."""
+    draws, whole = worn(film_wear=1e-15), PHASE[0]
+    idle = TrackWork(across=TRACK.across, share=TRACK.share, work=np.zeros(2), passes=0.0, area=1e-4)
+    rests = replace(whole, share=0.5, bearing=replace(BEARING, tracks=(idle, idle)))
+    half = replace(whole, share=0.5)
+    one, same, resting = (course(each, draws, 1e9) for each in (PHASE, [half, half], [half, rests]))
+    assert same.films[0] == pytest.approx(one.films[0], rel=1e-12)
+    assert lives(resting)[0] / lives(one)[0] == pytest.approx(2.0, rel=0.16)  # a step of slow time
+    fragile = replace(rests, table=replace(TABLE, critical_friction=0.01 * FLAT))
+    assert lives(course([half, fragile], draws, 1e9))[0] == 0.0
+
+
+def test_a_test_at_the_speed_of_the_mission_stands_for_itself():
+    """An hour is an hour, of films and pockets; half of the passes stand for half of it."""
+    solution = solve(separatrix.read_study("cryogenic-turbopump"))
+    phase = Phase(share=1.0, bearing=_bearing_wear(solution), table=TABLE)
+    found = _accelerated(solution, Node(0.2, 30.0, 2.0, 200.0), [phase], worn())
+    assert (found.film_time, found.pocket_time) == pytest.approx((1.0, 1.0), rel=1e-12)
+    assert found.probability_stable == pytest.approx(1.0, abs=1e-6)
+    twice = [replace(phase, share=2.0)]
+    assert _accelerated(solution, Node(0.2, 30.0, 2.0, 200.0), twice, worn()).film_time == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("cases", "line"),
+    [
+        ([{"operation.inner_speed": 1e3}], "needs a column time_share"),
+        ([{"cage.mass": 0.02, "time_share": 1.0}], "must vary operation.inner_speed .* alone; got cage.mass"),
+        ([{"operation.axial_load": 1e3, "time_share": 1.0}] * 13, "must be at most 12 of a duty cycle"),
+    ],
+)
+def test_what_a_duty_cycle_refuses(cases, line):
+    """Before anything is computed."""
+    study = separatrix.read_study("cryogenic-turbopump")
+    rates = WearRates(film_wear=5e-18, cage_wear=1e-15, bare_friction=0.35)
+    with pytest.raises(separatrix.InputError, match=line):
+        life(replace(study, wear=rates), revolutions=1e6, draws=64, cases=cases)
 
 
 def test_a_reservoir_is_that_of_esa():
@@ -207,7 +251,7 @@ def test_a_reservoir_is_that_of_esa():
     points = (np.arange(draws) + 0.5) / draws
     wear, horizon = median * np.exp(sigma * ndtri(points)), 1e6
     volume = 1.5 * median * 2.0 * horizon
-    found = course(BEARING, TABLE, worn(draws, cage_wear=wear, reservoir=volume), horizon)
+    found = course(PHASE, worn(draws, cage_wear=wear, reservoir=volume), horizon)
     empty = np.mean(found.volume[-1] >= volume)
     assert empty == pytest.approx(float(ndtr(math.log(1.0 / 1.5) / sigma)), abs=0.01)
 
@@ -228,7 +272,7 @@ def test_endurance_of_a_published_film(coefficient, low, high):
 def test_the_life_follows_what_it_depends_on():
     """Rank correlation -1 with the wear that alone varies, none with noise; nothing where all are one."""
     wear = np.geomspace(1e-17, 1e-13, 64)
-    found = lives(course(BEARING, TABLE, worn(64, film_wear=wear), 1e9))
+    found = lives(course(PHASE, worn(64, film_wear=wear), 1e9))
     first, *others = driven_by({"noise": np.sin(1e3 * wear / wear[0]), "wear": wear}, found)
     assert first.name == "wear"
     assert first.correlation == pytest.approx(-1.0, abs=0.02)

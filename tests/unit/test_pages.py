@@ -46,6 +46,17 @@ contact_angle = "20 deg +- 1 deg"
 film_wear = "5e-9 mm3/(N m)"
 cage_wear = "1e-6 mm3/(N m)"
 bare_friction = 0.35
+[operation]
+fluid = "gaseous nitrogen"
+[cooling]
+swirl = 0.4
+flow = "1 g/s"
+race_conductance = "0.1 W/K"
+inner_cooling = "0.2 W/K"
+outer_cooling = "0.2 W/K"
+ball_cooling = "0.1 W/K"
+steel_conductivity = "25 W/(m K)"
+steel_heat_capacity = "460 J/kg/K"
 """
 CALLS = {
     "life": {"revolutions": "1e6", "samples": 64},

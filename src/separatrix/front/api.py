@@ -261,10 +261,20 @@ def sweep(
 
 
 def life(
-    study: Asked, *, revolutions: float = 1e9, samples: int = 4096, **how: Unpack[Runs]
+    study: Asked,
+    *,
+    revolutions: float = 1e9,
+    samples: int = 4096,
+    cases: Path | Sequence[Case] | None = None,
+    accelerated: str | float | None = None,
+    **how: Unpack[Runs],
 ) -> Answer[LifeAnswer]:
-    """When the cage becomes unstable, of `samples` bearings up to `revolutions`; the rest as `stability`."""
-    return _answer("life", study, {"revolutions": revolutions, "samples": samples}, **how)
+    """When the cage becomes unstable, of `samples` bearings up to `revolutions`; the rest as `stability`.
+
+    `cases` are a duty cycle, as those of `sweep`; `accelerated` is the speed of the inner ring in a test.
+    """
+    asked = {"revolutions": revolutions, "samples": samples, "accelerated": accelerated}
+    return _answer("life", study, {**asked, "cases": cases}, **how)
 
 
 def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -> ToolAnswer[Any]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
+from separatrix.ground.units import parse
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 REVOLUTIONS, LEAST, MOST = 1e9, 1e3, 1e12
 """Up to which draws are followed."""
 
+MOST_SPEED = 1e6
 DRAWS, FEWEST, MOST_DRAWS = 4096, 64, 65_536
 
 
@@ -34,6 +37,20 @@ class Options:
         str | float, Option("Of ring against ring, up to which bearings are followed.", "N")
     ] = REVOLUTIONS
     samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = DRAWS
+    cases: Annotated[
+        Path | Sequence[Mapping[str, float]] | None,
+        Option("Duty cycle, CSV: speeds and loads in its first row, and time_share; a phase a row.", "FILE"),
+    ] = None
+    accelerated: Annotated[
+        str | float | None, Option('Speed of the inner ring in a test, "9000 rpm".', "SPEED")
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Read a table of phases: an answer has the phases themselves."""
+        if isinstance(self.cases, Path):
+            from separatrix.verdict.parameter_axes import asked_cases
+
+            object.__setattr__(self, "cases", tuple(asked_cases((), self.cases)))
 
 
 def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
@@ -43,7 +60,7 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
     from separatrix.verbs.cage_answers import LifeAnswer
     from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
     from separatrix.verdict.life_table import life
-    from separatrix.verdict.parameter_axes import plain_number
+    from separatrix.verdict.parameter_axes import asked_cases, plain_number
 
     revolutions = plain_number(str(options.revolutions), "--revolutions")
     if not LEAST <= revolutions <= MOST:
@@ -53,7 +70,18 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
     if not FEWEST <= samples <= MOST_DRAWS or samples.bit_count() != 1:
         rule = f"must be a power of two from {FEWEST} to {MOST_DRAWS}"
         raise InputError("--samples", rule, got=str(samples), cure=f"Try {DRAWS}.")
-    found = life(study, revolutions=revolutions, draws=samples, runner=runner)
+    speed = options.accelerated
+    speed = parse(speed, "rad/s", "--accelerated") if isinstance(speed, str) else speed
+    if speed is not None and not 0.0 < abs(speed) < MOST_SPEED:
+        raise InputError("--accelerated", "must be above 0 and below 1e6 [rad/s]", f"{speed:g}")
+    found = life(
+        study,
+        revolutions=revolutions,
+        draws=samples,
+        cases=asked_cases((), options.cases) if options.cases else (),
+        accelerated=speed,
+        runner=runner,
+    )
     solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
     notes = (*found.notes, *extrapolation_notes(solution))
     return LifeAnswer(solution=solution, cage=cage_of(solution), life=found, notes=notes)
@@ -75,16 +103,17 @@ def page(answer: Part) -> Page:
     )
     return page_of(
         answer,
-        Note(" ".join([*lead(answer), *why(answer), *again(answer)]), "lead"),
+        Note(" ".join([*lead(answer), *why(answer), *again(answer), *faster(answer)]), "lead"),
         Heading(f"In the course of time, {answer.candidate}"),
         Table("course", columns, tuple(rows)),
         Note(LEGEND, "legend", Level.LONG),
         Picture("life", lambda: life_figure(answer), CAPTION),
-        Heading("What the life follows"),
+        *([Heading("What the life follows")] if answer.drivers else []),
         Table("drivers", drivers, tuple(answer.drivers[:LISTED]), DRIVEN),
         Heading("Basis of this answer", Level.LONG),
         facts(
             ("Bearings drawn", show(answer, "draws")),
+            ("Phases of the duty cycle", str(answer.phases) if answer.phases > 1 else None),
             ("Unstable from the start", show(answer, "unstable_at_start")),
             ("Never unstable", fill(answer, "{never_unstable}, up to {horizon} revolutions")),
             ("Reservoir empty at the end", show(answer, "reservoir_empty")),
@@ -158,6 +187,21 @@ def again(answer: Part) -> Iterator[str]:
             "From {revolutions} revolutions on more are stable again: pockets worn so wide leave the cage to "
             "its land.",
         )
+
+
+def faster(answer: Part) -> Iterator[str]:
+    """Yield whether an accelerated test shows the same cage, and how much of the mission an hour of it is."""
+    test = answer.get("accelerated")
+    if test is None:
+        return
+    yield fill(
+        test,
+        "A test at {inner_speed} has a critical friction of {critical_friction} and P(stable) "
+        "{probability_stable} with a new cage; an hour of it wears the films as {film_time} hours of this "
+        "duty, the pockets of a calm cage as {pocket_time}.",
+    )
+    if test.probability_stable < answer.course[0].probability_stable - 0.2:
+        yield "It runs another cage motion than the mission: its wear does not stand for it."
 
 
 def life_figure(answer: Part) -> Figure:

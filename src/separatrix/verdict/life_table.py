@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import math
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import expit, ndtri
 
 from separatrix.cage.disturbance import settings_for
 from separatrix.cage.ensemble import Ensemble
@@ -18,7 +19,7 @@ from separatrix.cage.outcome import RunOutcome
 from separatrix.chain.slip_work import track_work
 from separatrix.chain.solution import Solution, solve
 from separatrix.ground.errors import InputError
-from separatrix.ground.units import Array, Metre, Ratio, Watt, format_quantity
+from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio, Watt, format_quantity
 from separatrix.study.candidates import reference_candidate
 from separatrix.study.study import BallModel, Candidate, Race, StabilitySettings, Study, WearRates
 from separatrix.verdict.crossing import SEARCHED_FRICTION
@@ -31,21 +32,26 @@ from separatrix.verdict.draws import (
 )
 from separatrix.verdict.judgement import is_calm
 from separatrix.verdict.long_jobs import Interrupted, Load, Runner
-from separatrix.verdict.parameter_axes import varied
+from separatrix.verdict.parameter_axes import TIME_SHARE, varied
 from separatrix.verdict.safety_factor import cage_limit
 from separatrix.verdict.stability_curve import expected_load
+from separatrix.verdict.swept_cases import time_shares
 from separatrix.verdict.wear_life import (
+    LEAST,
     THICKEST,
+    AcceleratedTest,
     BearingWear,
     Course,
     Life,
     LifeRow,
     LifeTable,
+    Phase,
     Worn,
     causes,
     course,
     driven_by,
     lives,
+    work_done,
 )
 
 RUNS = 32
@@ -75,6 +81,11 @@ DECADE: Ratio = 10.0
 agree with tests to a factor of ten (ESTL, 44th AMS 2018, pp. 518-524)."""
 
 RATES = ("wear.film_wear", "wear.cage_wear")
+SPEED = "operation.inner_speed"
+PHASE_KEYS = (SPEED, "operation.outer_speed", "operation.axial_load", "operation.radial_load")
+"""What the phases of a duty cycle may differ in."""
+
+MOST_PHASES = 12
 STREAM = 0x11FE
 """Separates the draws of a life from others with a study's seed."""
 
@@ -94,19 +105,38 @@ class Node(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-Place = tuple[int, int]
+class Duty(NamedTuple):
+    """A part of the time, with the chain at its speed and load, and how its runs are made."""
+
+    share: Ratio
+    study: Study
+    solution: Solution
+    settings: StabilitySettings
 
 
-def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None = None) -> Life:
+Place = tuple[int, int, int]
+"""Phase, race friction and pocket clearance of a node."""
+
+
+def life(
+    study: Study,
+    *,
+    revolutions: float,
+    draws: int,
+    cases: Sequence[Mapping[str, float]] = (),
+    accelerated: RadianPerSecond | None = None,
+    runner: Runner | None = None,
+) -> Life:
     """When the cage of a study becomes unstable, over draws of what wears it.
 
-    `revolutions` of one ring against the other is how far they are followed. The numbers do not depend on the
-    runner.
+    `revolutions` of one ring against the other is how far they are followed. `cases` are a duty cycle: other
+    values of [operation], with their ``time_share``. `accelerated` is the speed of the inner ring in a test.
+    The numbers do not depend on the runner.
 
     Raises
     ------
     InputError
-        The study has no [wear], no film, no cage, or no friction of it.
+        The study has no [wear], no film, no cage, or no friction of it; or the duty cycle is none.
     Interrupted
         Before the table was finished; its runs are kept.
     """
@@ -124,34 +154,108 @@ def life(study: Study, *, revolutions: float, draws: int, runner: Runner | None 
     low = max(float(every.min()), LEAST_FRICTION)
     frictions = np.geomspace(low, max(float(every.max()), APART * low), FRICTIONS)
     clearances = _clearances(study, solution.stated_design.pocket_clearance)
-    cage = moving_cage(solution, 0.0)
-    settings = settings_for(study.stability, cage)
-    settings = replace(settings, runs=min(RUNS, settings.runs))
+    phases = [_duty(varied(study, one), candidate, share) for share, one in _shared(cases)]
+    test = accelerated and _duty(varied(study, {SPEED: accelerated}), candidate, 1.0)
 
     def node(place: Place) -> Node:
-        values = {"film.race_friction": float(frictions[place[0]])}
-        values["cage.pocket_clearance"] = clearances[place[1]]
-        return _node(solve(varied(study, values), candidate), settings, runner)
+        phase, i, j = place
+        if test and phase == len(phases):
+            return _node(test.solution, test.settings, runner)
+        values = {"film.race_friction": float(frictions[i]), "cage.pocket_clearance": clearances[j]}
+        at = phases[phase]
+        return _node(solve(varied(at.study, values), candidate), at.settings, runner)
 
     def answer(found: Mapping[Place, Node]) -> Life:
         if len(found) < len(places):
             raise Interrupted
-        table = _table(found, frictions, np.array(clearances))
-        return _life(
-            solution,
-            table,
-            worn,
-            inputs,
-            revolutions,
-            [*_notes(found, fixed, study.distributions), *solution.notes],
-        )
+        notes = [*_notes(found, fixed, study.distributions), *solution.notes]
+        each = [
+            Phase(
+                share=one.share,
+                bearing=_bearing_wear(one.solution),
+                table=_table(found, place, frictions, np.array(clearances)),
+            )
+            for place, one in enumerate(phases)
+        ]
+        tested = _accelerated(test.solution, found[places[-1]], each, worn) if test else None
+        speed = sum(one.share * _turns(one.study) for one in phases)
+        name = candidate.name if candidate else "the cage"
+        return _life(name, each, worn, inputs, speed, revolutions, tested, notes)
 
-    places = [(i, j) for i in range(FRICTIONS) for j in range(len(clearances))]
+    places = list(itertools.product(range(len(phases)), range(FRICTIONS), range(len(clearances))))
+    places += [(len(phases), 0, 0)] if test else []
     return runner.work_out(
         node,
         places,
         into=answer,
-        load=lambda _: Load(len(settings.kicks) * expected_load(settings, band=False).runs),
+        load=lambda place: _load(
+            (phases[place[0]] if place[0] < len(phases) else test or phases[0]).settings
+        ),
+    )
+
+
+def _load(settings: StabilitySettings) -> Load:
+    return Load(len(settings.kicks) * expected_load(settings, band=False).runs)
+
+
+def _shared(cases: Sequence[Mapping[str, float]]) -> list[tuple[Ratio, Mapping[str, float]]]:
+    """Share and values of each phase; one of the study's own without a duty cycle."""
+    if not cases:
+        return [(1.0, {})]
+    if len(cases) > MOST_PHASES:
+        raise InputError("--cases", f"must be at most {MOST_PHASES} of a duty cycle", str(len(cases)))
+    shares = time_shares(cases)
+    if not shares:
+        raise InputError("--cases", "needs a column time_share: how long each case lasts")
+    for name in {name for one in cases for name in one} - {TIME_SHARE}:
+        if name not in PHASE_KEYS:
+            raise InputError("--cases", f"must vary {' and '.join(PHASE_KEYS)} alone", got=name)
+    return [
+        (share, {name: value for name, value in one.items() if name != TIME_SHARE})
+        for share, one in zip(shares, cases, strict=True)
+        if share > 0.0
+    ]
+
+
+def _duty(study: Study, candidate: Candidate | None, share: Ratio) -> Duty:
+    solution = solve(study, candidate)
+    settings = settings_for(study.stability, moving_cage(solution, 0.0))
+    return Duty(share, study, solution, replace(settings, runs=min(RUNS, settings.runs)))
+
+
+def _turns(study: Study) -> Hertz:
+    """Revolutions of ring against ring in a second."""
+    return abs(study.operation.inner_speed - study.operation.outer_speed) / (2.0 * math.pi)
+
+
+def _bearing_wear(solution: Solution) -> BearingWear:
+    study, state = solution.study, solution.bearing
+    inner, outer = (track_work(study.bearing, study.operation, state, race) for race in Race)
+    return BearingWear(
+        tracks=(inner, outer),
+        loads=(state.inner.load, state.outer.load),
+        ball_diameter=study.bearing.ball_diameter,
+        ball_count=study.bearing.ball_count,
+        clearance=solution.stated_design.pocket_clearance,
+    )
+
+
+def _accelerated(solution: Solution, node: Node, phases: Sequence[Phase], worn: Worn) -> AcceleratedTest:
+    """What a test at another speed says about the mission, as both begin."""
+    tested = _bearing_wear(solution)
+    begin = worn.film_friction, np.full(worn.film_friction.size, tested.clearance)
+    calm = sum(one.share * one.table.at(*begin)["calm_sliding"].mean() for one in phases)
+    films = [
+        float(done.max() / (track.work * track.passes).max())
+        for done, track in zip(work_done(phases), tested.tracks, strict=True)
+    ]
+    chance = expit(node.steepness * np.log(np.maximum(worn.pocket_friction, LEAST) / node.critical))
+    return AcceleratedTest(
+        inner_speed=solution.study.operation.inner_speed,
+        critical_friction=node.critical,
+        probability_stable=float(1.0 - chance.mean()),
+        film_time=float(1.0 / max(films)),
+        pocket_time=float(node.calm / calm),
     )
 
 
@@ -190,10 +294,13 @@ def _mean(found: Ensemble, *, whirls: bool) -> Watt:
     return float(found.pocket_sliding[kind if kind.any() else np.ones_like(kind)].mean())
 
 
-def _table(found: Mapping[Place, Node], frictions: Array, clearances: Array) -> LifeTable:
+def _table(found: Mapping[Place, Node], phase: int, frictions: Array, clearances: Array) -> LifeTable:
     def each(name: str) -> Array:
         return np.array(
-            [[getattr(found[i, j], name) for j in range(clearances.size)] for i in range(frictions.size)]
+            [
+                [getattr(found[phase, i, j], name) for j in range(clearances.size)]
+                for i in range(frictions.size)
+            ]
         )
 
     return LifeTable(
@@ -262,42 +369,35 @@ def _notes(found: Mapping[Place, Node], fixed: list[str], stated: Container[str]
 
 
 def _life(
-    solution: Solution,
-    table: LifeTable,
+    name: str,
+    phases: Sequence[Phase],
     worn: Worn,
     inputs: Mapping[str, Array],
+    speed: Hertz,
     revolutions: float,
+    tested: AcceleratedTest | None,
     notes: list[str],
 ) -> Life:
-    """Lead the draws along the table, and say what comes of them."""
-    study, state = solution.study, solution.bearing
-    speed = abs(study.operation.inner_speed - study.operation.outer_speed) / (2.0 * math.pi)
-    inner, outer = (track_work(study.bearing, study.operation, state, race) for race in Race)
-    bearing = BearingWear(
-        tracks=(inner, outer),
-        loads=(state.inner.load, state.outer.load),
-        ball_diameter=study.bearing.ball_diameter,
-        ball_count=study.bearing.ball_count,
-        clearance=solution.stated_design.pocket_clearance,
-    )
-    found = course(bearing, table, worn, revolutions / speed)
+    """Lead the draws along the tables, and say what comes of them."""
+    found = course(phases, worn, revolutions / speed)
     life = lives(found)
     ends = np.isfinite(life)
-    moved = np.stack(causes(found, table, worn, life, bearing.clearance))
+    moved = np.stack(causes(found, phases, worn, life))
     most = np.where(ends & (moved.max(axis=0) > 0.0), moved.argmax(axis=0), -1)
     known = max(1, int(np.count_nonzero(ends & (life > 0.0))))
     shares = [float(np.count_nonzero((most == i) & (life > 0.0)) / known) for i in range(len(moved))]
     at_10, at_50, at_90 = (_quantile(life, share, speed) for share in (0.1, 0.5, 0.9))
+    table = phases[0].table
     wide = float(np.mean(found.clearance[-1] > table.pocket_clearance[-1]))
     widest = format_quantity(float(table.pocket_clearance[-1]), "m", 3)
-    if wide > 0.0:
+    if wide >= 0.005:
         notes = [
             *notes,
             f"In {100.0 * wide:.0f} % of the draws the pockets open beyond {widest} by the end: from there "
             "on the table's last clearance holds.",
         ]
     return Life(
-        candidate=solution.candidate.name if solution.candidate else "the cage",
+        candidate=name,
         draws=life.size,
         revolutions_10=at_10,
         revolutions_50=at_50,
@@ -314,6 +414,8 @@ def _life(
         course=tuple(_rows(found, speed)),
         drivers=driven_by(inputs, np.minimum(life, 10.0 * revolutions / speed)),
         table=table,
+        phases=len(phases),
+        accelerated=tested,
         complete=True,
         notes=tuple(dict.fromkeys(notes)),
     )

@@ -23,7 +23,7 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.special import expit
 
 from separatrix.chain.slip_work import TrackWork
-from separatrix.ground.units import Array, Hertz, Metre, Ratio, Rows, Second, SquareMetre
+from separatrix.ground.units import Array, Hertz, Metre, RadianPerSecond, Ratio, Rows, Second, SquareMetre
 
 THICKEST: Metre = 3e-6
 """Of a film by transfer: PTFE films of 1 to 3 um, discontinuous (ESTL, 44th AMS 2018, pp. 518-524)."""
@@ -104,6 +104,15 @@ class BearingWear:
         return self.tracks[0].area + self.tracks[1].area + balls
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Phase:
+    """A part of the time that a bearing runs at one speed and load."""
+
+    share: Ratio  # of the time
+    bearing: BearingWear
+    table: LifeTable
+
+
 def film_after(thickness: Array, wear: Array, deposit: Array, coverage: Array, time: Second) -> Array:
     """Thickness of films after a time of constant wear (of a whole film) and deposit [m/s]: exact.
 
@@ -138,35 +147,45 @@ class Course:
     films: tuple[Array, Array]  # mean thickness on the inner and the outer track
     volume: Array  # worn off the cage [m3]
     kept: Array  # deposit over the wear of a whole film, of the track that wears faster [-]
+    phase: Array  # which is the most unstable one
 
 
-def course(bearing: BearingWear, table: LifeTable, worn: Worn, horizon: Second) -> Course:
-    """Lead every draw along the table up to a time, from 0 in steps of equal ratios."""
+def work_done(phases: Sequence[Phase]) -> list[Array]:
+    """Work of all passes on an area of a track in a second, mean of the phases, shape (strip,) [W/m2]."""
+    parts = [[one.share * at.work * at.passes for at in one.bearing.tracks] for one in phases]
+    return [np.sum(each, axis=0) for each in zip(*parts, strict=True)]
+
+
+def course(phases: Sequence[Phase], worn: Worn, horizon: Second) -> Course:
+    """Lead every draw along the tables up to a time, from 0 in steps of equal ratios.
+
+    All phases wear the same places of the tracks, each for its share of every step; a cage is unstable where
+    it is in any phase.
+    """
     first = min(1.0, 1e-3 * horizon)
     later = np.geomspace(first, horizon, math.ceil(STEPS_A_DECADE * math.log10(horizon / first)) + 1)
     time = np.concatenate(([0.0], later))
-    draws, strips = worn.film_wear.size, bearing.tracks[0].across.size
-    films = [np.repeat(worn.thickness[:, None], strips, axis=1) for _ in bearing.tracks]
+    draws, work = worn.film_wear.size, work_done(phases)
+    films = [np.repeat(worn.thickness[:, None], each.size, axis=1) for each in work]
     volume = np.zeros(draws)
-    share = np.array(bearing.loads) / sum(bearing.loads)
+    area = min(one.bearing.area for one in phases)
     hold = worn.coverage[:, None]
     rows: list[list[Array]] = []
     before = 0.0
     for now in time:
-        state = _state(bearing, table, worn, films, volume, share)
-        sliding = state.pop()
+        *state, sliding = _state(phases, worn, films, volume)
         step = now - before
         debris = worn.cage_wear * sliding * (volume < worn.reservoir)
-        deposit = (worn.transferred * debris / bearing.area)[:, None]
+        deposit = (worn.transferred * debris / area)[:, None]
         fastest = np.zeros(draws)
-        for i, track in enumerate(bearing.tracks):
-            wear = worn.film_wear[:, None] * track.work * track.passes
+        for i, passed in enumerate(work):
+            wear = worn.film_wear[:, None] * passed
             films[i] = film_after(films[i], wear, deposit, hold, step)
             fastest = np.maximum(fastest, wear.max(axis=1))
         volume = np.minimum(volume + debris * step, worn.reservoir)
-        state = _state(bearing, table, worn, films, volume, share)[:-1]
+        state = _state(phases, worn, films, volume)[:-1]
         kept = np.divide(deposit[:, 0], fastest, out=np.full(draws, math.inf), where=fastest > 0.0)
-        rows.append([*state, *(film.mean(axis=1) for film in films), volume, kept])
+        rows.append([*state[:4], *(film.mean(axis=1) for film in films), volume, kept, state[4]])
         before = now
     found = [np.stack(each) for each in zip(*rows, strict=True)]
     return Course(
@@ -178,25 +197,33 @@ def course(bearing: BearingWear, table: LifeTable, worn: Worn, horizon: Second) 
         films=(found[4], found[5]),
         volume=found[6],
         kept=found[7],
+        phase=found[8].astype(int),
     )
 
 
-def _state(
-    bearing: BearingWear, table: LifeTable, worn: Worn, films: Sequence[Array], volume: Array, share: Array
-) -> list[Array]:
-    """P(unstable), race friction, pocket friction, clearance and sliding of the pockets, of every draw."""
-    race = np.zeros(volume.size)
-    for of_load, track, film in zip(share, bearing.tracks, films, strict=True):
-        covered = (-np.expm1(-film / worn.coverage[:, None])) @ track.share
-        race += of_load * (covered * worn.film_friction + (1.0 - covered) * worn.bare_friction)
+def _state(phases: Sequence[Phase], worn: Worn, films: Sequence[Array], volume: Array) -> list[Array]:
+    """P(unstable), race friction, pocket friction, clearance, worst phase, sliding of every draw."""
+    bearing = phases[0].bearing
     depth = worn_depth(volume / (2.0 * bearing.ball_count), bearing.ball_diameter)
     gone = -np.expm1(-depth / worn.worn_depth)
     pocket = worn.pocket_friction + gone * (worn.worn_friction - worn.pocket_friction)
     clearance = bearing.clearance + 2.0 * depth
-    known = table.at(race, clearance)
-    unstable = expit(known["steepness"] * np.log(np.maximum(pocket, LEAST) / known["critical_friction"]))
-    sliding = (1.0 - unstable) * known["calm_sliding"] + unstable * known["whirl_sliding"]
-    return [unstable, race, pocket, clearance, sliding]
+    races, unstable, sliding = list[Array](), list[Array](), np.zeros(volume.size)
+    for one in phases:
+        loads = one.bearing.loads
+        race = np.zeros(volume.size)
+        for load, track, film in zip(loads, one.bearing.tracks, films, strict=True):
+            covered = (-np.expm1(-film / worn.coverage[:, None])) @ track.share
+            mixed = covered * worn.film_friction + (1.0 - covered) * worn.bare_friction
+            race += load / sum(loads) * mixed
+        known = one.table.at(race, clearance)
+        chance = expit(known["steepness"] * np.log(np.maximum(pocket, LEAST) / known["critical_friction"]))
+        sliding += one.share * ((1.0 - chance) * known["calm_sliding"] + chance * known["whirl_sliding"])
+        races.append(race)
+        unstable.append(chance)
+    worst = np.argmax(unstable, axis=0)
+    each = np.arange(volume.size)
+    return [np.array(unstable)[worst, each], np.array(races)[worst, each], pocket, clearance, worst, sliding]
 
 
 def lives(found: Course) -> Array:
@@ -216,7 +243,7 @@ class Cause(NamedTuple):
     friction_risen: Array
 
 
-def causes(found: Course, table: LifeTable, worn: Worn, life: Array, clearance: Metre) -> Cause:
+def causes(found: Course, phases: Sequence[Phase], worn: Worn, life: Array) -> Cause:
     """Why each draw that becomes unstable does; 0 of the others."""
     ends = np.isfinite(life)
     at = np.searchsorted(found.time, np.where(ends, life, found.time[-1])).clip(max=found.time.size - 1)
@@ -225,10 +252,10 @@ def causes(found: Course, table: LifeTable, worn: Worn, life: Array, clearance: 
         one[at, each] for one in (found.race_friction, found.pocket_friction, found.clearance)
     )
     whole = worn.film_friction
-    new = np.full(life.size, clearance)
-    start, worn_film, both = (
-        np.log(table.at(f, c)["critical_friction"]) for f, c in ((whole, new), (race, new), (race, wide))
-    )
+    new = np.full(life.size, phases[0].bearing.clearance)
+    places = ((whole, new), (race, new), (race, wide))
+    criticals = np.log([[one.table.at(*at)["critical_friction"] for at in places] for one in phases])
+    start, worn_film, both = criticals[found.phase[at, each], :, each].T
     moved = Cause(
         start - worn_film,
         worn_film - both,
@@ -277,6 +304,17 @@ class LifeRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AcceleratedTest:
+    """What a test at another speed says about the life, as both begin."""
+
+    inner_speed: RadianPerSecond  # of the test
+    critical_friction: Ratio  # of the new cage at that speed
+    probability_stable: Ratio  # of a new cage there, over the draws of its friction
+    film_time: Ratio  # hours of the mission that an hour of the test wears the films for; of the lesser track
+    pocket_time: Ratio  # the same of the pockets of a calm cage
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Life:
     """When a cage becomes unstable, over the draws of what wears it."""
 
@@ -288,7 +326,7 @@ class Life:
     unstable_at_start: Ratio  # share of the draws
     never_unstable: Ratio  # share of the draws, up to the horizon
     horizon: Ratio  # revolutions up to which the draws were followed
-    revolutions_per_second: Hertz  # of ring against ring
+    revolutions_per_second: Hertz  # of ring against ring, mean over the phases
     film_worn: Ratio  # share of the draws that become unstable, mostly because the film is worn
     pocket_opened: Ratio  # mostly because the pockets have opened
     friction_risen: Ratio  # mostly because the friction of worn pockets has risen
@@ -296,6 +334,8 @@ class Life:
     film_sustained: Ratio  # share of the draws in which deposit keeps up at least half of the coverage
     course: Annotated[tuple[LifeRow, ...], Rows("time", "course_")]  # the draws in the course of time
     drivers: tuple[Driver, ...]  # inputs that the life follows, the strongest first
-    table: LifeTable  # of critical frictions, along which they are led
+    table: LifeTable  # of critical frictions, along which they are led; of the first phase
+    phases: int  # of the duty cycle; 1 without one
+    accelerated: AcceleratedTest | None  # null where none was asked for
     complete: bool  # always: without its whole table there is no life
     notes: tuple[str, ...] = ()  # where the draws leave the table or a model its range, a sentence each
