@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import attrgetter
 from pathlib import Path
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
@@ -144,7 +146,9 @@ def _test(one: Reduction) -> Any:
 
     low, high = one.test.interval
     ends = {"friction_low": Leaf(low, "-"), "friction_high": Leaf(high, "-")}
-    return Group(shape(one.test) | ends | {"course": Group(shape(course(one)))})
+    node = shape(one.test)
+    del node["wear"]
+    return Group(node | shape(one.test.wear) | ends | {"course": Group(shape(course(one)))})
 
 
 OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "notes")
@@ -229,6 +233,24 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
     elif not answer.fits:
         low, high = (alone(of(one.friction for one in tests), FRICTION, "-") for of in (min, max))
         yield f"Steady friction of the tests lies between {low} and {high}."
+    yield from _worn(tests)
+
+
+def _worn(tests: Sequence[Part]) -> Iterator[str]:
+    """Yield the wear coefficient of each material whose wear was logged."""
+    each: dict[str, list[Part]] = {}
+    for one in tests:
+        if "wear_coefficient" in one:
+            each.setdefault(one.conditions.get("material") or "the sample", []).append(one)
+    known = quantity("wear_coefficient")
+    for name, worn in each.items():
+        logs = [math.log(one.wear_coefficient) for one in worn]
+        words = f"Wear coefficient of {name}: {alone(math.exp(fmean(logs)), known, 'm3/(N m)')}"
+        if len(worn) == 1:
+            yield fill(worn[0], f"{words} (standard error {{wear_error}}).")
+        else:
+            times = math.exp(1.96 * stdev(logs))
+            yield f"{words}, a factor of {times:.2g} either way for 95 % of single tests ({len(worn)} tests)."
 
 
 def _place(fit: Part) -> str:
@@ -269,12 +291,15 @@ PAIR = ("material", "medium", "counterface")
 TEST = text_column("test", lambda one: one.source)
 
 
+COUNTED = ("steady_rows", "rows", "cycles", "wear_coefficient", "wear_error")
+
+
 def _numbers(tests: Sequence[Part]) -> Table:
     """Return what the friction of each test was made from, and what else its log shows."""
     names = ("standard_error", "degrees_of_freedom", "standard_deviation", "effective_count", "drift_rate")
     until = Column("steady until", lambda one: _along(one, "steady_end"))
     heat = column("temperature", of=attrgetter("conditions"))
-    columns = TEST, heat, *map(column, names), until, *map(column, ("steady_rows", "rows", "cycles"))
+    columns = TEST, heat, *map(column, names), until, *map(column, COUNTED)
     return Table("numbers", known_columns(columns, tests), tuple(tests), NUMBERS, Level.LONG)
 
 

@@ -167,6 +167,8 @@ QUANTITIES: dict[str, Quantity] = {
     "refused": Q(label="without an answer", unit="%"),
     "film_time": Q(label="duty that an hour of the test wears the films for, in hours", digits=3),
     "pocket_time": Q(label="duty that an hour of the test wears the pockets for, in hours", digits=3),
+    "wear_coefficient": Q(label="wear coefficient", head="wear"),
+    "wear_error": Q(label="standard error of the wear coefficient", head="error of wear", digits=2),
     # Runs of the cage.
     "bearing_torque": Q(label="torque of the shaft with its running cage", digits=4),
     "cage_torque": Q(label="torque by friction at pockets and lands"),
