@@ -27,6 +27,7 @@ from separatrix.verdict.wear_life import (
     driven_by,
     film_after,
     lives,
+    steady_coverage,
     worn_depth,
 )
 
@@ -188,6 +189,16 @@ def test_debris_grows_a_film_that_does_not_wear_until_the_reservoir_is_empty():
     assert free.films[0][-1, 0] == pytest.approx(0.5 * UM + grown, rel=1e-6)
     ended = course(PHASE, worn(**given, reservoir=1e-30), 1e4)
     assert ended.films[0][-1, 0] < 0.5 * UM + 1e-3 * grown
+
+
+def test_deposit_balances_wear_at_its_fixed_point():
+    """D/W of a calm and of a whirling cage; the film of a calm cage ends at that coverage, or grows."""
+    area = 2e-4 + 0.5 * 10 * math.pi * 1e-2**2
+    given = {"film_wear": 1e-15, "cage_wear": 1e-15 * 100.0 * 0.3 * area / 2.0, "transferred": 1.0}
+    calm, whirling = steady_coverage(PHASE, worn(**given))
+    assert (calm[0], whirling[0]) == pytest.approx((0.3, 1.0), rel=1e-9)
+    found = course(PHASE, worn(**given, bare_friction=0.05), 1e9)
+    assert -math.expm1(-found.films[0][-1, 0] / (0.1 * UM)) == pytest.approx(0.3, rel=1e-3)
 
 
 def test_race_friction_is_the_mean_by_load():

@@ -118,6 +118,7 @@ def page(answer: Part) -> Page:
             ("Never unstable", fill(answer, "{never_unstable}, up to {horizon} revolutions")),
             ("Reservoir empty at the end", show(answer, "reservoir_empty")),
             ("Deposit keeps half of the film", show(answer, "film_sustained")),
+            ("Coverage where deposit balances wear", fill(answer, FIXED)),
             level=Level.LONG,
         ),
         all_numbers("all times", (), ((row,) for row in answer.course)),
@@ -138,6 +139,7 @@ CAPTION = (
     "P(stable) against revolutions: mean of the drawn bearings, and the range between a tenth and nine in "
     "ten of them; beside it the median film on both tracks."
 )
+FIXED = "{coverage_calm} while the cage is calm, {coverage_whirling} while it whirls (median of the draws)"
 DRIVEN = (
     "Rank correlation of each drawn input with the life; the first is what a measurement narrows most. "
     "Negative: more of it, a shorter life."

@@ -165,6 +165,8 @@ QUANTITIES: dict[str, Quantity] = {
     "unstable": Q(label="UNSTABLE", unit="%"),
     "undecided": Q(label="UNDECIDED", unit="%"),
     "refused": Q(label="without an answer", unit="%"),
+    "coverage_calm": Q(label="coverage where deposit of a calm cage balances wear", unit="%", digits=2),
+    "coverage_whirling": Q(label="the same of a cage that whirls", unit="%", digits=2),
     "film_time": Q(label="duty that an hour of the test wears the films for, in hours", digits=3),
     "pocket_time": Q(label="duty that an hour of the test wears the pockets for, in hours", digits=3),
     "wear_coefficient": Q(label="wear coefficient", head="wear"),
