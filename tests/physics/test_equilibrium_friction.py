@@ -5,21 +5,14 @@ import math
 import numpy as np
 import pytest
 from cages import BEARING_218 as BEARING
+from mobile_balls import RPM, study_of
 from scipy.special import ellipe
 
-import separatrix
 from separatrix.chain.equilibrium import Equilibrium, contact, equilibrium
-from separatrix.chain.grooved_ball import (
-    contact_actions,
-    problem,
-    touch,
-)
+from separatrix.chain.grooved_ball import contact_actions, problem, touch
 from separatrix.chain.slip_friction import NODES, chebyshev_nodes, friction_resultants
 from separatrix.ground.units import Array
-from separatrix.study.study import BallBearing, KinematicModel, Material, Operation, Race
-
-RPM = 2.0 * math.pi / 60.0
-
+from separatrix.study.study import KinematicModel, Operation, Race
 
 def resultants(c: tuple[float, ...], a: float, b: float, smoothing: float, cells: int = 48) -> Array:
     """Per unit load and friction, on a ball of 1 cm radius."""
@@ -112,43 +105,26 @@ def test_power_of_the_rings_is_lost_in_sliding(speeds):
     assert result.friction_torque * abs(p.speed) == pytest.approx(heat, rel=1e-12)  # rounding
 
 
-WHEEL = BallBearing(
-    ball_diameter=6.35e-3,
-    pitch_diameter=31e-3,
-    ball_count=11,
-    contact_angle=math.radians(15.0),
-    inner_conformity=0.53,
-    outer_conformity=0.53,
-    ball_material=Material(name="steel", elastic_modulus=207e9, poisson_ratio=0.3, density=7810.0),
-    ring_material=Material(name="steel", elastic_modulus=207e9, poisson_ratio=0.3, density=7810.0),
-)
-
-
 @pytest.mark.parametrize(
-    ("name", "rpm", "inner", "outer", "torque"),
+    ("name", "inner", "outer", "torque"),
     [
-        ("cryogenic-turbopump", 15_000.0, 17.2370, 7.1120, 0.20151),
-        ("le7", 50_000.0, 52.0184, 28.7249, 0.15421),
-        ("wheel", 2000.0, 0.00147, 0.00217, 1.91e-4),
-        ("wheel", 6000.0, 0.01031, 0.00257, 2.25e-4),
+        ("cryo", 17.2370, 7.1120, 0.20151),
+        ("le7", 52.0184, 28.7249, 0.15421),
+        ("wheel 2000", 0.00147, 0.00217, 1.91e-4),
+        ("wheel 6000", 0.01031, 0.00257, 2.25e-4),
     ],
 )
-def test_heat_and_torque_of_an_independent_program(name, rpm, inner, outer, torque):
+def test_heat_and_torque_of_an_independent_program(name, inner, outer, torque):
     """Of rigid bodies on their whole slip fields (balls integrated in space to their steady state)."""
-    bearing, friction, load = WHEEL, 0.05, 40.0
-    if name != "wheel":
-        study = separatrix.read_study(name)
-        bearing, load = study.bearing, study.operation.axial_load
-        friction = 0.1
-    operation = Operation(inner_speed=rpm * RPM, axial_load=load)
-    result = equilibrium(bearing, operation, KinematicModel.FREE, friction)
+    given = study_of(name)
+    result = equilibrium(given.bearing, given.operation, KinematicModel.FREE, given.film.race_friction)
     # 24 nodes for the whole ellipse leave 1e-4, another rounding of Coulomb's corner 3e-4; near free rolling,
     # in the wheel, that counts most (a tenth of the rounding moves its damping by 9 %); and their digits
-    near = 1.5e-2 if name == "wheel" else 5e-4
+    near, digits = (1.5e-2, 5e-3) if name.startswith("wheel") else (5e-4, 2e-4)
     assert result.heat_inner[0] == pytest.approx(inner, rel=near)
     assert result.heat_outer[0] == pytest.approx(outer, rel=near)
     # three digits of the wheel, and the same reasons; five of the others
-    assert result.friction_torque == pytest.approx(torque, rel=5e-3 if name == "wheel" else 2e-4)
+    assert result.friction_torque == pytest.approx(torque, rel=digits)
 
 
 def test_friction_cannot_hold_what_it_has_not():
