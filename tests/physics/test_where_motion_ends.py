@@ -108,7 +108,7 @@ def test_friction_on_the_land_may_only_drag():
 def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     """Unevenly driven balls hold the cage; dead pockets whirl it, at a seventh of their energy.
 
-    Pockets feed it, and no verdict calls it unstable: it rolls, from half to four times the usual duration.
+    Pockets feed it, and no verdict calls it unstable: it rolls, from half to twice the usual duration.
     """
     cage = cage_at(shipped("lox-turbopump", 500.0), 0.0, 0.45)
     settings = StabilitySettings(duration=0.15)
@@ -118,7 +118,7 @@ def test_a_whirl_weaker_than_the_loads_rolls_whatever_the_duration():
     assert np.all(found.end_energy[rolls] < 0.5 * drive_energy(cage))
     assert np.all(found.pocket_power[rolls] > 0.0)
     assert judge(cage, found).verdict is not Verdict.UNSTABLE
-    longer = run_ensemble(cage, replace(settings, duration=1.2), kicks=(0.9,), runs=RUNS)
+    longer = run_ensemble(cage, replace(settings, duration=0.6), kicks=(0.9,), runs=RUNS)
     # so near its threshold a whirl may end by chance
     assert np.count_nonzero(longer.outcome != found.outcome) <= 1
 
