@@ -39,14 +39,11 @@ if TYPE_CHECKING:
 MOST_SHOWN = 20_000
 """Samples of a simulated run, at most: every step of a short one."""
 
-FEW = 4000
-"""Samples of the run at lower speed, of which only means are told."""
-
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
 
 SIGNS = (
-    "A stable cage leaves the torque to balls on races. A whirl shows by its line, and by a torque that "
+    "A stable cage leaves the torque to balls on races. A whirl is heard, and shows by a torque that "
     "grows faster with speed than theirs, towards its square (Lewis and others, 44th AMS 2018)."
 )
 
@@ -75,18 +72,19 @@ class Options:
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
     """Follow one run of the ensemble, by default the first from the reference disturbance."""
-    from separatrix.cage import analyse, settings_for
+    from separatrix.cage import analyse, moving_cage, settings_for
     from separatrix.cage import simulate as follow
     from separatrix.cage.closed_forms import drift_rate_law
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
+    from separatrix.study.study import BallModel
     from separatrix.verbs.cage_answers import SimulationAnswer
     from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
     from separatrix.verdict.beyond_models import Moved, beyond_motion
     from separatrix.verdict.crossing import cage_at
     from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.reasons import force_limit, outcome_sentence
-    from separatrix.verdict.rig_signs import SLOWER, rig_signs, slower
+    from separatrix.verdict.rig_signs import SLOWER, Followed, lasts, rig_signs, slower
 
     if not 0 <= options.run <= MOST_RUNS:
         raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
@@ -97,15 +95,24 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     speed = settings.middle_kick if given is None else given
     asked = {name: getattr(settings, name) for name in ("seed", "duration", "ball_scatter")}
 
-    def followed(chain: Solution, kick: float, samples: int) -> tuple[Solution, MovingCage, History]:
-        cage = cage_of(chain)
-        cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
-        return chain, cage, follow(cage, kick=kick, run=options.run, samples=samples, **asked)
+    cage = cage_of(solution)
+    cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
 
-    this = followed(solution, speed, MOST_SHOWN)
-    _, cage, history = this
-    is_steady = not study.operation.ramp_time
-    other = followed(slower(solution), SLOWER * speed, FEW) if is_steady else None
+    def followed(cage: MovingCage, kick: float, until: float | None = None) -> History:
+        return follow(cage, kick=kick, run=options.run, samples=MOST_SHOWN, until=until, **asked)
+
+    def grown(chain: Solution, kick: float) -> Followed:
+        cage = cage_of(chain)
+        found = followed(cage, kick)
+        if not lasts(found):
+            return chain, cage, found
+        if found.largest_contact_force > force_limit(cage, transmitted_force(chain)):
+            cage = moving_cage(chain, cage.ball_cage_friction, BallModel.FREE)
+        return chain, cage, followed(cage, kick, settings.duration)
+
+    history, signs = followed(cage, speed), None
+    if eta is None and not study.operation.ramp_time:
+        signs = rig_signs(grown(solution, speed), grown(slower(solution), SLOWER * speed))
     found, made_of = force_limit(cage, transmitted_force(solution)), cage_candidate(study)
     limit = found if isfinite(found) else None
     heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
@@ -125,7 +132,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
         rubbing_power=heat,
         history=history,
         analysis=analyse(cage, history),
-        signs=rig_signs(this, other) if other else None,
+        signs=signs,
         notes=notes,
     )
 
@@ -231,18 +238,22 @@ def sign_blocks(answer: Part) -> list[Block]:
         return []
     line = "none: the motion does not last"
     if "housing_frequency" in answer:
-        line = fill(answer, "{housing_frequency} in the housing (torque, vibration)")
+        line = fill(answer, "the third octave about {housing_frequency}, with {housing_share} of the power")
     torque = (
         "{bearing_torque}, of it {cage_torque} by pockets and lands; {pocket_share} of the power at pockets"
     )
-    law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, this one {answer.outcome}"
+    law = f"none: at 0.8 of the speed the same run {answer.slower_outcome}, here it {answer.signs_outcome}"
     if "torque_exponent" in answer:
         law = "{torque_exponent} from 0.8 of the speed ({slower_torque}) on; balls on races {race_exponent}"
     return [
         Heading("Signs on a test rig"),
         facts(
+            (
+                "Balls",
+                f"free, by which this run {answer.signs_outcome}" if answer.signs_with_free_balls else None,
+            ),
             ("Torque of the shaft", fill(answer, torque)),
-            ("Line of the whirl", line),
+            ("Loudest in the housing", line),
             ("Torque goes with speed to the power", fill(answer, law)),
         ),
         Note(SIGNS, level=Level.LONG),
