@@ -66,8 +66,7 @@ def refusals(study: Study) -> Iterator[tuple[str, str]]:
         if missing:
             yield name, f"The study has no {' and no '.join(missing)}."
             continue
-        for sentence in verb.refusals(study):
-            yield name, sentence
+        yield from ((name, sentence) for sentence in verb.refusals(study))
 
 
 def asked_study(verb: Verb, study: Study | str | Path, model: str | None = None) -> Study:

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
-from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table, facts, text_column
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import all_numbers, axis, column, fill, quantity, show
-from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -20,10 +18,8 @@ if TYPE_CHECKING:
     from separatrix.verbs.cage_answers import LifeAnswer
     from separatrix.verdict.long_jobs import Runner
 
-REVOLUTIONS, LEAST, MOST = 1e9, 1e3, 1e12
-"""Up to which draws are followed."""
-
-DRAWS, FEWEST, MOST_DRAWS = 4096, 64, 65_536
+REVOLUTIONS = 1e3, 1e12
+"""Least and most, up to which draws are followed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,8 +28,8 @@ class Options:
 
     revolutions: Annotated[
         str | float, Option("Of ring against ring, up to which bearings are followed.", "N")
-    ] = REVOLUTIONS
-    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = DRAWS
+    ] = 1e9
+    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = 4096
 
 
 def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
@@ -41,28 +37,17 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import reference_candidate
     from separatrix.verbs.cage_answers import LifeAnswer
-    from separatrix.verbs.parts.cage_of_study import cage_of, extrapolation_notes
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.life_table import life
     from separatrix.verdict.parameter_axes import plain_number
 
     revolutions = plain_number(str(options.revolutions), "--revolutions")
-    if not LEAST <= revolutions <= MOST:
-        rule = f"must lie between {LEAST:g} and {MOST:g}"
-        raise InputError("--revolutions", rule, got=f"{revolutions:g}")
-    samples = options.samples
-    if not FEWEST <= samples <= MOST_DRAWS or samples.bit_count() != 1:
-        rule = f"must be a power of two from {FEWEST} to {MOST_DRAWS}"
-        raise InputError("--samples", rule, got=str(samples), cure=f"Try {DRAWS}.")
-    found = life(study, revolutions=revolutions, draws=samples, runner=runner)
+    of.refuse_outside("--revolutions", revolutions, *REVOLUTIONS)
+    of.refuse_samples(options.samples)
+    found = life(study, revolutions=revolutions, draws=options.samples, runner=runner)
     solution = solve(study, reference_candidate(study, study.ranking) if study.ranking else None)
-    notes = (*found.notes, *extrapolation_notes(solution))
-    return LifeAnswer(solution=solution, cage=cage_of(solution), life=found, notes=notes)
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no life of a study that states how it wears; of another none is asked."""
-    if study.wear is not None and study.cage is not None:
-        yield from refused(study, cage_motion)
+    notes = (*found.notes, *of.extrapolation_notes(solution))
+    return LifeAnswer(solution=solution, cage=of.cage_of(solution), life=found, notes=notes)
 
 
 def page(answer: Part) -> Page:
@@ -205,5 +190,5 @@ VERB = Verb(
     needs=("cage",),
     moves_a_cage=True,
     keeps_runs=True,
-    refusals=refusals,
+    links=("worn_cage",),
 )

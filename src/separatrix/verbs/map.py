@@ -23,7 +23,6 @@ from separatrix.verbs.parts.quantity_text import (
     show,
     value_of,
 )
-from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -60,14 +59,12 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     from separatrix.chain.solution import solve
     from separatrix.ground.errors import InputError
     from separatrix.verbs.cage_answers import MapAnswer
-    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.parameter_axes import checked_points, read_axis
-    from separatrix.verdict.stability_map import MapQuestion, StabilityMap, stability_map, value_here
+    from separatrix.verdict.stability_map import MapQuestion, stability_map, value_here
 
     checked_points(options.points, "--points")
-    if not 1 <= options.runs <= MOST_RUNS:
-        raise InputError("--runs", f"must lie between 1 and {MOST_RUNS}", got=str(options.runs))
+    of.refuse_outside("--runs", options.runs, 1, of.MOST_RUNS)
     axes = [read_axis(text, f"--{way}", options.points) for way, text in (("x", options.x), ("y", options.y))]
     names = [axis.parameter for axis in axes]
     if names[0] == names[1]:
@@ -76,18 +73,12 @@ def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:
     if options.kick is not None and KICK in names:
         raise InputError("--kick", "and an axis kick exclude each other", cure="Give one of the two.")
     solution = solve(study)
-    cage = cage_of(solution)
-    usual = settings_for(study.stability, cage).middle_kick
-    speed = usual if options.kick is None else kick_speed(options.kick)
+    usual = settings_for(study.stability, of.cage_of(solution)).middle_kick
+    speed = usual if options.kick is None else of.kick_speed(options.kick)
     across, up = (replace(axis, here=value_here(solution, axis.parameter)) for axis in axes)
     asked = MapQuestion(study=study, x=across, y=up, kick=speed, runs=options.runs)
-    notes = (*solution.notes, *cage.notes, *extrapolation_notes(solution))
-
-    def made(found: StabilityMap) -> MapAnswer:
-        every = (*notes, *(note for point in found.points for note in point.notes))
-        return MapAnswer(solution=solution, cage=cage, map=found, notes=every)
-
-    return made_into(made, lambda: stability_map(asked, runner=runner))
+    notes = of.extrapolation_notes(solution)
+    return of.answer_of_cage(MapAnswer, "map", solution, lambda: stability_map(asked, runner=runner), *notes)
 
 
 def page(answer: Part) -> Page:
@@ -310,5 +301,5 @@ VERB = Verb(
     "0.02..0.3:40:log. Finished runs are kept in the folder of the answer: after Ctrl-C run the same "
     "command to resume. With --json and no --out nothing is kept.",
     keeps_runs=True,
-    refusals=lambda study: refused(study, cage_motion),
+    links=("cage_motion",),
 )

@@ -9,7 +9,6 @@ from separatrix.present.blocks import Equation, Heading, Note, Page, Picture, fa
 from separatrix.present.figure import BLUE, GREEN, GREY, VERMILION, Across, Figure, Mark, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import axis, cell, fact, fill, named, places_table, show
-from separatrix.verbs.parts.refused import push, refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -97,5 +96,5 @@ VERB = Verb(
     "of the races; rates and shares of its modes are in the JSON.",
     compute=compute,
     page=page,
-    refusals=lambda study: refused(study, rolling, push),
+    links=("rolling", "push"),
 )

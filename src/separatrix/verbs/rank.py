@@ -48,7 +48,6 @@ from separatrix.verbs.parts.quantity_text import (
     quantity,
     show,
 )
-from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
@@ -65,12 +64,9 @@ from separatrix.verbs.parts.verdict_blocks import (
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import RankingAnswer
     from separatrix.verdict.long_jobs import Runner
-    from separatrix.verdict.ranking_records import Ranking
 
 BRIEF, REPORT, LONG = Level.BRIEF, Level.REPORT, Level.LONG
 EVIDENCE = (
@@ -92,23 +88,12 @@ POCKET = ("slip_speed", "impact_force", "pressure", "max_pressure", "contact_rad
 def compute(study: Study, options: NoOptions, runner: Runner) -> RankingAnswer:  # noqa: ARG001
     """Verdict, margin, rank and reason of each candidate material."""
     from separatrix.verbs.cage_answers import RankingAnswer
-    from separatrix.verbs.parts.cage_of_study import overdamped_notes, reference
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts.cage_of_study import answer_of_cage, overdamped_notes, reference
     from separatrix.verdict.ranking import rank
 
-    solution, cage = reference(study)
-    notes = (*solution.notes, *cage.notes, *overdamped_notes(solution.restitution))
-
-    def made(found: Ranking) -> RankingAnswer:
-        every = (*found.notes, *notes)
-        return RankingAnswer(solution=solution, cage=cage, ranking=found, notes=every)
-
-    return made_into(made, lambda: rank(study, runner=runner))
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why there is no ranking: no environment, or no cage of a candidate to move."""
-    yield from refused(study, candidate_cages)
+    solution = reference(study)
+    notes = overdamped_notes(solution.restitution)
+    return answer_of_cage(RankingAnswer, "ranking", solution, lambda: rank(study, runner=runner), *notes)
 
 
 def page(answer: Part) -> Page:
@@ -399,5 +384,5 @@ VERB = Verb(
     needs=("cage", "ranking"),
     moves_a_cage=True,
     keeps_runs=True,
-    refusals=refusals,
+    links=("candidate_cages",),
 )

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
-from separatrix.ground.errors import InputError
 from separatrix.present.blocks import (
     Block,
     Heading,
@@ -28,7 +27,6 @@ from separatrix.verbs.parts.quantity_text import (
     number_of,
     show,
 )
-from separatrix.verbs.parts.refused import candidate_cages, refused
 from separatrix.verbs.parts.verdict_blocks import (
     MARK,
     by_verdict,
@@ -40,13 +38,9 @@ from separatrix.verbs.parts.verdict_blocks import (
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
-    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import SensitivityAnswer
     from separatrix.verdict.long_jobs import Runner
-
-SAMPLES, FEWEST_SAMPLES, MOST_SAMPLES = 512, 64, 65_536
-"""Bearings that `sensitivity` draws."""
 
 GUESS = "?"
 """After a friction whose scatter is a guess."""
@@ -59,49 +53,24 @@ LISTED, LEAST = 12, 0.02
 class Options:
     """How many bearings are drawn."""
 
-    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = SAMPLES
+    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = 512
 
 
 def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
     from separatrix.verbs.cage_answers import SensitivityAnswer
-    from separatrix.verbs.parts.cage_of_study import reference
-    from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
-    from separatrix.verdict.long_jobs import made_into
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.uncertain_study import uncertain_study
 
-    samples = options.samples
-    if not FEWEST_SAMPLES <= samples <= MOST_SAMPLES or samples.bit_count() != 1:
-        near = 1 << max(0, samples - 1).bit_length()
-        cure = f"Try {min(max(near, FEWEST_SAMPLES), MOST_SAMPLES)}."
-        rule = f"must be a power of two from {FEWEST_SAMPLES} to {MOST_SAMPLES}"
-        raise InputError("--samples", rule, got=str(samples), cure=cure)
-    solution, cage = reference(study)
-    uncertain_inputs(study, frictions_to_draw(study))  # refused before anything is timed
-    return made_into(
-        lambda found: SensitivityAnswer(
-            solution=solution,
-            cage=cage,
-            uncertain=found,
-            notes=(*solution.notes, *cage.notes, *found.notes),
-        ),
-        lambda: uncertain_study(study, samples, runner=runner),
+    of.refuse_samples(options.samples)
+    solution = of.reference(study)
+    of.drawn_bearings(solution)  # refused before anything is timed
+    return of.answer_of_cage(
+        SensitivityAnswer,
+        "uncertain",
+        solution,
+        lambda: uncertain_study(study, options.samples, runner=runner),
     )
-
-
-def refusals(study: Study) -> Iterator[str]:
-    """Yield why no bearing can be drawn."""
-    if study.cage is not None and study.ranking is not None:
-        yield from refused(study, candidate_cages, _drawable)
-
-
-def _drawable(solution: Solution) -> None:
-    from separatrix.study.candidates import ranking_question, required_environment
-    from separatrix.verdict.draws import frictions_to_draw, uncertain_inputs
-
-    study = solution.study
-    required_environment(study, ranking_question(study))
-    uncertain_inputs(study, frictions_to_draw(study))
 
 
 def page(answer: Part) -> Page:
@@ -220,5 +189,5 @@ VERB = Verb(
     needs=("cage", "ranking"),
     moves_a_cage=True,
     keeps_runs=True,
-    refusals=refusals,
+    links=("candidate_cages", "drawn_bearings"),
 )

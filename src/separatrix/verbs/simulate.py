@@ -25,12 +25,10 @@ from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.curve_blocks import pocket_friction
 from separatrix.verbs.parts.quantity_text import fill, places_table, show
-from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
-    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import SimulationAnswer
 
@@ -71,18 +69,17 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     from separatrix.chain.solution import solve
     from separatrix.study.candidates import cage_candidate, require_friction
     from separatrix.verbs.cage_answers import SimulationAnswer
-    from separatrix.verbs.parts.cage_of_study import MOST_RUNS, cage_of, extrapolation_notes, kick_speed
+    from separatrix.verbs.parts import cage_of_study as of
     from separatrix.verdict.beyond_models import Moved, beyond_motion
     from separatrix.verdict.crossing import cage_at
     from separatrix.verdict.judgement import transmitted_force
     from separatrix.verdict.reasons import force_limit, outcome_sentence
 
-    if not 0 <= options.run <= MOST_RUNS:
-        raise InputError("--run", f"must lie between 0 and {MOST_RUNS}", got=str(options.run))
-    given, eta = None if options.kick is None else kick_speed(options.kick), given_factor(options)
+    of.refuse_outside("--run", options.run, 0, of.MOST_RUNS)
+    given, eta = None if options.kick is None else of.kick_speed(options.kick), given_factor(options)
     solution = solve(study)
     require_friction(study)
-    cage = cage_of(solution)
+    cage = of.cage_of(solution)
     settings = settings_for(study.stability, cage)
     cage = cage if eta is None else cage_at(cage, eta, cage.ball_cage_friction)
     speed = settings.middle_kick if given is None else given
@@ -93,7 +90,7 @@ def compute(study: Study, options: Options) -> SimulationAnswer:
     heat = cage.land_friction * history.rubbing_force * history.rubbing_speed
     name = made_of.name if made_of else "The cage"
     moved = Moved(name, history.largest_contact_force, history.largest_offset)
-    notes = *solution.notes, *cage.notes, *extrapolation_notes(solution), *beyond_motion(solution, [moved])
+    notes = *solution.notes, *cage.notes, *of.extrapolation_notes(solution), *beyond_motion(solution, [moved])
     return SimulationAnswer(
         solution=solution,
         cage=cage,
@@ -120,13 +117,6 @@ def given_factor(options: Options) -> float | None:
     if not 0.0 <= eta <= 1.0:
         raise InputError("--restitution-factor", "must be a number from 0 to 1", printable(text))
     return eta
-
-
-def friction_of_pocket(solution: Solution) -> None:
-    """Refuse a pocket of unknown friction."""
-    from separatrix.study.candidates import require_friction
-
-    require_friction(solution.study)
 
 
 def page(answer: Part) -> Page:
@@ -251,5 +241,5 @@ VERB = Verb(
     options=Options,
     needs=("cage",),
     moves_a_cage=True,
-    refusals=lambda study: refused(study, friction_of_pocket, cage_motion),
+    links=("known_friction", "cage_motion"),
 )

@@ -21,7 +21,6 @@ from separatrix.present.figure import (
 )
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import axis, by_race, fill, number_of, place_column, show
-from separatrix.verbs.parts.refused import refused, rolling
 from separatrix.verbs.verb import NoOptions, Verb
 
 if TYPE_CHECKING:
@@ -149,4 +148,4 @@ def shear_panel(answer: Part) -> Panel:
     )
 
 
-VERB = Verb(name="traction", compute=compute, page=page, refusals=lambda study: refused(study, rolling))
+VERB = Verb(name="traction", compute=compute, page=page, links=("rolling",))

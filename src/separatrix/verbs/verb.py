@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_origin, get_type_hints
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator
 
     from separatrix.ground.document import Part
     from separatrix.present.blocks import Page
@@ -90,11 +90,18 @@ class Verb(Tool):
     `compute` takes the study, the options and, of a verb that keeps runs, a `Runner`, and returns its record;
     `page` makes the page of its document. `needs` are sections of a study that may be left out but not here.
     `keeps_runs` is for an answer whose finished runs are kept in its folder, and that may be made on a
-    cluster. `moves_a_cage` is for one whose model may be chosen. `refusals` yields, in a second, what the
-    verb would refuse of a study or take long for, a sentence each.
+    cluster. `moves_a_cage` is for one whose model may be chosen. `links` are functions of `cage_of_study`
+    that refuse what the verb would refuse.
     """
 
     needs: tuple[str, ...] = ()
     moves_a_cage: bool = False
     keeps_runs: bool = False
-    refusals: Callable[[Study], Iterable[str]] = lambda study: ()  # noqa: ARG005
+    links: tuple[str, ...] = ()
+
+    def refusals(self, study: Study) -> Iterator[str]:
+        """Yield, in a second, what the verb would refuse of a study, a sentence each."""
+        if self.links:
+            from separatrix.verbs.parts import cage_of_study
+
+            yield from cage_of_study.refused(study, *(getattr(cage_of_study, one) for one in self.links))

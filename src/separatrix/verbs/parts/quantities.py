@@ -22,8 +22,6 @@ QUANTITIES: dict[str, Quantity] = {
     "tilt": Q(label="tilt of the inner ring", digits=4),
     "moment": Q(label="moment of the balls", digits=4),
     "friction_torque": Q(label="torque of friction of balls on races", digits=4),
-    "heat_inner": Q(label="heat of friction, inner race", digits=4),
-    "heat_outer": Q(label="heat of friction, outer race", digits=4),
     "load": Q(label="load", symbol="Q", digits=4),
     "contact_angle": Q(label="contact angle", head="angle", digits=4),
     "semi_major": Q(label="semi-major axis a, across the groove", symbol="a", digits=4),
@@ -45,17 +43,12 @@ QUANTITIES: dict[str, Quantity] = {
     "land": Q(label="running land clearance", digits=4),
     "temperature": Q(label="temperature", digits=4),
     "cage_speed": Q(label="speed of the cage", digits=4),
-    "cage_strain": Q(label="thermal strain of the cage", unit="%"),
-    "ball_strain": Q(label="thermal strain of the balls", unit="%"),
-    "ring_strain": Q(label="thermal strain of the rings", unit="%"),
     "hoop_strain": Q(label="strain of the cage by rotation", unit="%"),
     # Traction, restitution, mobility.
     "slope": Q(label="slope of the traction curve", head="slope", symbol="alpha", digits=4),
     "slope_error": Q(label="error of the slope", digits=2),
     "ball_cage_stiffness": Q(label="stiffness of ball and pocket", symbol="k_BC", digits=4),
     "cage_mass": Q(label="cage mass", symbol="M_C", digits=4),
-    "inner_damping": Q(label="damping of the inner race", digits=4),
-    "outer_damping": Q(label="damping of the outer race", digits=4),
     "race_damping": Q(label="race damping", symbol="C_mu", digits=4),
     "damping_ratio": Q(label="damping ratio", symbol="zeta", form=".3f"),
     "restitution_factor": Q(label="restitution factor", symbol="eta", form=".3f"),
@@ -71,22 +64,8 @@ QUANTITIES: dict[str, Quantity] = {
     "race_friction": Q(label="race friction", symbol="f_BT"),
     # Life.
     "revolutions": Q(label="revolutions", form=".1e"),
-    "revolutions_10": Q(label="revolutions", form=".1e"),
-    "revolutions_50": Q(label="revolutions", form=".1e"),
-    "revolutions_90": Q(label="revolutions", form=".1e"),
-    "horizon": Q(label="revolutions", form=".1e"),
-    "unstable_at_start": Q(label="unstable from the start", unit="%", digits=2),
-    "never_unstable": Q(label="never unstable", unit="%", digits=2),
-    "film_worn": Q(label="film worn", unit="%", digits=2),
-    "pocket_opened": Q(label="pockets opened", unit="%", digits=2),
-    "friction_risen": Q(label="pocket friction risen", unit="%", digits=2),
-    "reservoir_empty": Q(label="reservoir empty", unit="%", digits=2),
-    "film_sustained": Q(label="film sustained", unit="%", digits=2),
     "first_decile": Q(label="P(stable) of the first tenth", head="first tenth", form=".2f"),
     "last_decile": Q(label="P(stable) of the last tenth", head="last tenth", form=".2f"),
-    "film_inner": Q(label="film on the inner track", head="film, inner", unit="um", form=".3f"),
-    "film_outer": Q(label="film on the outer track", head="film, outer", unit="um", form=".3f"),
-    "pocket_friction": Q(label="pocket friction"),
     "correlation": Q(label="rank correlation", form="+.2f"),
     "draws": Q(label="bearings drawn"),
     "damping": Q(label="damping, attitude of the spin held", symbol="C_f", digits=4),
@@ -98,15 +77,11 @@ QUANTITIES: dict[str, Quantity] = {
     "pocket_friction_effect": Q(
         label="effect $k$ of pocket friction, 1 \N{PLUS-MINUS SIGN} $k$ $f$", digits=4
     ),
-    "slip_speed_inner": Q(label="slip speed, inner race", digits=4),
-    "slip_speed_outer": Q(label="slip speed, outer race", digits=4),
-    "rates": Q(label="rate of a mode", head="rate", digits=4),
-    "oscillations": Q(label="oscillation of a mode", head="oscillation", unit="rad/s"),
-    "shares": Q(label="share of 1/$C_eff$", unit="%", form=".2f"),
+    "rates": Q(label="rate of a mode"),
+    "oscillations": Q(label="oscillation of a mode"),
+    "shares": Q(label="share of 1/$C_eff$"),
     "capacity": Q(label="capacity of the races", symbol="F_max", digits=4),
     "speed": Q(label="speed beyond free orbit", symbol="u", head="speed", digits=4),
-    "force_forward": Q(label="force forward", head="F forward", digits=4),
-    "force_backward": Q(label="force backward", head="F backward", digits=4),
     "force_law": Q(label="force by the law", head="law", digits=4),
     "law_error": Q(label="largest error of the law", unit="%", digits=2),
     "asymmetry": Q(label="difference of forward and backward", unit="%", digits=2),
@@ -114,9 +89,7 @@ QUANTITIES: dict[str, Quantity] = {
     "mass": Q(label="mass", digits=4),
     "lean": Q(label="lean of a pocket's contact, towards the bearing axis"),
     "land_gap": Q(label="radial gap of the land", digits=4),
-    #
     # Stability curves, maps and sweeps.
-    #
     "ball_cage_friction": Q(label="ball/cage friction", symbol="f_BC", head="pocket friction"),
     "critical_friction": Q(label="critical friction", ends=("scatter_low", "scatter_high")),
     "critical_friction_low": Q(
@@ -139,14 +112,9 @@ QUANTITIES: dict[str, Quantity] = {
     "time_share": Q(label="share of the time", head="time", unit="%"),
     "shaft_frequency": Q(label="shaft, 1x", unit="Hz"),
     "cage_frequency": Q(label="cage and ball set, 1x", unit="Hz"),
-    "outer_pass_frequency": Q(label="balls past the outer ring", unit="Hz"),
-    "inner_pass_frequency": Q(label="balls past the inner ring", unit="Hz"),
     "linear_whirl_frequency": Q(label="whirl without clearance", unit="Hz"),
     "orbit_frequency": Q(label="orbit of whirling runs", unit="Hz"),
     "below_margin": Q(label="with a margin below 0", unit="%"),
-    "stable": Q(label="STABLE", unit="%"),
-    "unstable": Q(label="UNSTABLE", unit="%"),
-    "undecided": Q(label="UNDECIDED", unit="%"),
     "refused": Q(label="without an answer", unit="%"),
     # Runs of the cage.
     "judged_from": Q(label="start of the judged part", digits=4),
@@ -160,7 +128,6 @@ QUANTITIES: dict[str, Quantity] = {
     "pocket_impacts": Q(label="impacts", form=".0f"),
     "impacts_per_turn": Q(label="impacts per turn of the cage", form=".2f"),
     "pocket_rubbing_power": Q(label="heat of rubbing", head="heat of rubbing"),
-    #
     # Rankings and their verdicts.
     "friction": Q(label="pocket friction", head="friction", symbol="f_BC", form=".3f"),
     "restitution_threshold": Q(
@@ -193,48 +160,27 @@ QUANTITIES: dict[str, Quantity] = {
         ends=("uncertain_probability_low", "uncertain_probability_high"),
     ),
     "friction_scatter": Q(label="assumed scatter of friction", unit="%"),
-    "friction_deviation": Q(label="standard deviation of friction", head="s.d.", digits=2),
     "kick": Q(label="initial disturbance", unit="m/s", form=".3g"),
     "largest_offset": Q(label="largest offset of the cage centre", head="largest offset"),
-    "mean_offset": Q(label="mean offset of the cage centre", head="mean offset", meaning="median at the end"),
-    "orbit_evenness": Q(label="spread of the offset over its mean", digits=2),
+    "mean_offset": Q(label="mean offset of the cage centre", head="mean offset"),
     "largest_tilt": Q(label="largest tilt of the cage", head="tilt", unit="mrad"),
-    "axial_travel": Q(label="axial motion from end to end", head="axial travel"),
-    "cone_ratio": Q(
-        label="cone ratio",
-        form=".2f",
-        meaning="speed at which the lean of the cage's axis goes round over that of the ball set",
-    ),
+    "growth_rate": Q(label="growth rate of the amplitude"),
     "drift_rate": Q(label="drift rate", head="drift", digits=2),
-    "growth_rate": Q(
-        label="growth rate", meaning="of the amplitude, mean over all runs from the worst disturbance"
-    ),
     "largest_contact_force": Q(label="largest force at a pocket", head="pocket force"),
     "largest_land_force": Q(label="largest force on the land", head="land force"),
     "rubbing_power": Q(label="power of rubbing on the land", head="rubbing", digits=2),
-    "whirl_frequency": Q(
-        label="whirl frequency", head="whirl", meaning="median of the runs that end so, seen from the balls"
-    ),
-    "whirl_ratio": Q(
-        label="whirl ratio",
-        form=".2f",
-        meaning="speed at which the centre orbits the axis over that of the ball set",
-    ),
-    "pocket_impact_shares": Q(label="share of a pocket in all impacts", unit="%", digits=2),
-    "land_impact_share": Q(label="share of the land in all impacts", unit="%", digits=2),
+    "whirl_frequency": Q(label="whirl frequency of the cage centre", head="whirl"),
     "energy_imbalance": Q(label="energy imbalance", digits=2),
     "pocket_clearance": Q(label="pocket clearance as it runs", digits=4),
     "land_clearance": Q(label="land clearance as it runs", digits=4),
     "slip_speed": Q(label="sliding speed of ball on pocket"),
     "impact_force": Q(label="force of an impact at that speed"),
-    #
     # Uncertain studies.
     "mean": Q(label="mean", digits=4),
     "share": Q(label="share of the variance", head="share", unit="%", form=".0f"),
     "skill": Q(label="part of the deviance explained", head="skill", unit="%", form=".0f"),
     "bearings": Q(label="bearings", form=".0f"),
     "settles": Q(label="whether the cage settles", form=".0f"),
-    #
     # Logs, materials and comparisons.
     "standard_error": Q(label="standard error", digits=2),
     "standard_deviation": Q(label="scatter", digits=2),
@@ -243,15 +189,35 @@ QUANTITIES: dict[str, Quantity] = {
     "steady_rows": Q(label="rows of the steady part", form=".0f"),
     "rows": Q(label="rows", form=".0f"),
     "cycles": Q(label="whole cycles", form=".0f"),
-    "normal_force": Q(label="normal force", digits=4),
-    "cycle_time": Q(label="time of a cycle", digits=4),
     "run_in_end": Q(label="end of running-in", head="running-in ends", digits=4),
     "steady_end": Q(label="end of the steady part", head="steady until", digits=4),
     "default_scatter": Q(label="assumed scatter", unit="%"),
 }
 
-for _name in ("load", "contact_angle", "spin_roll_ratio", "max_pressure", "slope"):
-    for _race, _end in (("inner", "in"), ("outer", "out")):
+SHARES = (
+    *("unstable_at_start", "never_unstable", "film_worn", "pocket_opened", "friction_risen"),
+    *("reservoir_empty", "film_sustained"),
+)
+"""Shares of drawn bearings."""
+
+QUANTITIES |= {name: Q(label=name.replace("_", " "), unit="%", digits=2) for name in SHARES}
+QUANTITIES |= {name: Q(label=name.upper(), unit="%") for name in ("stable", "unstable", "undecided")}
+QUANTITIES |= {
+    f"{one}_strain": Q(label=f"thermal strain, {one}", unit="%") for one in ("cage", "ball", "ring")
+}
+for _name in ("revolutions_10", "revolutions_50", "revolutions_90", "horizon"):
+    QUANTITIES[_name] = QUANTITIES["revolutions"]
+for _name in ("forward", "backward"):
+    QUANTITIES[f"force_{_name}"] = Q(label=f"force {_name}", head=f"F {_name}", digits=4)
+for _race, _end in (("inner", "in"), ("outer", "out")):
+    QUANTITIES |= {
+        f"heat_{_race}": Q(label=f"heat of friction, {_race} race", digits=4),
+        f"{_race}_damping": Q(label=f"damping of the {_race} race", digits=4),
+        f"slip_speed_{_race}": Q(label=f"slip speed, {_race} race", digits=4),
+        f"film_{_race}": Q(label=f"film on the {_race} track", head=f"film, {_race}", unit="um", form=".3f"),
+        f"{_race}_pass_frequency": Q(label=f"balls past the {_race} ring", unit="Hz"),
+    }
+    for _name in ("load", "contact_angle", "spin_roll_ratio", "max_pressure", "slope"):
         _of = QUANTITIES[_name]
         _label, _head = f"{_of.label} at the {_race} race", f"{_of.head or _of.label} {_end}"
         _symbol = f"Q_{_race[0]}" if _name == "load" else ""
