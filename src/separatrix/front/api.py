@@ -24,15 +24,8 @@ if TYPE_CHECKING:
     from separatrix.chain.contacts import BearingState
     from separatrix.friction.logs.column_map import ColumnMap
     from separatrix.present.blocks import Page
-    from separatrix.verbs.cage_answers import (
-        LifeAnswer,
-        MapAnswer,
-        RankingAnswer,
-        SensitivityAnswer,
-        SimulationAnswer,
-        StabilityAnswer,
-    )
-    from separatrix.verbs.chain_answers import CheckAnswer, MobilityAnswer, RestitutionAnswer, TractionAnswer
+    from separatrix.verbs import cage_answers as of_cage
+    from separatrix.verbs import chain_answers as of_chain
     from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool, Verb
     from separatrix.verdict.swept_cases import Sweep
@@ -161,7 +154,7 @@ def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **ho
     return answer
 
 
-def check(study: Asked) -> Answer[CheckAnswer]:
+def check(study: Asked) -> Answer[of_chain.CheckAnswer]:
     """Inputs of a study with their sources, and the bearing at standstill."""
     return _answer("check", study)
 
@@ -171,17 +164,17 @@ def bearing(study: Asked) -> Answer[BearingState]:
     return _answer("bearing", study)
 
 
-def traction(study: Asked) -> Answer[TractionAnswer]:
+def traction(study: Asked) -> Answer[of_chain.TractionAnswer]:
     """Traction curves of ball on race, and their slopes."""
     return _answer("traction", study)
 
 
-def restitution(study: Asked) -> Answer[RestitutionAnswer]:
+def restitution(study: Asked) -> Answer[of_chain.RestitutionAnswer]:
     """Restitution factor of an impact of ball and cage."""
     return _answer("restitution", study)
 
 
-def mobility(study: Asked) -> Answer[MobilityAnswer]:
+def mobility(study: Asked) -> Answer[of_chain.MobilityAnswer]:
     """How the races let a ball be pushed along its orbit, and what the cage's impacts return."""
     return _answer("mobility", study)
 
@@ -192,13 +185,13 @@ def simulate(
     kick: str | MetrePerSecond | None = None,
     run: int = 0,
     restitution_factor: str | Ratio | None = None,
-) -> Answer[SimulationAnswer]:
+) -> Answer[of_cage.SimulationAnswer]:
     """One run of the cage, from an initial disturbance in text with a unit or [m/s]."""
     question = {"kick": kick, "run": run, "restitution_factor": restitution_factor}
     return _answer("simulate", study, question)
 
 
-def stability(study: Asked, **how: Unpack[Runs]) -> Answer[StabilityAnswer]:
+def stability(study: Asked, **how: Unpack[Runs]) -> Answer[of_cage.StabilityAnswer]:
     """Critical friction against restitution factor.
 
     Parameters
@@ -229,18 +222,20 @@ def map(
     runs: int = 16,
     kick: str | MetrePerSecond | None = None,
     **how: Unpack[Runs],
-) -> Answer[MapAnswer]:
+) -> Answer[of_cage.MapAnswer]:
     """Where the cage is stable in the plane of two parameters: see `stability` for the rest."""
     question = {"x": x, "y": y, "points": points, "runs": runs, "kick": kick}
     return _answer("map", study, question, **how)
 
 
-def rank(study: Asked, **how: Unpack[Runs]) -> Answer[RankingAnswer]:
+def rank(study: Asked, **how: Unpack[Runs]) -> Answer[of_cage.RankingAnswer]:
     """Verdict, margin, rank and reason of each candidate material; parameters as of `stability`."""
     return _answer("rank", study, **how)
 
 
-def sensitivity(study: Asked, *, samples: int = 512, **how: Unpack[Runs]) -> Answer[SensitivityAnswer]:
+def sensitivity(
+    study: Asked, *, samples: int = 512, **how: Unpack[Runs]
+) -> Answer[of_cage.SensitivityAnswer]:
     """Verdicts over the uncertain inputs, with `samples` bearings drawn; the rest as in `stability`."""
     return _answer("sensitivity", study, {"samples": samples}, **how)
 
@@ -262,7 +257,7 @@ def sweep(
 
 def life(
     study: Asked, *, revolutions: float = 1e9, samples: int = 4096, **how: Unpack[Runs]
-) -> Answer[LifeAnswer]:
+) -> Answer[of_cage.LifeAnswer]:
     """When the cage becomes unstable, of `samples` bearings up to `revolutions`; the rest as `stability`."""
     return _answer("life", study, {"revolutions": revolutions, "samples": samples}, **how)
 

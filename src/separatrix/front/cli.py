@@ -20,11 +20,8 @@ from separatrix.front.commands import (
     beside,
     command,
     document_of,
-    folder,
-    named,
     options_of,
     result_of,
-    threads,
     tool_command,
     verb_command,
 )
@@ -80,7 +77,7 @@ PAGE_EPILOG = (
     'job again to resume it. Needs the extra app: pip install "separatrix[app]".'
 )
 NEEDED = ("starlette", "uvicorn")
-MOST_PORT = 65535
+PORT = "Port to listen on [default: any that is free]."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +85,7 @@ class PageOptions:
     """What `app` takes."""
 
     place: Annotated[Path, Option("Where the studies are [default: here].", "FOLDER", True)] = Path()
-    port: Annotated[int | None, Option("Port to listen on [default: any that is free].", "N")] = None
+    port: Annotated[int | None, Option(PORT, "N", most=65535)] = None
     open: Annotated[bool, Option("Open it in the browser, too.")] = False
 
 
@@ -96,8 +93,6 @@ def _page(given: Given) -> int:
     place, port = given["place"], given["port"]
     if not place.is_dir():
         raise InputError(str(place), "is not a folder", cure="Name the folder of your studies.")
-    if port is not None and not 1 <= port <= MOST_PORT:
-        raise InputError("--port", f"must lie between 1 and {MOST_PORT}", got=str(port))
     if lacking := [name for name in NEEDED if find_spec(name) is None]:
         cure = 'Install the extra: pip install "separatrix[app]".'
         raise InputError("separatrix app", f"needs {', '.join(lacking)}", cure=cure)
@@ -131,13 +126,12 @@ class ReportOptions:
 
     asked: Annotated[str, Option("A study, or a folder of answers.", "STUDY|FOLDER", True)]
     pdf: Annotated[bool, Option("Also write report.pdf; needs the extra pdf.")] = False
-    out: Annotated[str | None, Option(REPORT_OUT, "DIR")] = None
+    out: Annotated[Path | None, Option(REPORT_OUT, "DIR")] = None
 
 
 def _report(given: Given) -> int:
     """Write the report of a study or of a folder, and return the exit status."""
-    asked, json, quiet, pdf = (given[name] for name in ("asked", "json", "quiet", "pdf"))
-    to, count = folder(given["out"]), threads(given["jobs"])
+    asked, to, json, pdf = (given[name] for name in ("asked", "out", "json", "pdf"))
     if pdf:
         from separatrix.present.pdf import typesetter
 
@@ -159,15 +153,15 @@ def _report(given: Given) -> int:
         if study is None:
             made: Report | None = report_of(read_folder(usual), where=str(usual))
         else:
-            how: Any = {"quiet": quiet, "jobs": count, "folder": place}
-            made = report_of_study(study, lambda verb: document_of(verb, study, **how), place)
+            made = report_of_study(study, lambda verb: document_of(verb, study, given, place), place)
         if made is None:
             return interrupted("no report was written. Run the same command to resume.")
         files = [] if place is None else made.write(place, with_pdf=pdf)
         if json:
             answer_json(made.document(files))
             return ANSWERED
-        written = f"\nThe report is {' and '.join(map(str, files))}\n" if files and not quiet else ""
+        where = f"\nThe report is {' and '.join(map(str, files))}\n"
+        written = where if files and not given["quiet"] else ""
         answer(f"{harmless(made.summary())}\n{written}")
     return ANSWERED
 
@@ -179,18 +173,19 @@ def _report(given: Given) -> int:
 class Written:
     """What `tribometer` writes."""
 
-    out: Annotated[
-        str | None, Option("Friction file to write, such as friction.toml [default: none].", "FILE")
-    ] = None
+    out: Annotated[Path | None, Option("Friction file to write, such as friction.toml.", "FILE")] = None
 
 
 def _reduce(tool: Tool, given: Given) -> int:
     """Reduce logs; write a friction file and pictures of the tests."""
-    to = named(given["out"], "--out", "a file")
+    to = given["out"]
     pictures = None if to is None else to.with_name(f"{to.stem}-plots")
     with interruptible("no friction file was written."), contextlib.ExitStack() as stack:
         if to is not None:
-            _refuse_out(to)
+            if to.suffix != ".toml" or os.path.isdir(to):
+                cure = 'Name a file like "friction.toml".'
+                raise InputError("--out", "must name a file that ends in .toml", shown(str(to)), cure)
+            refuse_existing(to)
             stack.enter_context(writable_folder(to.parent))
         answered(tool, given, partial(_reduced, tool, given, to), pictures, only_pictures=True)
     return ANSWERED
@@ -213,13 +208,6 @@ def _reduced(tool: Tool, given: Given, to: Path | None) -> Document:
             (stage / to.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
             refuse_existing(to)  # it may have been made since the first check
     return document(found, None if to is None else str(to))
-
-
-def _refuse_out(out: Path) -> None:
-    if out.suffix != ".toml" or os.path.isdir(out):
-        cure = 'Name a file like "friction.toml".'
-        raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
-    refuse_existing(out)
 
 
 # The commands by name.
@@ -263,10 +251,6 @@ def _command(name: str) -> click.Command:
 
 class _Commands(click.Group):
     """The commands by name, each made when it is asked for: the list of them loads none."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
-        """Return their names."""
-        return [*COMMANDS]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
         """Return one of them, None of another name."""

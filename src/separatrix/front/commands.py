@@ -35,7 +35,11 @@ Result = TypeVar("Result")
 Given = Mapping[str, Any]
 
 ANSWERED = 0
-MOST_JOBS = 1024
+
+
+MODEL = "The best estimate or the paper's method [default: that of the study]."
+OUT = "named after the study; none with --json, or of check"
+CLUSTER = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,27 +47,13 @@ class Beside:
     """What commands take beside the options of their verbs."""
 
     study: Annotated[str, Option("A study file, or the name of a shipped study.", "STUDY", True)]
-    model: Annotated[
-        str | None,
-        Option("The best estimate or the paper's method [default: that of the study].", "full|paper"),
-    ] = None
+    model: Annotated[str | None, Option(MODEL, "full|paper")] = None
     full: Annotated[bool, Option("The whole answer, not only what fits a screen.")] = False
     json: Annotated[bool, Option("One JSON document on standard output, in SI units.")] = False
-    out: Annotated[
-        str | None,
-        Option(
-            "Folder for figures and data [default: named after the study; none with --json, or of check].",
-            "DIR",
-        ),
-    ] = None
+    out: Annotated[Path | None, Option(f"Folder for figures and data [default: {OUT}].", "DIR")] = None
     quiet: Annotated[bool, Option("No progress, no notes: the answer alone.")] = False
-    jobs: Annotated[int | None, Option("Threads [default: one for each processor].", "N")] = None
-    cluster: Annotated[
-        str | None,
-        Option(
-            "Make the runs on the Dask scheduler at this address, or in N processes here: local:N.", "ADDRESS"
-        ),
-    ] = None
+    jobs: Annotated[int | None, Option("Threads [default: one for each processor].", "N", most=1024)] = None
+    cluster: Annotated[str | None, Option(CLUSTER, "ADDRESS")] = None
 
 
 def beside(*names: str) -> Shown:
@@ -72,45 +62,37 @@ def beside(*names: str) -> Shown:
     return {name: known[name] for name in names}
 
 
-def threads(jobs: int | None) -> int:
-    """Return the number of threads of an option, or one for each processor that this process may use."""
-    if jobs is not None and not 1 <= jobs <= MOST_JOBS:
-        cure = f"Leave it out for one thread on each of the {processors()} processors."
-        raise InputError("--jobs", f"must lie between 1 and {MOST_JOBS}", got=str(jobs), cure=cure)
-    return jobs or processors()
+NAMED = {"DIR": "a folder", "ADDRESS": "a scheduler, or local:N"}
+"""What an option names, by what stands for its value; another file names a file."""
 
 
-def folder(out: str | None) -> Path | None:
-    """Return the folder of an option; an empty name, as from an unset variable, is refused."""
-    return named(out, "--out", "a folder", cure="The current one is .")
+def option_value(kind: str, text: Any, option: str, note: Option) -> Any:
+    """Return the value of an option of a kind from its text; flags and most texts are taken as they are.
+
+    An empty name, as from an unset variable, is refused.
+    """
+    if kind == "files":
+        return tuple(option_value("file", one, option, note) for one in text)
+    if text is None:
+        return None
+    if kind == "number":
+        return whole_number(text, option, note.most)
+    if (kind == "file" or note.metavar in NAMED) and (not text.strip() or "\0" in text):
+        cure = "The current one is ." if note.metavar == "DIR" else ""
+        raise InputError(option, f"needs the name of {NAMED.get(note.metavar, 'a file')}", '""', cure)
+    return Path(text) if kind == "file" else text
 
 
-def named(text: str | None, option: str, what: str, cure: str = "") -> Path | None:
-    """Return the path or address that an option gives; an empty one is refused."""
-    if text is not None and (not text.strip() or "\0" in text):
-        raise InputError(option, f"needs the name of {what}", got='""', cure=cure)
-    return None if text is None else Path(text)
-
-
-def whole_number(text: str | None, option: str) -> int | None:
-    """Return the whole number that an option gives; None if it gives none."""
+def whole_number(text: str, option: str, most: int) -> int:
+    """Return the whole number that an option gives."""
     try:
-        return None if text is None else int(text)
+        found = int(text)
     except ValueError:
         cure = "Write it in digits, or leave it out."
         raise InputError(option, "must be a whole number", shown(text), cure) from None
-
-
-def option_value(kind: str, text: Any, option: str) -> Any:
-    """Return the value of an option of a kind from its text; flags and texts are taken as they are."""
-    match kind:
-        case "number":
-            return whole_number(text, option)
-        case "file":
-            return named(text, option, "a file")
-        case "files":
-            return tuple(named(one, option, "a file") for one in text)
-    return text
+    if most and not 1 <= found <= most:
+        raise InputError(option, f"must lie between 1 and {most}", str(found), "Or leave it out.")
+    return found
 
 
 def flag_of(name: str, note: Option) -> str:
@@ -130,7 +112,7 @@ def _parameter(name: str, hint: Any, note: Option, default: Any) -> click.Parame
     how: dict[str, Any] = {
         "help": note.help,
         "metavar": note.metavar or None,
-        "callback": lambda _, __, given: option_value(kind, given, own),
+        "callback": lambda _, __, given: option_value(kind, given, own, note),
     }
     if default is not MISSING and not is_many:
         how["default"] = default
@@ -202,39 +184,27 @@ def verb_command(verb: Verb, about: str) -> click.Command:
 
 def run(verb: Verb, given: Given) -> int:
     """Answer one question to a study and return the exit status."""
-    named(given.get("cluster"), "--cluster", "a scheduler, or local:N")
-    place, jobs = folder(given["out"]), threads(given["jobs"])
-    is_kept = verb.keeps_runs and not (given["json"] and place is None)
+    is_kept = verb.keeps_runs and not (given["json"] and given["out"] is None)
     with interruptible("runs that were finished are kept." if is_kept else "no file was written."):
         options = options_of(verb, given)
         study = asked_study(verb, given["study"], given.get("model"))
         usual = Path(study.name) if verb.writes_data and not given["json"] else None
-        to = place or usual
-        how = {"quiet": given["quiet"], "jobs": jobs, "folder": to, "cluster": given.get("cluster")}
-        made = answered(verb, given, partial(document_of, verb, study, options, **how), to)
+        to = given["out"] or usual
+        made = answered(verb, given, partial(document_of, verb, study, given, to, options), to)
     if made.get("complete") is not False:
         return ANSWERED
     more = " Run the same command to resume." if verb.keeps_runs and to is not None else ""
     return interrupted(f"the answer has what was finished, and is marked complete: false.{more}")
 
 
-def document_of(
-    verb: Verb,
-    study: Study,
-    options: Any = None,
-    *,
-    quiet: bool,
-    jobs: int,
-    folder: Path | None,
-    cluster: str | None = None,
-) -> Document:
+def document_of(verb: Verb, study: Study, given: Given, folder: Path | None, options: Any = None) -> Document:
     """Compute the answer with a bar of progress; print how many runs an earlier call had kept."""
     from separatrix.verbs.answer_files import document
 
-    how: dict[str, Any] = {"jobs": jobs, "folder": folder, "cluster": cluster}
-    with progress_bar(f"{verb.name} {study.name}", quiet=quiet) as progress:
+    how: dict[str, Any] = {"jobs": given["jobs"], "folder": folder, "cluster": given.get("cluster")}
+    with progress_bar(f"{verb.name} {study.name}", quiet=given["quiet"]) as progress:
         found = breakable(partial(computed, verb, study, options, progress=progress, **how))
-    if found.runs_taken and not quiet:
+    if found.runs_taken and not given["quiet"]:
         from separatrix.verdict.ledger import NAME
 
         kept = f"{folder}/{NAME}"
@@ -244,9 +214,8 @@ def document_of(
 
 def tool_command(tool: Tool, about: str) -> click.Command:
     """Return the command of a tool."""
-    names = {"full": True, "json": True, "out": tool.folder, "quiet": tool.takes_time or tool.folder}
-    names["jobs"] = tool.takes_time
-    takes = tool.shown_options() | beside(*(name for name, is_taken in names.items() if is_taken))
+    names = [*["out"] * bool(tool.folder), *["quiet"] * (tool.takes_time or bool(tool.folder))]
+    takes = tool.shown_options() | beside("full", "json", *names, *["jobs"] * tool.takes_time)
     return command(tool.name.split()[-1], partial(run_tool, tool), takes, about, tool.epilog)
 
 
@@ -255,7 +224,7 @@ def run_tool(tool: Tool, given: Given) -> int:
     usual = Path(tool.folder) if tool.folder and not given["json"] else None
     with interruptible("no answer was given."):
         compute = partial(tool.compute, options_of(tool, given))
-        answered(tool, given, partial(result_of, tool, compute, given), folder(given.get("out")) or usual)
+        answered(tool, given, partial(result_of, tool, compute, given), given.get("out") or usual)
     return ANSWERED
 
 
@@ -263,6 +232,5 @@ def result_of(tool: Tool, compute: Callable[..., Result], given: Given) -> Resul
     """Return what a tool computes; with a bar, if it takes threads and progress."""
     if not tool.takes_time:
         return breakable(compute)
-    count = threads(given["jobs"])
     with progress_bar(tool.name, quiet=given["quiet"]) as progress:
-        return breakable(partial(compute, count, progress))
+        return breakable(partial(compute, given["jobs"] or processors(), progress))

@@ -78,15 +78,11 @@ def breakable(
         return work()
     found: Future[Answer] = Future()
 
-    def note(_: object, error: BaseException | None, __: object) -> bool:
-        if error is not None:
-            found.set_exception(error)
-        return True
-
     def do() -> None:
-        with contextlib.ExitStack() as stack:
-            stack.push(note)
+        try:
             found.set_result(work())
+        except BaseException as error:  # noqa: BLE001 - raised again where the result is taken
+            found.set_exception(error)
 
     thread = threading.Thread(target=contextvars.copy_context().run, args=(do,), daemon=True)
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -30,7 +30,7 @@ class Options:
     result: Annotated[Path, Option("Folder of answers, the .json of one, or a report.", "RESULT", True)]
 
 
-EXACT, ROUNDED, DIFFERENT = "bit for bit", "to rounding", "different"
+DIFFERENT = "different"
 ROUNDING = 1e-9
 """Relative difference up to which numbers are equal to rounding; a change of an input is far larger."""
 
@@ -102,7 +102,7 @@ def agreement(stored: Document, computed: Document) -> Document:
     """Compare two documents in their values; not in their versions, provenance and warnings."""
     found = [*_differing(stored, computed, "", None)]
     beyond = [one for one in found if one["relative"] is None or one["relative"] > ROUNDING]
-    words = DIFFERENT if beyond else ROUNDED if found else EXACT
+    words = DIFFERENT if beyond else "to rounding" if found else "bit for bit"
     shown = beyond or sorted(found, key=itemgetter("relative"), reverse=True)
     return {"agreement": words, "count": len(beyond), "differences": shown[:MOST_SHOWN]}
 

@@ -10,22 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 from separatrix.ground.document import Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.units import NUMBER, printable
-from separatrix.present.blocks import (
-    Facts,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Picture,
-    View,
-    facts,
-)
+from separatrix.present.blocks import Facts, Heading, Level, Note, Page, Picture, View, facts
 from separatrix.present.figure import Figure, Panel
 from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
-from separatrix.verbs.parts.curve_blocks import pocket_friction
 from separatrix.verbs.parts.quantity_text import fill, places_table, show
-from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, power_facts
+from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, pocket_friction, power_facts
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -216,7 +206,7 @@ CAPTION = (
 
 def _figure(answer: Part) -> Figure:
     """Return path and whirl of the centre; offset, forces and in space tilt against time."""
-    from separatrix.verbs.parts import run_panels as panels
+    from separatrix.verbs.parts import run_pictures as panels
 
     rows: list[tuple[Panel, ...]] = [
         (panels.orbit(answer), panels.spectrum(answer)),
@@ -228,7 +218,7 @@ def _figure(answer: Part) -> Figure:
 
 def _view(answer: Part) -> str:
     from separatrix.present.view import page as view
-    from separatrix.verbs.parts.cage_scene import scene
+    from separatrix.verbs.parts.run_pictures import scene
 
     return view(figure_heading(answer), scene(answer))
 

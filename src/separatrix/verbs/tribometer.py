@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity, alone
+from separatrix.present import figure as fig
 from separatrix.present.blocks import (
     Block,
     Cell,
@@ -24,19 +25,6 @@ from separatrix.present.blocks import (
     facts,
     grouped,
     text_column,
-)
-from separatrix.present.figure import (
-    BLUE,
-    GREEN,
-    GREY,
-    SKY,
-    VERMILION,
-    Across,
-    Axis,
-    Band,
-    Figure,
-    Panel,
-    Trace,
 )
 from separatrix.verbs.parts.quantity_text import column, fill, itself, known_columns, quantity
 from separatrix.verbs.verb import Option, Tool
@@ -338,7 +326,7 @@ def file_name(source: str) -> str:
     return "-".join(part for part in plain.split("-") if part).strip(".-")[:100] or "test"
 
 
-def _figure(test: Part) -> Figure:
+def _figure(test: Part) -> fig.Figure:
     """Return friction along a test, the ends of its steady part, the means of spans and of all of it."""
     course, mean, ends = test.course, test.friction, (test.run_in_end, test.steady_end)
     low, high, drift = test.friction_low, test.friction_high, test.drift_rate * (ends[1] - ends[0]) / 2
@@ -346,21 +334,23 @@ def _figure(test: Part) -> Figure:
     name = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}[test.run_in_axis]
     last = max(course.along[-1], test.steady_end)
     look: dict[str, Any] = {"line": "", "marker": "o", "size": 1.2, "name": "means of spans"}
-    panel = Panel(
+    panel = fig.Panel(
         title="Friction along the test",
-        x=Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last),
-        y=Axis(label="friction [-]"),
+        x=fig.Axis(label=f"{name} [{symbol or '-'}]", size=size, low=course.along[0], high=last),
+        y=fig.Axis(label="friction [-]"),
         marks=(
-            *(Across(at=one, colour=GREY, line="--", name="ends of the steady part") for one in ends),
-            Band(x=course.along, low=course.low, high=course.high, colour=SKY, name="range of rows"),
-            Trace(x=course.along, y=course.mean, colour=BLUE, width=0.6),
-            Trace(x=course.span_along, y=course.span_mean, colour=BLUE, **look),
-            Band(x=ends, low=(low, low), high=(high, high), colour=VERMILION, opacity=0.2),
-            Trace(x=ends, y=(mean, mean), colour=VERMILION, name="steady mean, 95 % interval"),
-            Trace(x=ends, y=(mean - drift, mean + drift), colour=GREEN, line="--", width=0.9, name="drift"),
+            *(fig.Across(at=one, colour=fig.GREY, line="--", name="ends of the steady part") for one in ends),
+            fig.Band(x=course.along, low=course.low, high=course.high, colour=fig.SKY, name="range of rows"),
+            fig.Trace(x=course.along, y=course.mean, colour=fig.BLUE, width=0.6),
+            fig.Trace(x=course.span_along, y=course.span_mean, colour=fig.BLUE, **look),
+            fig.Band(x=ends, low=(low, low), high=(high, high), colour=fig.VERMILION, opacity=0.2),
+            fig.Trace(x=ends, y=(mean, mean), colour=fig.VERMILION, name="steady mean, 95 % interval"),
+            fig.Trace(
+                x=ends, y=(mean - drift, mean + drift), colour=fig.GREEN, line="--", width=0.9, name="drift"
+            ),
         ),
     )
-    return Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)
+    return fig.Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)
 
 
 VERB = Tool(

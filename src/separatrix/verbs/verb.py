@@ -19,13 +19,15 @@ class Option(NamedTuple):
     """What a door shows of an option: its line of help, and what stands for its value.
 
     `is_argument` says that it has a place on the command line instead of a name; one without a default must
-    be there. `flag` is its name there if that is not the name of its field.
+    be there. `flag` is its name there if that is not the name of its field. A whole number with a `most`
+    lies between 1 and that.
     """
 
     help: str
     metavar: str = ""
     is_argument: bool = False
     flag: str = ""
+    most: int = 0
 
 
 Shown = dict[str, tuple[Any, Option, Any]]

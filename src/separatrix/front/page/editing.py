@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import tomlkit
 from fastapi import APIRouter
@@ -66,15 +66,10 @@ def draft_path(study: Path) -> Path:
     return study.with_name(f".{study.name}.draft")
 
 
-def has_draft(study: Path) -> bool:
-    """Whether a study has a draft; a link that leads out of its folder is none."""
-    draft = draft_path(study)
-    return draft.is_file() and is_inside(draft, study.parent)
-
-
 def current(study: Path) -> Path:
-    """Return the draft of a study, or the study if it has none."""
-    return draft_path(study) if has_draft(study) else study
+    """Return the draft of a study, or the study if it has none; a link out of its folder is none."""
+    draft = draft_path(study)
+    return draft if draft.is_file() and is_inside(draft, study.parent) else study
 
 
 def version_of(text: str) -> str:
@@ -97,8 +92,7 @@ def keep(study: Path, text: str) -> None:
 
 def check(study: Path, root: Path) -> Checked:
     """Read the draft of a study as every verb would, without files outside `root`."""
-    path = current(study)
-    text, inherited = "", dict[str, Any]()
+    path, text, inherited = current(study), "", dict[str, Any]()
     try:
         text = read_text(path)
         with reading_only_in(root):
@@ -154,11 +148,10 @@ def as_typed(value: object) -> str:
     """Return a value as it is typed into a field: text as it is, lists and tables as TOML has them."""
     if value is None or isinstance(value, str):
         return value or ""
-    table = tomlkit.inline_table()
+    item: Any = tomlkit.inline_table() if isinstance(value, dict) else tomlkit.item(value)
     if isinstance(value, dict):
-        table.update(value)
-        return table.as_string()
-    return str(tomlkit.item(value).as_string())
+        item.update(value)
+    return str(item.as_string())
 
 
 # ---- one key changed
@@ -228,7 +221,7 @@ def routes(page: Page) -> APIRouter:
     """Return the routes of the studies."""
     router = APIRouter(default_response_class=HTMLResponse)
 
-    def editor(name: str, problem: str = "", page_of: str = "editor.html", **more: object) -> Response:
+    def editor(name: str, problem: str = "", page_of: str = "editor.html", **more: Any) -> Response:
         """Return the text and the form beside it."""
         path = page.folder.study(name)
         checked = check(path, page.folder.root)
@@ -240,16 +233,14 @@ def routes(page: Page) -> APIRouter:
             sections=[*form(checked)],
             as_typed=as_typed,
             problem=problem,
-            has_draft=has_draft(path),
+            has_draft=current(path) != path,
             **more,
         )
 
     @router.get("/")
     def studies() -> Response:
-        rows = [
-            (name, page.title(name), page.answered(name), has_draft(page.folder.study(name)))
-            for name in page.folder.studies()
-        ]
+        paths = {name: page.folder.study(name) for name in page.folder.studies()}
+        rows = [(one, page.title(one), page.answered(one), current(at) != at) for one, at in paths.items()]
         return page.html("studies.html", rows=rows, shipped=sorted(shipped_studies()))
 
     @router.post("/new")
@@ -257,8 +248,7 @@ def routes(page: Page) -> APIRouter:
         name = f"{sent.get('name', '').strip().removesuffix('.toml')}.toml"
         path, base = page.folder.new(name), shipped_studies().get(sent.get("base", ""))
         text = template() if base is None else base.read_text(encoding="utf-8")
-        with path.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+        path.write_text(text, encoding="utf-8", newline="\n")
         return RedirectResponse(f"/study/{page.folder.name(path)}", status_code=303)
 
     @router.get("/study/{name:path}")
@@ -268,9 +258,7 @@ def routes(page: Page) -> APIRouter:
             page_of="study.html",
             title=page.title(name),
             verbs=[verb_named(verb) for verb in VERBS],
-            helps=VERBS,
             asked_of=asked_of,
-            kind_of=kind_of,
             answers=page.answered(name),
         )
 
@@ -315,14 +303,9 @@ def routes(page: Page) -> APIRouter:
 
     router.get("/jobs")(page.running)
 
-    @router.post("/jobs/{number:int}/cancel")
-    def cancel(number: int) -> Response:
-        page.jobs.cancel(number)
-        return page.running()
-
-    @router.post("/jobs/{number:int}/resume")
-    def resume(number: int) -> Response:
-        page.jobs.resume(number)
+    @router.post("/jobs/{number:int}/{change}")
+    def change(number: int, change: Literal["cancel", "resume"]) -> Response:
+        getattr(page.jobs, change)(number)
         return page.running()
 
     return router
@@ -342,5 +325,5 @@ def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[st
             case "file", text:
                 question[name] = page.folder.inside(str(PurePosixPath(study).parent / text))
             case kind, text:
-                question[name] = option_value(kind, text, flag_of(name, note))
+                question[name] = option_value(kind, text, flag_of(name, note), note)
     return question

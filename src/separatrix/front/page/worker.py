@@ -27,16 +27,16 @@ from separatrix.ground.files import reading_only_in, staged
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
+    from separatrix.verbs.verb import Verb
     from separatrix.verdict.long_jobs import Progress
 
 WAITING, RUNNING = "waiting", "running"
-INTERRUPTED = ("cancelled", "The answer has what was finished. Resume to go on.")
-
 MOST_WAITING, MOST_KEPT = 20, 50
 _AT_THE_END = 10.0
 """Time that the process has to write what it finished when the page is closed [s]."""
 
 KEPT = "Finished runs are kept: resume to go on."
+INTERRUPTED = "cancelled", KEPT
 LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {KEPT}"
 
 Send = Callable[..., None]
@@ -50,9 +50,7 @@ class Job:
     number: int
     verb: str
     name: str
-    question: Mapping[str, object] = field(default_factory=dict)
-    """Options of the verb, with the model of the cage."""
-
+    question: Mapping[str, object] = field(default_factory=dict)  # options, with the model of the cage
     state: str = WAITING
     share: float | None = None  # of the work that is done; None before that is known
     left: float | None = None  # time that the rest takes [s]; None before a tenth is done
@@ -94,8 +92,8 @@ class Jobs:
                     return one
             if len(active) >= MOST_WAITING:
                 raise InputError("The queue", f"has {MOST_WAITING} jobs", cure="Wait, or cancel some.")
-            for number in [number for number, one in self._jobs.items() if not one.is_active][:-MOST_KEPT]:
-                del self._jobs[number]
+            for one in [one for one in self._jobs.values() if not one.is_active][:-MOST_KEPT]:
+                del self._jobs[one.number]
             self._jobs[job.number] = job
             self._waiting.put(job.number)
             return job
@@ -118,8 +116,7 @@ class Jobs:
 
     def resume(self, number: int) -> None:
         """Ask a question again: it goes on with the runs that are kept."""
-        with self._lock:
-            job = self._jobs.get(number)
+        job = next((one for one in self.all() if one.number == number), None)
         if job is None:
             raise InputError("The job", "is no longer listed", cure="Run the verb again: it resumes too.")
         self.ask(job.verb, job.name, job.question)
@@ -151,7 +148,7 @@ class Jobs:
             except (EOFError, OSError):
                 with self._lock:
                     is_left = self._jobs[number].is_cancelling  # it ended with work that was left behind
-                    state, message = ("cancelled", KEPT) if is_left else ("failed", LOST)
+                    state, message = INTERRUPTED if is_left else ("failed", LOST)
                     self._change(number, state=state, message=message)
                     self._process = None
 
@@ -160,10 +157,7 @@ class Jobs:
         if self._pipe is None or self._process is None or not self._process.is_alive():
             context = multiprocessing.get_context("spawn")
             self._pipe, theirs = context.Pipe()
-            arguments = theirs, self.root
-            self._process = context.Process(
-                target=work, args=arguments, name="separatrix worker", daemon=True
-            )
+            self._process = context.Process(target=work, args=(theirs, self.root), daemon=True)
             self._process.start()
             theirs.close()
         return self._pipe
@@ -236,7 +230,8 @@ def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
 
-    source, place = folder.asked(job.name, job.verb), folder.answers(job.name, job.verb)
+    source = folder.log(job.name) if job.verb == LOG else folder.study(job.name)
+    place = folder.answers(job.name, job.verb)
     question = dict(job.question)
     model = question.pop("model", None)
     with reading_only_in(folder.root):
@@ -264,7 +259,6 @@ def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
     from separatrix.verbs import computed
     from separatrix.verbs.answer_files import document
     from separatrix.verbs.report import report_of_study
-    from separatrix.verbs.verb import Verb
 
     study = read_study(source)
 
@@ -289,10 +283,8 @@ def _reduced(log: Path, place: Path, question: Mapping[str, object], send: Send)
     try:
         found = tool.compute(tool.options(files=(log,), **question), processors(), reporting(send))
     except UnmappedError as error:
-        if not error.place.exists():
-            error.place.write_text(error.draft, encoding="utf-8", newline="\n")
         cure = "Answer the questions in the draft of the column map, on the page of this log."
-        raise error.at(error.path, cure=cure) from None
+        raise error.with_draft_written().at(error.path, cure=cure) from None
     with staged(place) as stage:
         (stage / f"{LOG}.json").write_text(json_text(found) + "\n", encoding="utf-8")
     return "finished", ""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from operator import itemgetter
 from typing import Any
 
 from separatrix.ground.document import Part
@@ -36,10 +37,15 @@ def quantity(name: str) -> Quantity:
     return Quantity(label=key if is_known else f"{section.replace('.', ' ')} {key}", head=key)
 
 
+def ends_of(name: str) -> tuple[str, str]:
+    """Return the names of the ends of the interval of a quantity."""
+    return quantity(name).ends or (f"{name}_low", f"{name}_high")
+
+
 def estimate(part: Part, name: str) -> Number:
     """Return a number of a part, with its interval if it has one."""
     value = getattr(part, name)
-    low, high = quantity(name).ends or (f"{name}_low", f"{name}_high")
+    low, high = ends_of(name)
     if part.get(low) is None:
         return value  # type: ignore[no-any-return]
     return Estimate(value, part.get(low), part.get(high))
@@ -69,6 +75,11 @@ def fact(part: Part, name: str, label: str = "") -> tuple[str, Cell]:
     return begun(label or quantity(name).label), cell(part, name)
 
 
+def head_of(name: str) -> str:
+    """Return what stands above a column of a quantity."""
+    return quantity(name).head or quantity(name).label
+
+
 def column(
     name: str,
     *,
@@ -78,7 +89,6 @@ def column(
     is_short: bool = False,
 ) -> Column:
     """Return the column of a quantity; `of` finds in a row the part that has it; short: without intervals."""
-    known = quantity(name)
 
     def one(row: Any) -> Cell:
         found = cell(of(row), name, mark(row))
@@ -86,7 +96,7 @@ def column(
             return replace(found, value=found.value.value)
         return found
 
-    return Column(head or known.head or known.label, one, meaning=known.meaning)
+    return Column(head or head_of(name), one, meaning=quantity(name).meaning)
 
 
 def known_columns(columns: Iterable[Column], rows: Sequence[Any]) -> tuple[Column, ...]:
@@ -97,11 +107,7 @@ def known_columns(columns: Iterable[Column], rows: Sequence[Any]) -> tuple[Colum
 def place_column(part: Part, name: str, *, head: str = "") -> Column:
     """Return the column of a list of a part, for rows that are places in it."""
     known, unit = quantity(name), part.unit(name)
-    return Column(
-        head or known.head or known.label,
-        lambda place: Cell(getattr(part, name)[place], known, unit),
-        meaning=known.meaning,
-    )
+    return Column(head or head_of(name), lambda place: Cell(getattr(part, name)[place], known, unit))
 
 
 def places_table(
@@ -120,17 +126,15 @@ def all_numbers(name: str, heads: Sequence[str], rows: Iterable[tuple[Any, ...]]
         is_words = isinstance(value, str | bool)
         if is_words or isinstance(value, int | float):
             kinds[key] = is_words
-    ends = {end for key in kinds for end in quantity(key).ends or (f"{key}_low", f"{key}_high")}
-
-    def label(place: int) -> Column:
-        return Column(heads[place], lambda row: Cell(row[place], quantity(heads[place])))
+    ends = {end for key in kinds for end in ends_of(key)}
 
     def held(key: str) -> Column:
         if kinds[key]:
             return text_column(key.replace("_", " "), lambda row: row[-1].get(key))
         return Column(key.replace("_", " "), lambda row: cell(row[-1] if key in row[-1] else None, key))
 
-    columns = (*map(label, range(len(heads))), *(held(key) for key in kinds if key not in ends))
+    labels = (text_column(head, itemgetter(place)) for place, head in enumerate(heads))
+    columns = (*labels, *(held(key) for key in kinds if key not in ends))
     return Table(name, columns, known, level=Level.SHEET)
 
 
