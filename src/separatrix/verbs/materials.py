@@ -32,11 +32,7 @@ from separatrix.verbs.verb import Option, Tool
 if TYPE_CHECKING:
     from separatrix.study.library import Library, Record
 
-EPILOG = (
-    "Beside the shipped records those of materials.toml in the current folder "
-    "are read, as they are for a study there."
-)
-
+EPILOG = "Records of materials.toml in the current folder are read too, as they are for a study there."
 
 Kind = Annotated[str | None, Option("bearing material, cage material, film, fluid, friction table.", "KIND")]
 Libraries = Annotated[tuple[str, ...], Option("A library file to read too; may be repeated.", "PATH")]
@@ -59,19 +55,10 @@ class ShowOptions:
     library: Libraries = ()
 
 
-WORDS = {
-    "poisson_ratio": "Poisson's ratio",
-    "triple_temperature": "triple point",
-    "boiling_temperature": "boiling point",
-}
-"""Properties whose key is not their name."""
-
 POINTS = ("triple_temperature", "boiling_temperature", "critical_temperature", "critical_pressure")
 """Properties that do not depend on temperature."""
 
 PROPERTY, LISTED = Quantity(label="", digits=5), Quantity(label="", digits=4)
-RATIO = Quantity(label="", form=".3f")
-NOTHING = Part({}, {})
 
 
 # --- the records --------------------------------------------------------------------------------
@@ -145,19 +132,19 @@ def _subtitle(answer: Part) -> str:
     return f"Library of separatrix {answer.separatrix_version}"
 
 
-def _first(head: str, key: str, quantity: Quantity = LISTED) -> Column:
+def _first(head: str, key: str) -> Column:
     """Return the first datum of a property of each record, with the number of its data if there are more."""
 
     def cell(record: Part) -> Cell:
         data = _data(record, key)
         mark = f" (first of {len(data)})" if data[1:] else ""
-        return Cell(data[0].value, quantity, data[0].get("unit"), mark) if data else Cell(None)
+        return Cell(data[0].value, LISTED, data[0].get("unit"), mark) if data else Cell(None)
 
     return Column(head, cell)
 
 
 def _data(record: Part, key: str = "elastic_modulus") -> list[Part]:
-    return (record.get("data") or NOTHING).get(key) or []
+    return (record.data.get(key) or []) if "data" in record else []
 
 
 def _sure(record: Part) -> str:
@@ -169,8 +156,8 @@ def _sure(record: Part) -> str:
 COLUMNS = (
     text_column("name", lambda one: one.name),
     text_column("also", lambda one: ", ".join(one.get("aliases") or ())),
-    _first("E", "elastic_modulus", Quantity(label="", form=".3g")),
-    _first("nu", "poisson_ratio", RATIO),
+    _first("E", "elastic_modulus"),
+    _first("nu", "poisson_ratio"),
     _first("boils at", "boiling_temperature"),
     text_column("E at", lambda one: "".join(_span(at.temperature, "K") for at in _data(one)[:1])),
     text_column("confidence", _sure),
@@ -193,17 +180,20 @@ def show_page(answer: Part) -> Page:
 
 
 def _whole(record: Part) -> Iterator[Block]:
-    file, known = record.library, record.get("conditions") or NOTHING
+    file, known = record.library, record.values.get("conditions") or {}
     origin = "shipped" if file.shipped else "of the user"
     keys = ("title", "composition", "substance", "phase", "remark", "source", "confidence")
     yield facts(
         *((_named(key), record.get(key)) for key in keys),
-        *((_named(key), _span(one["value"], one.get("unit"))) for key, one in known.values.items()),
+        *((_named(key), _span(one["value"], one.get("unit"))) for key, one in known.items()),
         ("Also", ", ".join(record.get("aliases") or ())),
         ("Library", f"{file.file}, {origin}, sha256 {file.sha256[:12]}..."),
     )
     if record.kind == "friction table":
-        yield _frictions(record)
+        columns = friction_columns(record.environments, itemgetter(1))
+        caption = "Mean friction, with its standard deviation where it is known."
+        rows = tuple(record.values["friction"].items())
+        yield Table("friction", (text_column("material", itemgetter(0)), *columns), rows, caption)
     else:
         yield Heading("Data", depth=3)
         yield facts(*_properties(record))
@@ -213,18 +203,12 @@ def _named(key: str) -> str:
     return key.replace("_", " ").capitalize()
 
 
-def _frictions(record: Part) -> Table:
-    columns = text_column("material", itemgetter(0)), *friction_columns(record.environments, itemgetter(1))
-    caption = "Mean friction, with its standard deviation where it is known."
-    return Table("friction", columns, tuple(record.values["friction"].items()), caption)
-
-
 def _properties(record: Part) -> Iterator[tuple[str, str]]:
     """Yield every datum with its range, conditions, confidence and source."""
     for key in record.data.values:
         for datum in _data(record, key):
             words = ", ".join(filter(None, _stated(key, datum)))
-            yield WORDS.get(key, key.replace("_", " ")), f"{words}; {datum.confidence}: {datum.source}"
+            yield key.replace("_", " "), f"{words}; {datum.confidence}: {datum.source}"
 
 
 def _stated(key: str, datum: Part) -> Iterator[str | None]:

@@ -92,20 +92,16 @@ def report_of(
         What a refusal of a damaged answer names.
     """
     kept = {verb: found[verb] for verb in ORDER if verb in found}
-    pages = {
-        verb: page_of_document(verb_named(verb), one, f"{where}: {verb}.json") for verb, one in kept.items()
-    }
-    if not pages:
+    if not kept:
         raise InputError(where, "has no answer that a report shows", cure="Name the study instead.")
+    pages = {one: page_of_document(verb_named(one), kept[one], f"{where}: {one}.json") for one in kept}
     main, first = next(iter(pages.items()))
-    with refusing_damage(where):
-        others = [(verb, differing(kept[main], one)) for verb, one in kept.items()]
-    apart = [
-        f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
-        for verb, names in others
-        if names
-    ]
-    caveats = [Note(text, "caveat") for text in (*missing, *apart)]
+    caveats = [Note(text, "caveat") for text in missing]
+    for verb, one in kept.items():
+        with refusing_damage(where):
+            names = differing(kept[main], one)
+        text = f"`{verb}` was computed from other inputs than `{main}`: {names} differ."
+        caveats += [Note(text, "caveat")] if names else []
     bearing = kept.get("bearing")
     drawn = bearing_picture(part_of(kept[main]), part_of(bearing).contacts if bearing else None)
     pages[main] = replace(first, blocks=(*first.blocks[:1], *caveats, *first.blocks[1:], drawn))

@@ -62,8 +62,7 @@ def _again(stored: Document, where: str, jobs: int, progress: Progress | None) -
     if not isinstance(kept, dict) or not isinstance(kept.get("command"), dict):
         raise InputError(where, "has no provenance", cure="Answer its question again.")
     if not isinstance(kept.get("study"), dict):
-        why = printable(kept.get("reason") or "", 200)
-        raise InputError(where, "does not keep its study", cure=why)
+        raise InputError(where, "does not keep its study", cure=printable(kept.get("reason") or "", 200))
     if stored.get("complete") is False:
         raise InputError(where, "was interrupted", cure="Resume it: run its command again.")
     verb, study = verb_named(stored["verb"]), study_again(kept["study"])
@@ -85,16 +84,15 @@ def options_from(verb: Verb, given: object) -> Any:
         raise InputError("question", "must be the options of the verb", shown(given))
     known, found = verb.shown_options(), {}
     for name, value in given.items():
+        option = f"--{printable(str(name), 40)}"
         if name not in known and value is None:  # of an earlier version, and not asked for
             continue
         if name not in known:
-            raise InputError(f"--{printable(str(name), 40)}", f"is not an option of {verb.name}")
+            raise InputError(option, f"is not an option of {verb.name}")
         try:
             found[name] = TypeAdapter(known[name][0]).validate_json(json.dumps(value), strict=True)
         except ValidationError:
-            raise InputError(
-                f"--{name}", "has a value that is not one of this option", shown(value)
-            ) from None
+            raise InputError(option, "has a value that is not one of this option", shown(value)) from None
     return verb.options(**found)
 
 
@@ -161,8 +159,7 @@ def _blocks(one: Part) -> Iterator[Block]:
     yield Note(f"{one.verb} {one.name}: {how}.", "lead")
     caption = f"{one.count - MOST_SHOWN} more." if one.count > MOST_SHOWN else ""
     yield Table(f"{one.verb} differs", COLUMNS, tuple(one.differences or ()), caption)
-    others = [f"{at.name} {at.here} (then {at.stored})" for at in one.versions or ()]
-    if others:
+    if others := [f"{at.name} {at.here} (then {at.stored})" for at in one.versions or ()]:
         yield Note(f"Other versions here: {', '.join(others)}.")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -10,7 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
+from separatrix.ground.errors import InputError
+from separatrix.ground.files import refuse_existing, staged, writable_folder
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity, alone
+from separatrix.ground.units import shown
 from separatrix.present import figure as fig
 from separatrix.present.blocks import (
     Block,
@@ -50,6 +55,9 @@ class Options:
         str | None, Option('Where running-in ends, for instance "200 m" [default: found].', "END")
     ] = None
     join: Annotated[bool, Option("The logs of one folder are strokes or parts of one test.")] = False
+    out: Annotated[
+        Path | None, Option("Friction file to write, such as friction.toml [default: none].", "FILE")
+    ] = None
 
 
 UNITS = {"time": ("s", "1/s"), "distance": ("m", "1/m"), "cycles": ("-", "-")}
@@ -87,20 +95,35 @@ def reduced(
 
     if options.run_in is not None:
         place(options.run_in, "--run-in")
-    return tribometer(
-        options.files,
-        column_map=options.column_map,
-        run_in=options.run_in,
-        join=options.join,
-        complete=complete,
-        jobs=jobs,
-        progress=progress,
-    )
+    how: dict[str, Any] = {name: getattr(options, name) for name in ("column_map", "run_in", "join")}
+    return tribometer(options.files, **how, complete=complete, jobs=jobs, progress=progress)
 
 
 def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -> Document:
-    """Friction of each test, and of each material over all of its tests."""
-    return document(reduced(options, jobs, progress))
+    """Friction of each test, and of each material over all of its tests; writes its friction file, if asked.
+
+    A log whose columns are not known gets a draft of a column map beside it.
+    """
+    from separatrix.friction.friction_file import friction_text
+    from separatrix.friction.logs import UnmappedError
+
+    out = options.out
+    with contextlib.ExitStack() as stack:
+        if out is not None:
+            if out.suffix != ".toml" or os.path.isdir(out):
+                cure = 'Name a file like "friction.toml".'
+                raise InputError("--out", "must name a file that ends in .toml", shown(str(out)), cure)
+            refuse_existing(out)
+            stack.enter_context(writable_folder(out.parent))
+        try:
+            found = reduced(options, jobs, progress, complete=out is not None)
+        except UnmappedError as error:
+            raise error.with_draft_written() from None
+        if out is not None and found.friction_tests is not None:
+            with staged(out.parent) as stage:
+                (stage / out.name).write_text(friction_text(found.friction_tests), encoding="utf-8")
+                refuse_existing(out)  # it may have been made since the first check
+    return document(found, None if out is None else str(out))
 
 
 def document(found: ReducedLogs, written: str | None = None) -> Document:
@@ -362,4 +385,5 @@ VERB = Tool(
     options=Options,
     rows="tests",
     takes_time=True,
+    pictures=lambda options: options.out and options.out.with_name(f"{options.out.stem}-plots"),
 )

@@ -66,7 +66,8 @@ class Tool:
     options and, where it `takes_time`, the number of threads and what hears of its progress; it returns
     its document, and `page` makes the page of that. `rows` is the key of its main list, `folder` the usual
     place of its files, empty for one that writes none; one that `writes_data` writes more than its document
-    and its text. `help` is its line of help if that is not in `TOOLS`.
+    and its text. `help` is its line of help if that is not in `TOOLS`. One with `pictures` writes these
+    alone, into the folder that this returns for its options.
     """
 
     name: str
@@ -79,6 +80,7 @@ class Tool:
     rows: str = ""
     folder: str = ""
     writes_data: bool = True
+    pictures: Callable[[Any], Path | None] | None = None
 
     def shown_options(self) -> Shown:
         """Return what a door shows of each option."""

@@ -17,7 +17,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, Table
 
-from separatrix.front.commands import asked_of, flag_of, option_value
+from separatrix.front.cli import asked_of, flag_of, option_value
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError, grouped
 from separatrix.ground.files import is_inside, reading_only_in
@@ -315,15 +315,12 @@ def asked(page: Page, study: str, verb: str, sent: Mapping[str, str]) -> dict[st
     """Return the options of a verb, and the model, as a form gives them; empty ones have their defaults."""
     question: dict[str, object] = {}
     for name, (hint, note, _) in asked_of(verb_named(verb)).items():
-        match kind_of(hint), sent.get(name, "").strip():
-            case _, "":
-                pass
-            case "flag", _:
-                question[name] = True
-            case "texts", text:
-                question[name] = tuple(line.strip() for line in text.splitlines() if line.strip())
-            case "file", text:
-                question[name] = page.folder.inside(str(PurePosixPath(study).parent / text))
-            case kind, text:
-                question[name] = option_value(kind, text, flag_of(name, note), note)
+        kind, text = kind_of(hint), sent.get(name, "").strip()
+        found: Any = option_value(kind, text or None, flag_of(name, note), note)
+        if kind == "texts":
+            found = tuple(line.strip() for line in text.splitlines() if line.strip())
+        elif kind == "file" and text:
+            found = page.folder.inside(str(PurePosixPath(study).parent / text))
+        if text:
+            question[name] = True if kind == "flag" else found
     return question

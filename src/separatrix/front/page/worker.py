@@ -274,17 +274,17 @@ def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
     return "finished", ""
 
 
-def _reduced(log: Path, place: Path, question: Mapping[str, object], send: Send) -> tuple[str, str]:
+def _reduced(log: Path, place: Path, question: Mapping[str, Any], send: Send) -> tuple[str, str]:
     """Reduce a log and write its answer; one that leaves questions open gets a draft of its column map."""
     from separatrix.friction.logs import UnmappedError
-    from separatrix.verbs import processors, tool_named
+    from separatrix.verbs import processors
+    from separatrix.verbs.tribometer import Options, document, reduced
 
-    tool = tool_named(LOG)
     try:
-        found = tool.compute(tool.options(files=(log,), **question), processors(), reporting(send))
+        found = reduced(Options(files=(log,), **question), processors(), reporting(send))
     except UnmappedError as error:
         cure = "Answer the questions in the draft of the column map, on the page of this log."
         raise error.with_draft_written().at(error.path, cure=cure) from None
     with staged(place) as stage:
-        (stage / f"{LOG}.json").write_text(json_text(found) + "\n", encoding="utf-8")
+        (stage / f"{LOG}.json").write_text(json_text(document(found)) + "\n", encoding="utf-8")
     return "finished", ""
