@@ -10,9 +10,17 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack
 
 from separatrix.ground.document import Document
 from separatrix.ground.units import MetrePerSecond, Ratio
+from separatrix.present.blocks import Level, Page
+from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.study.study import Study
 from separatrix.verbs import asked_study, computed, tool_named, verb_named
+from separatrix.verbs import tribometer as logs
+from separatrix.verbs.answer_files import document, notes_of, page_of_document
+from separatrix.verbs.compare import compared
+from separatrix.verbs.materials import LIST, SHOW
+from separatrix.verbs.report import Report, report_of_study
+from separatrix.verbs.saved_answers import read_answer, read_answers, refusing_damage
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
 
@@ -23,10 +31,8 @@ if TYPE_CHECKING:
 
     from separatrix.chain.contacts import BearingState
     from separatrix.friction.logs.column_map import ColumnMap
-    from separatrix.present.blocks import Page
     from separatrix.verbs import cage_answers as of_cage
     from separatrix.verbs import chain_answers as of_chain
-    from separatrix.verbs.report import Report
     from separatrix.verbs.verb import Tool, Verb
     from separatrix.verdict.swept_cases import Sweep
 
@@ -63,15 +69,10 @@ class ToolAnswer(Generic[Record]):
 
     def page(self) -> Page:
         """Page of blocks: what text, report, workbook and local page show."""
-        from separatrix.verbs.answer_files import page_of_document
-
         return page_of_document(self.asked, self.document())
 
     def summary(self, *, full: bool = False) -> str:
         """Text, as the command line prints it; `full` is all of it where that is longer than a screen."""
-        from separatrix.present.blocks import Level
-        from separatrix.present.text import text
-
         return text(self.page(), Level.FULL if full else Level.BRIEF)
 
     def _repr_html_(self) -> str:
@@ -124,8 +125,6 @@ class Answer(ToolAnswer[Record]):
     @property
     def notes(self) -> tuple[str, ...]:
         """Where a model leaves its range, a sentence each."""
-        from separatrix.verbs.answer_files import notes_of
-
         return notes_of(self.record, self.study)
 
     def to_xarray(self) -> xr.Dataset:
@@ -143,8 +142,6 @@ class Answer(ToolAnswer[Record]):
 
 def _answer(name: str, study: Asked, options: dict[str, Any] | None = None, **how: Any) -> Answer[Any]:
     """Answer of a verb; `how` is as for `computed`."""
-    from separatrix.verbs.answer_files import document
-
     verb = verb_named(name)
     asked = asked_study(verb, study)
     found = computed(verb, asked, verb.options(**(options or {})), **how)
@@ -275,9 +272,6 @@ def compare(first: Answer[Any] | str | Path, second: Answer[Any] | str | Path) -
     InputError
         One of them is not an answer, or they are of different verbs.
     """
-    from separatrix.verbs.compare import compared
-    from separatrix.verbs.saved_answers import read_answers
-
     sides = [
         {one.verb: one.document()} if isinstance(one, Answer) else read_answers(Path(one))
         for one in (first, second)
@@ -299,7 +293,6 @@ def load(path: str | Path) -> xr.Dataset:
         The file is not an answer of separatrix, or is damaged.
     """
     from separatrix.present.dataset import dataset
-    from separatrix.verbs.saved_answers import read_answer, refusing_damage
 
     with refusing_damage(str(path)):
         return dataset(read_answer(Path(path)))
@@ -339,13 +332,11 @@ def tribometer(
     InputError
         A file is wrong: the first one, and how many others are.
     """
-    from separatrix.verbs.tribometer import Options, document, reduced
-
-    files = (paths,) if isinstance(paths, str | Path) else tuple(paths)
     given: Any = Path(column_map) if isinstance(column_map, str) else column_map
-    options = Options(files=tuple(Path(one) for one in files), column_map=given, run_in=run_in, join=join)
-    found = reduced(options, jobs, progress, complete=complete)
-    return _of_tool(tool_named("tribometer"), document(found), found)
+    asked = tuple(Path(one) for one in ((paths,) if isinstance(paths, str | Path) else paths))
+    options = logs.Options(files=asked, column_map=given, run_in=run_in, join=join)
+    found = logs.reduced(options, jobs, progress, complete=complete)
+    return _of_tool(logs.VERB, logs.document(found), found)
 
 
 def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) -> ToolAnswer[Any]:
@@ -363,16 +354,12 @@ def materials(kind: str | None = None, *, libraries: Sequence[str | Path] = ()) 
     InputError
         A file is wrong or not there, or the kind is not one of these.
     """
-    from separatrix.verbs.materials import LIST
-
     options = LIST.options(kind=kind, library=tuple(str(one) for one in libraries))
     return _of_tool(LIST, LIST.compute(options))
 
 
 def material(name: str, *, kind: str | None = None, libraries: Sequence[str | Path] = ()) -> ToolAnswer[Any]:
     """Records of a name, whole."""
-    from separatrix.verbs.materials import SHOW
-
     options = SHOW.options(name=name, kind=kind, library=tuple(str(one) for one in libraries))
     return _of_tool(SHOW, SHOW.compute(options))
 
@@ -382,8 +369,6 @@ def report(study: Asked, **how: Unpack[Runs]) -> Report:
 
     Bearing, traction, restitution and rank (without [ranking]: stability) are computed for it.
     """
-    from separatrix.verbs.report import report_of_study
-
     asked = study if isinstance(study, Study) else read_study(study)
     found = report_of_study(asked, lambda verb: _answer(verb.name, asked, **how).document())
     if found is None:  # `_answer` has raised it with what was finished

@@ -44,7 +44,6 @@ separatrix rank cryogenic-turbopump
 
 ANSWERED, FAULT, WRONG_INPUT = 0, 1, 2
 
-
 MODEL = "The best estimate or the paper's method [default: that of the study]."
 OUT = "named after the study; none with --json, or of check"
 CLUSTER = "Make the runs on the Dask scheduler at this address, or in N processes here: local:N."
@@ -84,23 +83,18 @@ def option_value(kind: str, text: Any, option: str, note: Option) -> Any:
     if text is None:
         return None
     if kind == "number":
-        return whole_number(text, option, note.most)
+        try:
+            found = int(text)
+        except ValueError:
+            cure = "Write it in digits, or leave it out."
+            raise InputError(option, "must be a whole number", shown(text), cure) from None
+        if note.most and not 1 <= found <= note.most:
+            raise InputError(option, f"must lie between 1 and {note.most}", str(found), "Leave it out.")
+        return found
     if (kind == "file" or note.metavar in NAMED) and (not text.strip() or "\0" in text):
         cure = "The current one is ." if note.metavar == "DIR" else ""
         raise InputError(option, f"needs the name of {NAMED.get(note.metavar, 'a file')}", '""', cure)
     return Path(text) if kind == "file" else text
-
-
-def whole_number(text: str, option: str, most: int) -> int:
-    """Return the whole number that an option gives."""
-    try:
-        found = int(text)
-    except ValueError:
-        cure = "Write it in digits, or leave it out."
-        raise InputError(option, "must be a whole number", shown(text), cure) from None
-    if most and not 1 <= found <= most:
-        raise InputError(option, f"must lie between 1 and {most}", str(found), "Or leave it out.")
-    return found
 
 
 def flag_of(name: str, note: Option) -> str:
@@ -183,13 +177,6 @@ def answered(
     return made
 
 
-def verb_command(verb: Verb, about: str) -> click.Command:
-    """Return the command of a verb."""
-    after = "full", "json", "out", "quiet", "jobs", *("cluster",) * verb.keeps_runs
-    takes = beside("study") | asked_of(verb) | beside(*after)
-    return command(verb.name, partial(run, verb), takes, about, verb.epilog)
-
-
 def run(verb: Verb, given: Given) -> int:
     """Answer one question to a study and return the exit status."""
     is_kept = verb.keeps_runs and not (given["json"] and given["out"] is None)
@@ -228,23 +215,19 @@ def tool_command(tool: Tool, about: str) -> click.Command:
 
 
 def run_tool(tool: Tool, given: Given) -> int:
-    """Answer a tool's question and return the exit status."""
+    """Answer a tool's question and return the exit status; with a bar, if it takes time."""
     usual = Path(tool.folder) if tool.folder and not given["json"] else None
     with interruptible("no answer was given."):
         options = options_of(tool, given)
         to = tool.pictures(options) if tool.pictures else given.get("out") or usual
-        compute = partial(result_of, tool, options, given)
+
+        def compute() -> Document:
+            with progress_bar(tool.name, quiet=given.get("quiet", False) or not tool.takes_time) as progress:
+                how = (given["jobs"] or processors(), progress) if tool.takes_time else ()
+                return breakable(partial(tool.compute, options, *how))
+
         answered(tool, given, compute, to, only_pictures=tool.pictures is not None)
     return ANSWERED
-
-
-def result_of(tool: Tool, options: Any, given: Given) -> Document:
-    """Return what a tool computes; with a bar, if it takes threads and progress."""
-    compute: Callable[..., Document] = partial(tool.compute, options)
-    if not tool.takes_time:
-        return breakable(compute)
-    with progress_bar(tool.name, quiet=given["quiet"]) as progress:
-        return breakable(partial(compute, given["jobs"] or processors(), progress))
 
 
 # The commands on files.
@@ -270,9 +253,6 @@ def _new(given: Given) -> int:
     elif not given["quiet"]:
         answer(f"{path} is written. Fill it in, then: separatrix check {path}\n")
     return ANSWERED
-
-
-# The local page.
 
 
 PAGE_EPILOG = (
@@ -369,9 +349,6 @@ def _report(given: Given) -> int:
     return ANSWERED
 
 
-# The commands by name.
-
-
 COMMANDS = {
     "new": "Write a commented study file to fill in.",
     **VERBS,
@@ -387,7 +364,10 @@ def _command(name: str) -> click.Command:
     """Return a command; only its own module is loaded."""
     about = COMMANDS[name]
     if name in VERBS:
-        return verb_command(verb_named(name), about)
+        verb = verb_named(name)
+        after = beside("full", "json", "out", "quiet", "jobs", *["cluster"] * verb.keeps_runs)
+        takes = beside("study") | asked_of(verb) | after
+        return command(name, partial(run, verb), takes, about, verb.epilog)
     match name:
         case "new":
             return command(name, _new, shown_options(NewOptions) | beside("json", "quiet"), about)
@@ -425,10 +405,8 @@ def _start(context: click.Context, /, *, version: bool) -> None:
         answer(f"separatrix {__version__}\n")
         context.exit()
     if context.invoked_subcommand is None:
-        choices = ", ".join(COMMANDS)
-        raise InputError(
-            "The command", f"is missing; choose one of {choices}", cure='Try "separatrix --help".'
-        )
+        rule = f"is missing; choose one of {', '.join(COMMANDS)}"
+        raise InputError("The command", rule, cure='Try "separatrix --help".')
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:

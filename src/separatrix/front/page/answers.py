@@ -7,27 +7,25 @@ from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import quote
 
-from fastapi import APIRouter, Request
-from fastapi.concurrency import run_in_threadpool
+from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, Response
 
 from separatrix.friction.friction_file import UNITS
 from separatrix.friction.logs.column_map import column_map_of
 from separatrix.front.page.editing import Fault, faults_in
-from separatrix.front.page.folder import LOG, LOGS, MAP, Form, Page
+from separatrix.front.page.folder import LOG, LOGS, MAP, Body, Form, Page
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import reading_only_in
 from separatrix.ground.toml import read_text
 from separatrix.ground.units import shown
 from separatrix.present import blocks, html
 from separatrix.study.reading import read_study
-from separatrix.verbs import tool_named, verb_named
+from separatrix.verbs import VERBS, tool_named, verb_named
 from separatrix.verbs.answer_files import page_of_document
 from separatrix.verbs.map import at_point
 from separatrix.verbs.parts.answer_page import is_chosen
 from separatrix.verbs.report import asked_by, differing
 from separatrix.verbs.saved_answers import AGAIN, refusing_damage
-from separatrix.verbs.verb import Tool
 from separatrix.verdict.ledger import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
@@ -123,21 +121,18 @@ def routes_of_logs(page: Page) -> APIRouter:
             faults = faults_in(error, path.name, path.name)
         return {"name": name, "text": text, "faults": faults}
 
-    def keep(name: str, content: bytes) -> None:
+    @router.put("/logs/{name}")
+    def drop(name: str, content: Body) -> Response:
         """Keep a log that was dropped; one of the same name and content is there already."""
         if name not in page.folder.logs() or page.folder.log(name).read_bytes() != content:
             path = page.folder.new(name, LOGS)
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(content)
+        return page.html("log_list.html", names=page.folder.logs())
 
     @router.get("/logs")
     def logs() -> Response:
         return page.html("logs.html", names=page.folder.logs())
-
-    @router.put("/logs/{name}")
-    async def drop(name: str, request: Request) -> Response:
-        await run_in_threadpool(keep, name, await request.body())
-        return page.html("log_list.html", names=page.folder.logs())
 
     @router.get("/log/{name}")
     def log(name: str) -> Response:
@@ -163,14 +158,10 @@ def routes_of_logs(page: Page) -> APIRouter:
     return router
 
 
-def _asked(verb: str) -> Tool:
-    return tool_named(verb) if verb == LOG else verb_named(verb)
-
-
 def file_of(page: Page, verb: str, name: str) -> Path:
     """Return the file of a saved answer; one that is not there is refused."""
-    path = page.folder.answers(name, verb) / f"{_asked(verb).name}.json"
-    if not page.folder.has(path):
+    path = page.folder.answers(name, verb) / f"{verb}.json"
+    if verb not in (*VERBS, LOG) or not page.folder.has(path):
         raise InputError(f"{name}: {verb}", "has no answer yet", cure="Run the verb.")
     return path
 
@@ -181,7 +172,8 @@ def page_of(page: Page, verb: str, name: str) -> blocks.Page:
     where, found = page.folder.name(file), page.loaded(file)
     if not found:
         raise InputError(where, "is not a document of an answer", cure=AGAIN)
-    return page_of_document(_asked(verb), found, where)
+    asked = tool_named(LOG) if verb == LOG else verb_named(verb)
+    return page_of_document(asked, found, where)
 
 
 def body_of(page: Page, verb: str, name: str) -> dict[str, Any]:

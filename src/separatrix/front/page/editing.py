@@ -20,7 +20,7 @@ from tomlkit.items import Array, Table
 from separatrix.front.cli import asked_of, flag_of, option_value
 from separatrix.front.page.folder import REPORT, Form, Page
 from separatrix.ground.errors import InputError, grouped
-from separatrix.ground.files import is_inside, reading_only_in
+from separatrix.ground.files import is_inside, reading_only_in, write_new
 from separatrix.ground.reader import document_of
 from separatrix.ground.toml import MOST_BYTES, read_text
 from separatrix.ground.units import NUMBER, shown
@@ -225,17 +225,9 @@ def routes(page: Page) -> APIRouter:
         """Return the text and the form beside it."""
         path = page.folder.study(name)
         checked = check(path, page.folder.root)
-        return page.html(
-            page_of,
-            name=name,
-            checked=checked,
-            version=version_of(checked.text),
-            sections=[*form(checked)],
-            as_typed=as_typed,
-            problem=problem,
-            has_draft=current(path) != path,
-            **more,
-        )
+        more |= {"checked": checked, "version": version_of(checked.text), "sections": [*form(checked)]}
+        more |= {"as_typed": as_typed, "problem": problem, "has_draft": current(path) != path}
+        return page.html(page_of, name=name, **more)
 
     @router.get("/")
     def studies() -> Response:
@@ -248,7 +240,7 @@ def routes(page: Page) -> APIRouter:
         name = f"{sent.get('name', '').strip().removesuffix('.toml')}.toml"
         path, base = page.folder.new(name), shipped_studies().get(sent.get("base", ""))
         text = template() if base is None else base.read_text(encoding="utf-8")
-        path.write_text(text, encoding="utf-8", newline="\n")
+        write_new(path, text.encode())
         return RedirectResponse(f"/study/{page.folder.name(path)}", status_code=303)
 
     @router.get("/study/{name:path}")
@@ -269,12 +261,9 @@ def routes(page: Page) -> APIRouter:
         if sent.get("version") != version_of(text):
             return editor(name, CHANGED)
         try:
-            if "text" in sent:
-                text = sent["text"].replace("\r\n", "\n")
-            else:
-                section, _, key = sent.get("field", "").partition(".")
-                text = edited(text, section, key, sent.get("value", ""))
-            keep(path, text)
+            section, _, key = sent.get("field", "").partition(".")
+            text = sent["text"] if "text" in sent else edited(text, section, key, sent.get("value", ""))
+            keep(path, text.replace("\r\n", "\n"))
         except InputError as error:
             return editor(name, str(error))
         return editor(name)
@@ -295,7 +284,7 @@ def routes(page: Page) -> APIRouter:
         verb = sent.get("verb", "")
         question = {} if verb == REPORT else asked(page, name, verb, sent)
         path = page.folder.study(name)
-        if path.suffix == ".toml" and (faults := check(path, page.folder.root).faults):
+        if faults := check(path, page.folder.root).faults:
             raise InputError(path.name, f"is not run: {faults[0].message}")
         current(path).replace(path)
         page.jobs.ask(verb, name, question)

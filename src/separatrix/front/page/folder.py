@@ -177,9 +177,17 @@ def address(job: Job) -> str:
 TEMPLATES.globals |= {"version": __version__, "address": address, "helps": VERBS, "kind_of": kind_of}
 
 
-async def _form_of(request: Request) -> dict[str, str]:
+async def _body_of(request: Request) -> bytes:
+    return await request.body()
+
+
+Body = Annotated[bytes, Depends(_body_of)]
+"""What was sent."""
+
+
+def _form_of(body: Body) -> dict[str, str]:
     """Return the fields of a form that was sent, the last of each name."""
-    sent = parse_qs((await request.body()).decode("utf-8", "replace"), keep_blank_values=True)
+    sent = parse_qs(body.decode("utf-8", "replace"), keep_blank_values=True)
     return {name: values[-1] for name, values in sent.items()}
 
 

@@ -27,6 +27,7 @@ from separatrix.ground.files import reading_only_in, staged
 
 if TYPE_CHECKING:
     from separatrix.ground.document import Document
+    from separatrix.verbs import Computed
     from separatrix.verbs.verb import Verb
     from separatrix.verdict.long_jobs import Progress
 
@@ -226,52 +227,41 @@ def _ended(job: Job, folder: Folder, pipe: Connection) -> tuple[str, str]:
 
 
 def answered(job: Job, folder: Folder, send: Send) -> tuple[str, str]:
-    """Compute and write one answer, or a report; return how it ended, and a message."""
+    """Compute and write one answer, or a report with what it lacks; return how it ended, and a message."""
     from separatrix.verbs import asked_study, computed, verb_named
     from separatrix.verbs.answer_files import document, save_answer
+    from separatrix.verbs.report import report_of_study
 
     source = folder.log(job.name) if job.verb == LOG else folder.study(job.name)
-    place = folder.answers(job.name, job.verb)
-    question = dict(job.question)
-    model = question.pop("model", None)
+    place, question = folder.answers(job.name, job.verb), dict(job.question)
     with reading_only_in(folder.root):
         for path in (place, *(place.iterdir() if place.is_dir() else ())):
             folder.refuse_link_out(path)
         place.mkdir(parents=True, exist_ok=True)
         if job.verb == LOG:
             return _reduced(source, place, question, send)
+        verb, model = verb_named("check" if job.verb == REPORT else job.verb), question.pop("model", None)
+        study = asked_study(verb, source, str(model) if model else None)
+
+        def compute(verb: Verb, options: Any = None) -> Computed:
+            return computed(verb, study, options, folder=place, progress=reporting(send))
+
+        def part(verb: Verb) -> Document:
+            send(message=f"Computing {verb.name} for the report.")
+            return document(verb, compute(verb))
+
         if job.verb == REPORT:
-            return _reported(source, place, send)
-        verb = verb_named(job.verb)
-        study, options = asked_study(verb, source, str(model) if model else None), verb.options(**question)
-        found = computed(verb, study, options, folder=place, progress=reporting(send))
+            report = report_of_study(study, part, place, pictures=True)
+            if report is None:
+                return INTERRUPTED
+            send(message="Writing the report.")
+            report.write(place, with_pdf=find_spec("typst") is not None)
+            return "finished", ""
+        found = compute(verb, verb.options(**question))
         send(message="Drawing the figures and writing the files.")
         save_answer(place, verb, document(verb, found))
-        if not found.is_complete:
-            return INTERRUPTED
         taken = f"{found.runs_taken} runs were taken from an earlier job." if found.runs_taken else ""
-        return "finished", taken
-
-
-def _reported(source: Path, place: Path, send: Send) -> tuple[str, str]:
-    """Write the report of a study; answers that it lacks are computed first, as the command does."""
-    from separatrix.study.reading import read_study
-    from separatrix.verbs import computed
-    from separatrix.verbs.answer_files import document
-    from separatrix.verbs.report import report_of_study
-
-    study = read_study(source)
-
-    def compute(verb: Verb) -> Document:
-        send(message=f"Computing {verb.name} for the report.")
-        return document(verb, computed(verb, study, folder=place, progress=reporting(send)))
-
-    report = report_of_study(study, compute, place, pictures=True)
-    if report is None:
-        return INTERRUPTED
-    send(message="Writing the report.")
-    report.write(place, with_pdf=find_spec("typst") is not None)
-    return "finished", ""
+        return ("finished", taken) if found.is_complete else INTERRUPTED
 
 
 def _reduced(log: Path, place: Path, question: Mapping[str, Any], send: Send) -> tuple[str, str]:
