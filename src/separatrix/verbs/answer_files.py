@@ -23,9 +23,8 @@ def document(verb: Verb, found: Computed) -> Document:
     The resolved inputs of the study go into it with their sources; the notes of study and answer are its
     warnings.
     """
-    from separatrix import __version__
     from separatrix.ground.plain_data import Group, plain, shape, units_of
-    from separatrix.study.sources import provenance_of, resolved
+    from separatrix.study.sources import provenance_of
     from separatrix.verbs import chain_answers  # noqa: F401 - with the shapes of its records
 
     if verb.moves_a_cage:
@@ -43,17 +42,25 @@ def document(verb: Verb, found: Computed) -> Document:
             "a bearing, or this is a fault of separatrix."
         )
     return {
-        "separatrix_version": __version__,
         "verb": verb.name,
         "name": study.name,
         "title": study.title,
-        "study": plain(resolved(study), "study"),
-        "seed": study.stability.seed,
+        **asked_by(study),
         **body,
         "units": units_of(node),
         "warnings": warnings,
         "provenance": plain(provenance_of(study, verb.name, found.question), "provenance"),
     }
+
+
+def asked_by(study: Study) -> Document:
+    """Return what each answer to a study has of the study, with this version."""
+    from separatrix import __version__
+    from separatrix.ground.plain_data import plain
+    from separatrix.study.sources import resolved
+
+    known = {"separatrix_version": __version__, "seed": study.stability.seed}
+    return known | {"study": plain(resolved(study), "study")}
 
 
 def notes_of(answer: object, asked: Study) -> tuple[str, ...]:

@@ -55,6 +55,13 @@ class ShowOptions:
     library: Libraries = ()
 
 
+WORDS = {
+    "poisson_ratio": "Poisson's ratio",
+    "triple_temperature": "triple point",
+    "boiling_temperature": "boiling point",
+}
+"""Properties whose key is not their name."""
+
 POINTS = ("triple_temperature", "boiling_temperature", "critical_temperature", "critical_pressure")
 """Properties that do not depend on temperature."""
 
@@ -208,7 +215,7 @@ def _properties(record: Part) -> Iterator[tuple[str, str]]:
     for key in record.data.values:
         for datum in _data(record, key):
             words = ", ".join(filter(None, _stated(key, datum)))
-            yield key.replace("_", " "), f"{words}; {datum.confidence}: {datum.source}"
+            yield WORDS.get(key, key.replace("_", " ")), f"{words}; {datum.confidence}: {datum.source}"
 
 
 def _stated(key: str, datum: Part) -> Iterator[str | None]:

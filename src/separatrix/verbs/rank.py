@@ -79,8 +79,7 @@ def page(answer: Part) -> Page:
         Heading(q.fill(answer, f"Evidence: {answer.runs} runs of {{duration}} from each of {kicks}")),
         Table(f"{own.name}, evidence", evidence(known), tuple(known)),
         Note(EVIDENCE, "legend", LONG),
-        *undecided(known),
-        reasons(rows),
+        *reasons(rows),
         *effects(answer, rows),
         Heading("Basis of the verdicts", LONG),
         facts(*basis_facts(answer), *holds_for(answer), level=LONG),
@@ -120,7 +119,7 @@ def verdicts(name: str, rows: Sequence[Part], level: Level = Level.ALWAYS) -> li
     )
     table = Table(name, columns, tuple(rows), level=level)
     legend = [Note(explained(columns), "legend", LONG)] if level == Level.ALWAYS else []
-    return [Heading(q.begun(name), LONG), table, *legend, *footnotes(rows, level)]
+    return [Heading(q.begun(name), LONG), table, *legend, *of.footnotes(rows, level)]
 
 
 def ranks_of(rows: Sequence[Part]) -> dict[str, str]:
@@ -143,7 +142,7 @@ def by_paper(answer: Part, known: Sequence[Part], apart: Sequence[str]) -> list[
         f" It differs for {', '.join(apart)}: a ball that may spin yields to a slow push by "
         "{race_damping_free_spin}, and takes more energy from an impact.",
     )
-    each = by_verdict(grouped((row.paper_verdict, row.name) for row in rows))
+    each = by_verdict((row.paper_verdict, row.name) for row in rows)
     caption = f"{q.begun(model)}.{why if apart else ''}"
     return [
         *([Note(f"The paper's method ({model}): {each}.{why}", level=BRIEF)] if apart else []),
@@ -166,23 +165,15 @@ def evidence(rows: Sequence[Part]) -> tuple[Column, ...]:
 
 def _runs(head: str, *keys: str) -> Column:
     """Return the column of runs that end in one of some ways, from each initial disturbance."""
-
-    def counts(row: Part) -> str:
-        return " ".join(str(sum(getattr(count, key) for key in keys)) for count in row.by_kick)
-
-    return text_column(head, counts)
+    return text_column(head, lambda row: " ".join(str(sum(map(count.get, keys))) for count in row.by_kick))
 
 
-def reasons(rows: Sequence[Part]) -> Block:
-    """Return the reasons; candidates of the same friction share theirs."""
+def reasons(rows: Sequence[Part]) -> list[Block]:
+    """Return the reasons, on a screen of those undecided; candidates of the same friction share theirs."""
+    shared = grouped((row.reason, row.name) for row in rows if row.get("verdict") == "UNDECIDED")
+    notes = [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in shared.items()]
     each = grouped((row.reason, row.name) for row in rows)
-    return facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)
-
-
-def undecided(rows: Sequence[Part]) -> list[Block]:
-    """Return why candidates are undecided, for a screen."""
-    each = grouped((row.reason, row.name) for row in rows if row.verdict == "UNDECIDED")
-    return [Note(f"{', '.join(who)}: {reason}", level=BRIEF) for reason, who in each.items()]
+    return [*notes, facts(*((", ".join(who), reason) for reason, who in each.items()), level=LONG)]
 
 
 def effects(answer: Part, rows: Sequence[Part]) -> list[Block]:
@@ -197,28 +188,14 @@ def effects(answer: Part, rows: Sequence[Part]) -> list[Block]:
     return [Heading(title, LONG, 3), Table("effects", columns, known, level=LONG)]
 
 
-def footnotes(rows: Sequence[Part], level: Level) -> list[Note]:
-    """Return in what respect frictions are extrapolated; on a screen, the first one."""
-    measured = [row for row in rows if "friction" in row]
-    who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
-    each = [
-        one if len(names) == len(measured) else f"{one} ({', '.join(names)})" for one, names in who.items()
-    ]
-    words = f"{MARK} extrapolated beyond the tests: {{}}."
-    brief = each[0] + "; more: `--full`" * bool(each[1:]) if each else ""
-    notes = (Note(words.format("; ".join(each)), "legend", LONG), Note(words.format(brief), "legend", BRIEF))
-    return [one for one in notes if each and one.level & level]
-
-
 def over_inputs(answer: Part, rows: Sequence[Part]) -> list[Block]:
     """Return the verdicts with the uncertain inputs drawn; none if the study states none."""
     known = [row for row in rows if row.get("uncertain_verdict") is not None]
-    each = grouped(
-        (row.uncertain_verdict, f"{row.name} {q.show(row, 'uncertain_probability_stable')}") for row in known
-    )
+    chance = "uncertain_probability_stable"
+    each = by_verdict((row.uncertain_verdict, f"{row.name} {q.show(row, chance)}") for row in known)
     names = ", ".join(one["name"] for one in answer.values["study"]["uncertain_inputs"])
     words = f"Uncertain inputs ({names}) are at their means above; drawn for each run, P(stable) is: "
-    return [Note(f"{words}{by_verdict(each)}.")] if known else []
+    return [Note(f"{words}{each}.")] if known else []
 
 
 def holds_for(answer: Part) -> list[tuple[str, Any]]:
@@ -303,7 +280,7 @@ def overview(answer: Part, own: Part) -> fig.Figure:
 
     def trace(rows: Sequence[Part], shift: float, where: str, **look: Any) -> fig.Trace:
         known = [row for row in rows if f"{name}_low" in row]
-        if not shift:  # the bearing's own environment
+        if "ends_along" in look:
             look |= {end: [row.get(f"{name}_{end}") for row in known] for end in ("low", "high")}
         return fig.Trace(
             x=[row.get(name) or row.get(f"{name}_low") for row in known],

@@ -11,7 +11,7 @@ from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
-from separatrix.verbs.answer_files import page_of_document
+from separatrix.verbs.answer_files import asked_by, page_of_document, save_answer
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
 from separatrix.verbs.saved_answers import inputs_of_study, read_answer, refusing_damage
 
@@ -119,16 +119,6 @@ def differing(one: Document, other: Document) -> str:
     return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if names[4:] else "")
 
 
-def asked_by(study: Study) -> Document:
-    """Return what each answer to a study has of the study, with this version."""
-    from separatrix import __version__
-    from separatrix.ground.plain_data import plain
-    from separatrix.study.sources import resolved
-
-    known = {"study": plain(resolved(study), "study"), "seed": study.stability.seed}
-    return known | {"separatrix_version": __version__}
-
-
 def report_of_study(
     study: Study,
     compute: Callable[[Verb], Document],
@@ -142,7 +132,6 @@ def report_of_study(
     and written there, their `pictures` if that is asked for.
     """
     from separatrix.study.reading import require
-    from separatrix.verbs.answer_files import save_answer
 
     asked, found, missing = asked_by(study), dict[str, Document](), list[str]()
     for path in [folder / f"{verb}.json" for verb in ORDER] if folder is not None else []:

@@ -19,22 +19,10 @@ from separatrix.present.blocks import (
     grouped,
     text_column,
 )
+from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import page_of
-from separatrix.verbs.parts.quantity_text import (
-    all_numbers,
-    column,
-    fill,
-    number_of,
-    show,
-)
-from separatrix.verbs.parts.verdict_blocks import (
-    MARK,
-    by_verdict,
-    evidence_column,
-    judged,
-    motion_column,
-    verdict,
-)
+from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, number_of, show
+from separatrix.verbs.parts.verdict_blocks import MARK, each_verdict, evidence_column, judged, verdict
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
@@ -59,13 +47,13 @@ class Options:
 def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:
     """Draw bearings from the uncertain inputs and judge the cages of every candidate."""
     from separatrix.verbs.cage_answers import SensitivityAnswer
-    from separatrix.verbs.parts import cage_of_study as of
+    from separatrix.verbs.parts import cage_of_study as asked
     from separatrix.verdict.uncertain_study import uncertain_study
 
-    of.refuse_samples(options.samples)
-    solution = of.reference(study)
-    of.drawn_bearings(solution)  # refused before anything is timed
-    return of.answer_of_cage(
+    asked.refuse_samples(options.samples)
+    solution = asked.reference(study)
+    asked.drawn_bearings(solution)  # refused before anything is timed
+    return asked.answer_of_cage(
         SensitivityAnswer,
         "uncertain",
         solution,
@@ -93,14 +81,6 @@ def page(answer: Part) -> Page:
     )
 
 
-# Verdicts.
-
-
-def each_verdict(rows: Sequence[Part]) -> str:
-    """Return each verdict with who has it."""
-    return by_verdict(grouped((verdict(row), row.name) for row in rows))
-
-
 def verdicts(rows: Sequence[Part]) -> list[Block]:
     """Return friction, P(stable), verdict and motion of each candidate."""
     runs = "from the worst initial disturbance; fewer where the verdict was plain before"
@@ -109,7 +89,7 @@ def verdicts(rows: Sequence[Part]) -> list[Block]:
         column("friction", head="friction of a new cage", mark=friction_mark),
         column("probability_stable", of=judged),
         text_column("verdict", verdict),
-        motion_column(),
+        of.motion_column(),
         *map(evidence_column, ("largest_offset", "largest_contact_force")),
         replace(column("runs", of=judged), meaning=runs),
     )
@@ -123,16 +103,14 @@ def friction_mark(row: Part) -> str:
 
 def footnotes(answer: Part, own: Sequence[Part]) -> Iterator[Note]:
     """Yield the restitution factors in the study's environment, and what the marks beside frictions mean."""
-    etas = grouped((show(row, "restitution_factor"), row.name) for row in own if "restitution_factor" in row)
-    if etas:
-        each = by_verdict(etas) if len(etas) > 1 else next(iter(etas))
+    known = [(show(row, "restitution_factor"), row.name) for row in own if "restitution_factor" in row]
+    if known:
+        each = of.by_verdict(known) if len({eta for eta, _ in known}) > 1 else known[0][0]
         yield Note(f"Restitution factor $eta$ of the drawn bearings, median (nine in ten): {each}.", "legend")
     if any(row.get("friction_scatter_assumed") for row in own):
         assumed = "its scatter from sample to sample was not measured: {default_scatter} of the mean is "
         yield Note(fill(answer, f"{GUESS} {assumed}assumed, a guess ([ranking] friction_scatter)."), "legend")
-    if words := dict.fromkeys(text for row in own for text in row.extrapolation):
-        yield Note(f"{MARK} extrapolated beyond the tests: {'. '.join(words)}.", "legend", Level.LONG)
-        yield Note(f"{MARK} extrapolated beyond the tests: see `--full`.", "legend", Level.BRIEF)
+    yield from of.footnotes(own)
 
 
 def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:

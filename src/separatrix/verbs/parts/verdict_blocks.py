@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import hypot, inf, log, pi
 
@@ -29,9 +29,22 @@ def verdict(row: Part) -> str:
     return "not measured" if row.get("friction") is None else "not finished"
 
 
-def by_verdict(each: Mapping[str, Sequence[str]]) -> str:
+def by_verdict(pairs: Iterable[tuple[str, str]]) -> str:
     """Return verdicts, each with who has it."""
-    return "; ".join(f"{word} {', '.join(who)}" for word, who in each.items())
+    return "; ".join(f"{word} {', '.join(who)}" for word, who in grouped(pairs).items())
+
+
+def footnotes(rows: Sequence[Part], level: Level = Level.ALWAYS) -> list[Note]:
+    """Return in what respect frictions are extrapolated; on a screen, the first one."""
+    measured = [row for row in rows if "friction" in row]
+    who = grouped((sentence, row.name) for row in measured for sentence in row.extrapolation)
+    each = [
+        one if len(names) == len(measured) else f"{one} ({', '.join(names)})" for one, names in who.items()
+    ]
+    brief = each[0] + "; more: `--full`" * bool(each[1:]) if each else ""
+    known = (("; ".join(each), Level.LONG), (brief, Level.BRIEF))
+    words = f"{MARK} extrapolated beyond the tests"
+    return [Note(f"{words}: {one}.", "legend", at) for one, at in known if each and at & level]
 
 
 def judged(row: Part) -> Part | None:
@@ -83,17 +96,22 @@ def verdict_sentences(rows: Sequence[Part], place: str) -> str:
     first = [row for row in rows if row.get("rank") == 1]
     if not first:
         return f"No candidate was ranked in {place}."
-    each = grouped((verdict(row), row.name) for row in first)
+    each = {verdict(row) for row in first}
     names = ", ".join(row.name for row in first)
     lead = f"{names} ranks first in {place}: {verdict(first[0])}."
     if len(first) > 1:
-        words = f" ({names}): {verdict(first[0])}" if len(each) == 1 else f": {by_verdict(each)}"
+        words = f" ({names}): {verdict(first[0])}" if len(each) == 1 else f": {each_verdict(first)}"
         lead = f"{len(first)} materials tie for first in {place}{words}."
     margin = _safety(first) if has_safety(first) else _margin(first)
-    others = grouped((verdict(row), row.name) for row in rows if row not in first)
-    rest = f"The others: {by_verdict(others)}." if others else "There is no other candidate."
-    rest = f"All others: {next(iter(others))}." if len(others) == 1 else rest
+    others = [row for row in rows if row not in first]
+    rest = f"The others: {each_verdict(others)}." if others else "There is no other candidate."
+    rest = f"All others: {verdict(others[0])}." if len({*map(verdict, others)}) == 1 else rest
     return f"{lead} {margin} {rest}"
+
+
+def each_verdict(rows: Sequence[Part]) -> str:
+    """Return each verdict with who has it."""
+    return by_verdict((verdict(row), row.name) for row in rows)
 
 
 def _margin(first: Sequence[Part]) -> str:
