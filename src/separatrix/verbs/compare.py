@@ -178,11 +178,10 @@ def value_of(name: str, node: Part) -> Value:
     value, error, low, high = map(node.get, (name, f"{name}_error", *ends_of(name)))
     if not is_number(value):
         return Value(value=printable(value, 80) if isinstance(value, str) else value)
-    if is_number(error) and not (is_number(low) and is_number(high)):
-        low, high = value - NORMAL_95 * error, value + NORMAL_95 * error
-    return (
-        Value(value=value, low=low, high=high) if is_number(low) and is_number(high) else Value(value=value)
-    )
+    if is_number(low) and is_number(high):
+        return Value(value=value, low=low, high=high)
+    half = NORMAL_95 * error if is_number(error) else None
+    return Value(value=value) if half is None else Value(value=value, low=value - half, high=value + half)
 
 
 def _judged(row: Row) -> Row:

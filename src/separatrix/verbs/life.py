@@ -54,10 +54,7 @@ def page(answer: Part) -> Page:
     """Return the page of `life`."""
     rows = [one for place, one in enumerate(answer.course) if place % SHOWN == 0]
     columns = tuple(map(column, COURSE))
-    drivers = (
-        text_column("input", lambda row: row.name),
-        column("correlation"),
-    )
+    drivers = (text_column("input", lambda row: row.name), column("correlation"))
     return page_of(
         answer,
         Note(" ".join([*lead(answer), *why(answer), *again(answer)]), "lead"),

@@ -120,11 +120,7 @@ def differing(one: Document, other: Document) -> str:
 
 
 def report_of_study(
-    study: Study,
-    compute: Callable[[Verb], Document],
-    folder: Path | None = None,
-    *,
-    pictures: bool = False,
+    study: Study, compute: Callable[[Verb], Document], folder: Path | None = None, *, pictures: bool = False
 ) -> Report | None:
     """Return the report of a study; None if an answer that it needs was interrupted.
 

@@ -119,10 +119,4 @@ def film_figure(answer: Part, curve: Part) -> Figure:
     return figure(answer, (panel,), height=3.0)
 
 
-VERB = Verb(
-    name="restitution",
-    compute=compute,
-    page=page,
-    needs=("cage",),
-    links=("rolling", "impact"),
-)
+VERB = Verb(name="restitution", compute=compute, page=page, needs=("cage",), links=("rolling", "impact"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 from separatrix.ground.document import Part
@@ -53,12 +54,8 @@ def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer
     asked.refuse_samples(options.samples)
     solution = asked.reference(study)
     asked.drawn_bearings(solution)  # refused before anything is timed
-    return asked.answer_of_cage(
-        SensitivityAnswer,
-        "uncertain",
-        solution,
-        lambda: uncertain_study(study, options.samples, runner=runner),
-    )
+    drawn = partial(uncertain_study, study, options.samples, runner=runner)
+    return asked.answer_of_cage(SensitivityAnswer, "uncertain", solution, drawn)
 
 
 def page(answer: Part) -> Page:
@@ -123,15 +120,11 @@ def ensemble_facts(answer: Part) -> Iterator[tuple[str, str]]:
     yield "Ended early", fill(answer, "at a risk of {stopped_risk} of another verdict at each look")
 
 
-# What decides.
-
-
 def sources(answer: Part) -> Iterator[Block]:
     """Yield the sources of the cases that have any, the least decided first, and how many have none."""
     chances = {row.name: row.get("probability_stable") or 0.0 for row in answer.materials}
-    known = sorted(
-        (one for one in answer.drivers if one.shares), key=lambda one: abs(chances[one.name] - 0.5)
-    )
+    known = [one for one in answer.drivers if one.shares]
+    known.sort(key=lambda one: abs(chances[one.name] - 0.5))
     shares = [(case, one) for case in known for one in case.shares if one.share >= LEAST]
     columns = (
         text_column("material", lambda row: row[0].name),

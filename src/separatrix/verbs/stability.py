@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from separatrix.ground.document import Part
@@ -30,13 +31,8 @@ def compute(study: Study, _: NoOptions, runner: Runner) -> StabilityAnswer:
 
     solution = solve(study)
     cage, notes = cage_of(solution), extrapolation_notes(solution)
-    return answer_of_cage(
-        StabilityAnswer,
-        "curve",
-        solution,
-        lambda: stability_curve(cage, study.stability, runner=runner),
-        *notes,
-    )
+    curve = partial(stability_curve, cage, study.stability, runner=runner)
+    return answer_of_cage(StabilityAnswer, "curve", solution, curve, *notes)
 
 
 def page(answer: Part) -> Page:
