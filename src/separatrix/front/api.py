@@ -16,11 +16,17 @@ from separatrix.study.reading import read_study
 from separatrix.study.study import Study
 from separatrix.verbs import asked_study, computed, tool_named, verb_named
 from separatrix.verbs import tribometer as logs
-from separatrix.verbs.answer_files import document, notes_of, page_of_document
+from separatrix.verbs.answer_files import (
+    document,
+    notes_of,
+    page_of_document,
+    read_answer,
+    read_answers,
+    refusing_damage,
+)
 from separatrix.verbs.compare import compared
 from separatrix.verbs.materials import LIST, SHOW
 from separatrix.verbs.report import Report, report_of_study
-from separatrix.verbs.saved_answers import read_answer, read_answers, refusing_damage
 from separatrix.verdict.long_jobs import Interrupted, Progress
 from separatrix.verdict.parameter_axes import DEFAULT_X, DEFAULT_Y, Case
 

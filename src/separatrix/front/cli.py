@@ -323,8 +323,8 @@ def _report(given: Given) -> int:
         typesetter()
     from separatrix.study.reading import read_study
     from separatrix.study.study import shipped_studies
+    from separatrix.verbs.answer_files import read_folder
     from separatrix.verbs.report import report_of, report_of_study
-    from separatrix.verbs.saved_answers import read_folder
 
     with interruptible("no report was written."), contextlib.ExitStack() as stack:
         is_folder = Path(asked).is_dir() and asked not in shipped_studies()

@@ -9,6 +9,7 @@ The same with any two 95 % intervals is the method of variance estimates recover
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -20,23 +21,8 @@ from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable
-from separatrix.present.blocks import (
-    Block,
-    Cell,
-    Column,
-    Heading,
-    Level,
-    Note,
-    Page,
-    Table,
-    facts,
-    grouped,
-    text_column,
-)
-from separatrix.verbs.parts.answer_page import value_words
-from separatrix.verbs.parts.quantity_text import ends_of, quantity
-from separatrix.verbs.parts.verdict_blocks import MARK
-from separatrix.verbs.saved_answers import (
+from separatrix.present.blocks import Cell, Column, Heading, Level, Note, Page, Table, facts, text_column
+from separatrix.verbs.answer_files import (
     AGAIN,
     VERBS,
     inputs_of_study,
@@ -44,6 +30,9 @@ from separatrix.verbs.saved_answers import (
     read_answers,
     refusing_damage,
 )
+from separatrix.verbs.parts.answer_page import value_words
+from separatrix.verbs.parts.quantity_text import ends_of, quantity
+from separatrix.verbs.parts.verdict_blocks import MARK
 from separatrix.verbs.verb import Option, Tool
 
 
@@ -297,8 +286,8 @@ def _lead(answer: Part) -> str:
     if not answer.rows:
         return "The two answers are equal in every result."
     known = [row for row in answer.rows if row.name in DECISIONS or (row.name in MAIN and row.beyond_noise)]
-    named = grouped((_words(row.name), row) for row in known)
-    changed = ", ".join(f"{name} ({len(each)})" for name, each in named.items())
+    counts = Counter(_words(row.name) for row in known)
+    changed = ", ".join(f"{name} ({count})" for name, count in counts.items())
     if not any(row.name in DECISIONS for row in known):
         more = f" Changed by more than counting noise: {changed}." if changed else ""
         return f"No verdict or rank changed.{more}"
@@ -309,7 +298,7 @@ def _words(name: str) -> str:
     return quantity(name).label if name else "in the answer"
 
 
-def _table(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Iterator[Block]:
+def _table(title: str, rows: Sequence[Part], columns: tuple[Column, ...]) -> Iterator[Heading | Table]:
     """Yield a table under its title: the first rows on a screen; else all."""
     more = f"{len(rows) - ON_A_SCREEN} more differ: `--full`." if len(rows) > ON_A_SCREEN else ""
     yield Heading(title)
@@ -358,9 +347,9 @@ def _notes(answer: Part) -> Iterator[str]:
 
 VERB = Tool(
     name="compare",
-    epilog="A and B are folders of answers, their .json or .html files, of any verb with a study.",
     compute=compute,
     page=page,
+    epilog="A and B are folders of answers, their .json or .html files, of any verb with a study.",
     options=Options,
     rows="rows",
     folder="compare",

@@ -179,10 +179,10 @@ def life_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="life",
-    epilog="Needs [wear]: the wear coefficients of film and cage. A coefficient without a distribution "
-    "scatters by a factor of ten either way.",
     compute=compute,
     page=page,
+    epilog="Needs [wear]: the wear coefficients of film and cage. A coefficient without a distribution "
+    "scatters by a factor of ten either way.",
     options=Options,
     needs=("cage",),
     moves_a_cage=True,

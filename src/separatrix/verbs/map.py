@@ -264,9 +264,9 @@ def _overlays(answer: Part) -> Iterator[Mark]:
 
 VERB = Verb(
     name="map",
-    options=Options,
     compute=compute,
     page=page,
+    options=Options,
     needs=("cage",),
     moves_a_cage=True,
     epilog="An axis is a numeric key of the study file with its section, or restitution_factor, "

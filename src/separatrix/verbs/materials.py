@@ -230,19 +230,19 @@ def _stated(key: str, datum: Part) -> Iterator[str | None]:
 
 LIST = Tool(
     name="materials list",
-    help="Every record: its numbers, how sure they are, and its library.",
-    epilog=EPILOG,
     compute=list_records,
     page=list_page,
+    help="Every record: its numbers, how sure they are, and its library.",
+    epilog=EPILOG,
     options=ListOptions,
     rows="materials",
 )
 SHOW = Tool(
     name="materials show",
-    help="One record whole: every number with source, conditions and confidence.",
-    epilog=EPILOG,
     compute=show_records,
     page=show_page,
+    help="One record whole: every number with source, conditions and confidence.",
+    epilog=EPILOG,
     options=ShowOptions,
     rows="records",
 )

@@ -92,9 +92,9 @@ def push_figure(answer: Part) -> Figure:
 
 VERB = Verb(
     name="mobility",
-    epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
-    "of the races; rates and shares of its modes are in the JSON.",
     compute=compute,
     page=page,
+    epilog="Dampings and effective mass of the most loaded ball, its law of traction F(u) with the capacity "
+    "of the races; rates and shares of its modes are in the JSON.",
     links=("rolling", "push"),
 )

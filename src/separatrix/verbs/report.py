@@ -11,9 +11,15 @@ from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError
 from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
-from separatrix.verbs.answer_files import asked_by, page_of_document, save_answer
+from separatrix.verbs.answer_files import (
+    asked_by,
+    inputs_of_study,
+    page_of_document,
+    read_answer,
+    refusing_damage,
+    save_answer,
+)
 from separatrix.verbs.parts.bearing_drawing import bearing_picture
-from separatrix.verbs.saved_answers import inputs_of_study, read_answer, refusing_damage
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study

@@ -16,7 +16,7 @@ from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 from separatrix.present.blocks import Block, Cell, Column, Note, Page, Table, text_column
 from separatrix.verbs import verb_named
-from separatrix.verbs.saved_answers import is_number, read_answers, refusing_damage
+from separatrix.verbs.answer_files import is_number, read_answers, refusing_damage
 from separatrix.verbs.verb import Option, Tool, Verb
 
 if TYPE_CHECKING:
@@ -176,10 +176,10 @@ COLUMNS = (
 
 VERB = Tool(
     name="reproduce",
-    epilog="The study is the one that the answer keeps, with the texts of the files that it names; the same "
-    "verb runs with the same options. RESULT is a folder, the .json of an answer, or a report (.html).",
     compute=compute,
     page=page,
+    epilog="The study is the one that the answer keeps, with the texts of the files that it names; the same "
+    "verb runs with the same options. RESULT is a folder, the .json of an answer, or a report (.html).",
     options=Options,
     rows="answers",
     takes_time=True,

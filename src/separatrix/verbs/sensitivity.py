@@ -152,10 +152,10 @@ def is_friction(name: str) -> bool:
 
 VERB = Verb(
     name="sensitivity",
-    epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
-    "their scatter: 9 % of the mean where none was measured, a guess.",
     compute=compute,
     page=page,
+    epilog="Every number that the study writes with a distribution is drawn, and the frictions with "
+    "their scatter: 9 % of the mean where none was measured, a guess.",
     options=Options,
     needs=("cage", "ranking"),
     moves_a_cage=True,

@@ -225,9 +225,9 @@ def _view(answer: Part) -> str:
 
 VERB = Verb(
     name="simulate",
-    epilog="An unresolved run states its reason.",
     compute=compute,
     page=page,
+    epilog="An unresolved run states its reason.",
     options=Options,
     needs=("cage",),
     moves_a_cage=True,

@@ -248,9 +248,9 @@ def _upright(answer: Part, x: str) -> Iterator[Mark]:
 
 VERB = Verb(
     name="sweep",
-    options=Options,
     compute=compute,
     page=page,
+    options=Options,
     moves_a_cage=True,
     epilog="Every value of one --vary goes with every value of the others. A case that is refused is a row "
     "with its reason. The table is sweep.xlsx and sweep.nc in the folder of the answer: "

@@ -378,10 +378,10 @@ def _figure(test: Part) -> fig.Figure:
 
 VERB = Tool(
     name="tribometer",
-    epilog="What is read is shown before it is trusted: without --out nothing is written. A file that exists "
-    "is never overwritten.",
     compute=compute,
     page=page,
+    epilog="What is read is shown before it is trusted: without --out nothing is written. A file that exists "
+    "is never overwritten.",
     options=Options,
     rows="tests",
     takes_time=True,

@@ -21,11 +21,10 @@ from separatrix.ground.units import shown
 from separatrix.present import blocks, html
 from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, tool_named, verb_named
-from separatrix.verbs.answer_files import asked_by, page_of_document
+from separatrix.verbs.answer_files import AGAIN, asked_by, page_of_document, refusing_damage
 from separatrix.verbs.map import at_point
 from separatrix.verbs.parts.answer_page import is_chosen
 from separatrix.verbs.report import differing
-from separatrix.verbs.saved_answers import AGAIN, refusing_damage
 from separatrix.verdict.ledger import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)

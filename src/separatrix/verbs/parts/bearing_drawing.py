@@ -58,12 +58,10 @@ def section_of(study: Mapping[str, Any]) -> Section:
     if study.get("cage"):
         inner, outer, width = sizes
         wall = WALL * diameter
-        if inner is None and outer is None:
-            usual = {"inner": inner_land + gap, "outer": outer_land - gap - wall}
-            inner = usual.get(guidance, centre - wall / 2)
-        inner = outer - wall if inner is None and outer is not None else inner
-        outer = inner + wall if outer is None and inner is not None else outer
-        cage = inner or 0.0, outer or 0.0, width or CAGE_WIDTH * r
+        usual = {"inner": inner_land + gap, "outer": outer_land - gap - wall}
+        if inner is None:
+            inner = usual.get(guidance, centre - wall / 2) if outer is None else outer - wall
+        cage = inner, inner + wall if outer is None else outer, width or CAGE_WIDTH * r
         inner_land = cage[0] - gap if guidance == "inner" else inner_land
         outer_land = cage[1] + gap if guidance == "outer" else outer_land
     bore = half("bearing", "bore") or centre - diameter
