@@ -11,7 +11,7 @@ from separatrix.present.blocks import Heading, Level, Note, Page, Picture, Table
 from separatrix.present.figure import BLUE, GREEN, VERMILION, Across, Band, Figure, Panel, Trace
 from separatrix.verbs.parts.answer_page import figure, page_of
 from separatrix.verbs.parts.quantity_text import all_numbers, axis, column, fill, quantity, show
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.verb import Option, Samples, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -26,10 +26,8 @@ REVOLUTIONS = 1e3, 1e12
 class Options:
     """How far bearings are followed, and how many are drawn."""
 
-    revolutions: Annotated[
-        str | float, Option("Of ring against ring, up to which bearings are followed.", "N")
-    ] = 1e9
-    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = 4096
+    revolutions: Annotated[str | float, Option("Up to which bearings are followed.", "N")] = 1e9
+    samples: Samples = 4096
 
 
 def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:

@@ -15,7 +15,7 @@ from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, 
 from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
 from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.verb import Kick, Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -38,10 +38,7 @@ class Options:
     y: Annotated[str, Option("Vertical axis, same syntax as --x.", "AXIS")] = Y
     points: Annotated[int, Option("Points per axis, unless the axis states a number.", "N")] = 100
     runs: Annotated[int, Option("Most runs of a point.", "N")] = 16
-    kick: Annotated[
-        str | float | None,
-        Option('Initial disturbance, for instance "0.5 m/s" [default: the reference of the study].', "SPEED"),
-    ] = None
+    kick: Kick = None
 
 
 def compute(study: Study, options: Options, runner: Runner) -> MapAnswer:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 from separatrix.ground.document import Part
 from separatrix.present.blocks import (
@@ -24,7 +24,7 @@ from separatrix.verbs.parts import verdict_blocks as of
 from separatrix.verbs.parts.answer_page import page_of
 from separatrix.verbs.parts.quantity_text import all_numbers, column, fill, number_of, show
 from separatrix.verbs.parts.verdict_blocks import MARK, each_verdict, evidence_column, judged, verdict
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.verb import Samples, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -42,7 +42,7 @@ LISTED, LEAST = 12, 0.02
 class Options:
     """How many bearings are drawn."""
 
-    samples: Annotated[int, Option("Bearings drawn, a power of two.", "N")] = 512
+    samples: Samples = 512
 
 
 def compute(study: Study, options: Options, runner: Runner) -> SensitivityAnswer:

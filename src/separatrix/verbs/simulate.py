@@ -16,7 +16,7 @@ from separatrix.verbs.parts.answer_page import figure, figure_heading, page_of
 from separatrix.verbs.parts.chain_blocks import clearance_blocks
 from separatrix.verbs.parts.quantity_text import fill, places_table, show
 from separatrix.verbs.parts.verdict_blocks import DIRECTIONS, pocket_friction, power_facts
-from separatrix.verbs.verb import Option, Verb
+from separatrix.verbs.verb import Kick, Option, Verb
 
 if TYPE_CHECKING:
     from separatrix.study.study import Study
@@ -28,6 +28,7 @@ MOST_SHOWN = 20_000
 STEADY = 0.5
 """Coherence from which tilt and offset have a phase worth a number."""
 
+ETA = "Damp the races so that eta is this, as at a point of a map [default: that of the study]."
 SINGLE = (
     "A single run is not evidence: another seed may end differently. See `separatrix stability` and "
     "`separatrix rank`."
@@ -38,17 +39,9 @@ SINGLE = (
 class Options:
     """Which run, from what."""
 
-    kick: Annotated[
-        str | float | None,
-        Option('For instance "0.5 m/s" [default: the reference disturbance of the study].', "SPEED"),
-    ] = None
+    kick: Kick = None
     run: Annotated[int, Option("Which run of the ensemble.", "N")] = 0
-    restitution_factor: Annotated[
-        str | float | None,
-        Option(
-            "Damp the races so that eta is this, as at a point of a map [default: that of the study].", "ETA"
-        ),
-    ] = None
+    restitution_factor: Annotated[str | float | None, Option(ETA, "ETA")] = None
 
 
 def compute(study: Study, options: Options) -> SimulationAnswer:
@@ -111,7 +104,6 @@ def given_factor(options: Options) -> float | None:
 
 def page(answer: Part) -> Page:
     """Return the page of `simulate`."""
-    clearances = answer.chain.get("clearances")
     return page_of(
         answer,
         Note(f"{answer.outcome}: {answer.outcome_sentence}", "lead"),
@@ -122,7 +114,7 @@ def page(answer: Part) -> Page:
         places_table("pockets", answer, *POCKET, level=Level.REPORT | Level.SHEET, caption=POCKETS),
         Picture("simulation", lambda: _figure(answer), CAPTION),
         View("moving-cage", lambda: _view(answer), "The moving cage: play, turn, zoom."),
-        *(clearance_blocks(clearances) if clearances else []),
+        *clearance_blocks(answer.chain.get("clearances")),
         Note(SINGLE, "caveat"),
     )
 

@@ -32,6 +32,7 @@ JUDGED = (
 )
 """Columns of a table of cases: of the chain alone, and with verdicts or margins."""
 
+CASES = "CSV: parameters in its first row, then a case a row; with time_share a duty cycle."
 SHOWN = 16
 """Cases of the table: of more, the worst."""
 
@@ -41,10 +42,7 @@ class Options:
     """Cases of a sweep, and what is computed of each."""
 
     vary: Annotated[tuple[str, ...], Option("PARAM=LOW..HIGH[unit][:N][:log]; may be repeated.", "AXIS")] = ()
-    cases: Annotated[
-        Path | Sequence[Mapping[str, float]] | None,
-        Option("CSV: parameters in its first row, then a case a row; with time_share a duty cycle.", "FILE"),
-    ] = None
+    cases: Annotated[Path | Sequence[Mapping[str, float]] | None, Option(CASES, "FILE")] = None
     verdicts: Annotated[bool, Option("Run the ensemble of every case, too.")] = False
     margins: Annotated[bool, Option("Compute safety factor or margin of every case, too.")] = False
 

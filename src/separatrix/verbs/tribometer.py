@@ -44,20 +44,11 @@ if TYPE_CHECKING:
 class Options:
     """What `tribometer` takes."""
 
-    files: Annotated[
-        tuple[Path, ...],
-        Option("Raw tribometer logs, or folders of them; the format is detected.", "FILES...", True),
-    ]
-    column_map: Annotated[
-        Path | None, Option("Column map (TOML) for what the logs do not state.", "FILE", flag="--map")
-    ] = None
-    run_in: Annotated[
-        str | None, Option('Where running-in ends, for instance "200 m" [default: found].', "END")
-    ] = None
+    files: Annotated[tuple[Path, ...], Option("Raw logs, or folders of them.", "FILES...", True)]
+    column_map: Annotated[Path | None, Option("What logs do not state (TOML).", "FILE", flag="--map")] = None
+    run_in: Annotated[str | None, Option('Where running-in ends: "200 m" [default: found].', "END")] = None
     join: Annotated[bool, Option("The logs of one folder are strokes or parts of one test.")] = False
-    out: Annotated[
-        Path | None, Option("Friction file to write, such as friction.toml [default: none].", "FILE")
-    ] = None
+    out: Annotated[Path | None, Option("Friction file (.toml) to write [default: none].", "FILE")] = None
 
 
 UNITS = {"time": ("s", "1/s"), "distance": ("m", "1/m"), "cycles": ("-", "-")}
@@ -71,10 +62,7 @@ FRICTION = Quantity(label="friction", digits=4)
 EXPONENT = Quantity(label="exponent", form=".3f")
 
 LEGEND = "Friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
-NUMBERS = (
-    "Scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. Drift: of "
-    "the steady part."
-)
+NUMBERS = "Scatter: standard deviation of means of whole cycles, or of rows. Drift: of the steady part."
 COURSE = "Friction along the test with its steady part; the tables have the numbers."
 FIT_LEGEND = (
     "Friction of the material at the middle of its tested conditions, with its standard error. Scatter: "
@@ -233,17 +221,13 @@ def _lead(answer: Part, tests: Sequence[Part]) -> Iterator[str]:
     """Yield the answer: friction of each material, or of the tests."""
     words = "{standard_error}, scatter of a new sample {standard_deviation}"
     for one in answer.fits or ():
-        friction = f"{_place(one)}: friction {_friction(one).text} from {_count(one.tests, 'test')}"
-        yield f"{friction} (standard error {fill(one, words)})."
+        of = f"{one.material}, {one.environment}: friction {_friction(one).text}"
+        yield f"{of} from {_count(one.tests, 'test')} (standard error {fill(one, words)})."
     if not answer.fits and len(tests) == 1:
         yield f"{tests[0].source}: {_summary(tests[0])}."
     elif not answer.fits:
         low, high = (alone(of(one.friction for one in tests), FRICTION, "-") for of in (min, max))
         yield f"Steady friction of the tests lies between {low} and {high}."
-
-
-def _place(fit: Part) -> str:
-    return f"{fit.material}, {fit.environment}"
 
 
 def _summary(test: Part) -> str:
@@ -257,9 +241,6 @@ def _friction(one: Part) -> Cell:
 
 
 def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
-    def numbers(one: Part) -> str:
-        return ", ".join(str(flags.index(flag) + 1) for flag in one.flags) or ABSENT
-
     of = attrgetter("conditions")
     columns = (
         TEST,
@@ -267,7 +248,7 @@ def _table(tests: Sequence[Part], flags: Sequence[str]) -> Table:
         *(column(name, of=of, head=_plain(name)) for name in ("slip_speed", "pressure")),
         Column("friction", _friction),
         Column("running-in ends", lambda one: _along(one, "run_in_end")),
-        text_column("notes", numbers),
+        text_column("notes", lambda one: ", ".join(str(flags.index(at) + 1) for at in one.flags) or ABSENT),
     )
     return Table("tests", known_columns(columns, tests), tuple(tests), LEGEND)
 
@@ -300,7 +281,8 @@ def _fits(answer: Part) -> Iterator[Block]:
     )
     yield Table("materials", columns, tuple(answer.fits), FIT_LEGEND)
     for one in answer.fits:
-        yield from (Note(f"{_place(one)}: {words}.") for words in (*_slopes(one), *one.notes))
+        place = f"{one.material}, {one.environment}"
+        yield from (Note(f"{place}: {words}.") for words in (*_slopes(one), *one.notes))
 
 
 def _slopes(fit: Part) -> Iterator[str]:
@@ -354,7 +336,7 @@ def _figure(test: Part) -> fig.Figure:
     course, mean, ends = test.course, test.friction, (test.run_in_end, test.steady_end)
     low, high, drift = test.friction_low, test.friction_high, test.drift_rate * (ends[1] - ends[0]) / 2
     size, symbol = _along(test, "steady_end").scale
-    name = {"time": "time", "distance": "sliding distance", "cycles": "cycles"}[test.run_in_axis]
+    name = "sliding distance" if test.run_in_axis == "distance" else test.run_in_axis
     last = max(course.along[-1], test.steady_end)
     look: dict[str, Any] = {"line": "", "marker": "o", "size": 1.2, "name": "means of spans"}
     panel = fig.Panel(
@@ -368,9 +350,7 @@ def _figure(test: Part) -> fig.Figure:
             fig.Trace(x=course.span_along, y=course.span_mean, colour=fig.BLUE, **look),
             fig.Band(x=ends, low=(low, low), high=(high, high), colour=fig.VERMILION, opacity=0.2),
             fig.Trace(x=ends, y=(mean, mean), colour=fig.VERMILION, name="steady mean, 95 % interval"),
-            fig.Trace(
-                x=ends, y=(mean - drift, mean + drift), colour=fig.GREEN, line="--", width=0.9, name="drift"
-            ),
+            fig.Trace(x=ends, y=(mean - drift, mean + drift), colour=fig.GREEN, line="--", name="drift"),
         ),
     )
     return fig.Figure(rows=((panel,),), heading=(test.source[:120], _summary(test)), height=2.0)

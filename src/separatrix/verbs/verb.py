@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,6 +29,11 @@ class Option(NamedTuple):
     flag: str = ""
     most: int = 0
 
+
+KICK = 'Initial disturbance, for instance "0.5 m/s" [default: the reference of the study].'
+Kick = Annotated[str | float | None, Option(KICK, "SPEED")]
+Samples = Annotated[int, Option("Bearings drawn, a power of two.", "N")]
+"""Options of several verbs."""
 
 Shown = dict[str, tuple[Any, Option, Any]]
 """Type, `Option` and default of each option, by name; `dataclasses.MISSING` of one without a default."""
