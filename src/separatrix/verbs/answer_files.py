@@ -14,9 +14,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeGuard
 
+from separatrix import __version__
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError, grouped, harmless, json_text
 from separatrix.ground.files import size_of, staged, unreadable
+from separatrix.ground.plain_data import NOTES, Group, plain, shape, units_of
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable, shown
 from separatrix.verbs.verb import Tool, Verb
@@ -33,7 +35,6 @@ def document(verb: Verb, found: Computed) -> Document:
     The resolved inputs of the study go into it with their sources; the notes of study and answer are its
     warnings.
     """
-    from separatrix.ground.plain_data import Group, plain, shape, units_of
     from separatrix.study.sources import provenance_of
     from separatrix.verbs import chain_answers  # noqa: F401 - with the shapes of its records
 
@@ -47,10 +48,8 @@ def document(verb: Verb, found: Computed) -> Document:
     warnings = [*notes_of(found.record, study)]
     if left_out:
         more = f" and {len(left_out) - 1} more" if left_out[1:] else ""
-        warnings.append(
-            f"A number is not finite and is left out: {left_out[0]}{more}. The inputs are far from those of "
-            "a bearing, or this is a fault of separatrix."
-        )
+        words = f"A number is not finite and is left out: {left_out[0]}{more}. The inputs are far from those "
+        warnings.append(f"{words}of a bearing, or this is a fault of separatrix.")
     return {
         "verb": verb.name,
         "name": study.name,
@@ -65,8 +64,6 @@ def document(verb: Verb, found: Computed) -> Document:
 
 def asked_by(study: Study) -> Document:
     """Return what each answer to a study has of the study, with this version."""
-    from separatrix import __version__
-    from separatrix.ground.plain_data import plain
     from separatrix.study.sources import resolved
 
     known = {"separatrix_version": __version__, "seed": study.stability.seed}
@@ -75,8 +72,6 @@ def asked_by(study: Study) -> Document:
 
 def notes_of(answer: object, asked: Study) -> tuple[str, ...]:
     """Return what the reading of a study and its answer note; of those alike but for numbers the first."""
-    from separatrix.ground.plain_data import NOTES
-
     own: tuple[str, ...] = getattr(answer, NOTES, ())
     return tuple(grouped([*asked.notes, *own]))
 

@@ -16,8 +16,10 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part, part_of
 from separatrix.ground.errors import InputError
+from separatrix.ground.plain_data import plain
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity
 from separatrix.ground.toml import path_text
 from separatrix.ground.units import printable
@@ -206,9 +208,6 @@ def compared(
     InputError
         They share no verb, or one is not as separatrix writes it.
     """
-    from separatrix import __version__
-    from separatrix.ground.plain_data import plain
-
     shared = [verb for verb in VERBS if verb in first and verb in second]
     if not shared:
         rule = f"must be an answer of {' or '.join(first)}, as {names[0]} is"

@@ -8,6 +8,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import Quantity, alone
@@ -117,8 +118,6 @@ def show_records(options: ShowOptions) -> Document:
 
 
 def _document(which: str, **content: object) -> Document:
-    from separatrix import __version__
-
     return {"separatrix_version": __version__, "verb": f"materials {which}", **content}
 
 

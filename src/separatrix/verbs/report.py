@@ -7,8 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from separatrix import __version__
 from separatrix.ground.document import Document, part_of
 from separatrix.ground.errors import InputError
+from separatrix.ground.files import staged
 from separatrix.present.blocks import Note, Page, joined
 from separatrix.verbs import VERBS, verb_named
 from separatrix.verbs.answer_files import (
@@ -60,8 +62,6 @@ class Report:
 
     def write(self, folder: Path, *, with_pdf: bool) -> list[Path]:
         """Write report.html, and report.pdf too, into a folder, both or none; return their paths."""
-        from separatrix.ground.files import staged
-
         contents = {"report.html": self.html().encode()} | ({"report.pdf": self.pdf()} if with_pdf else {})
         with staged(folder) as stage:
             for name, content in contents.items():
@@ -70,8 +70,6 @@ class Report:
 
     def document(self, files: Sequence[Path] = ()) -> Document:
         """Plain data: what was answered in short, and where the report is."""
-        from separatrix import __version__
-
         return {
             "separatrix_version": __version__,
             "verb": "report",

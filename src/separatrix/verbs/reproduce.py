@@ -9,6 +9,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.quantity import ABSENT, Quantity
@@ -41,8 +42,6 @@ IGNORED = ("separatrix_version", "provenance", "warnings", "notes", "units")
 
 def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -> Document:
     """Compute the answers of a folder or file again, and compare them."""
-    from separatrix import __version__
-
     where = path_text(options.result)
     found = []
     for one in read_answers(options.result).values():
@@ -131,7 +130,6 @@ def _short(value: object) -> object:
 
 def _versions(stored: Document, kept: Document) -> Iterator[Document]:
     """Yield each version that is another one here; null where the answer does not state it."""
-    from separatrix import __version__
     from separatrix.study.sources import versions
 
     before = {"separatrix": stored["separatrix_version"], **(kept.get("versions") or {})}

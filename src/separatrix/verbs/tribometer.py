@@ -11,9 +11,11 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from separatrix import __version__
 from separatrix.ground.document import Document, Part
 from separatrix.ground.errors import InputError
 from separatrix.ground.files import refuse_existing, staged, writable_folder
+from separatrix.ground.plain_data import Group, Leaf, plain, shape, units_of
 from separatrix.ground.quantity import ABSENT, Estimate, Quantity, alone
 from separatrix.ground.units import shown
 from separatrix.present import figure as fig
@@ -116,9 +118,7 @@ def compute(options: Options, jobs: int = 1, progress: Progress | None = None) -
 
 def document(found: ReducedLogs, written: str | None = None) -> Document:
     """Return the answer as plain data, in SI units; `written` is the friction file made from it."""
-    from separatrix import __version__
     from separatrix.friction.friction_file import CONDITIONS, PRODUCT
-    from separatrix.ground.plain_data import plain, units_of
 
     fit = found.fit
     nodes = [_test(one) for one in found.reductions]
@@ -139,7 +139,6 @@ def document(found: ReducedLogs, written: str | None = None) -> Document:
 def _test(one: Reduction) -> Any:
     """Return a test as a node: its numbers, their interval, and its course."""
     from separatrix.friction.reduction import course
-    from separatrix.ground.plain_data import Group, Leaf, shape
 
     low, high = one.test.interval
     ends = {"friction_low": Leaf(low, "-"), "friction_high": Leaf(high, "-")}
@@ -150,8 +149,6 @@ OF_A_LOG = ("source", "checksum", "format", "rows", "missing", "columns", "notes
 
 
 def _fit(material: str, environment: str, one: MaterialFit) -> Document:
-    from separatrix.ground.plain_data import plain
-
     at = one.at()  # the centre of its tested conditions
     return {
         "material": material,
