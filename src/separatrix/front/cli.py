@@ -89,7 +89,8 @@ def option_value(kind: str, text: Any, option: str, note: Option) -> Any:
             cure = "Write it in digits, or leave it out."
             raise InputError(option, "must be a whole number", shown(text), cure) from None
         if note.most and not 1 <= found <= note.most:
-            raise InputError(option, f"must lie between 1 and {note.most}", str(found), "Leave it out.")
+            rule = f"must lie between 1 and {note.most}"
+            raise InputError(option, rule, str(found), "Leave it out for the default.")
         return found
     if (kind == "file" or note.metavar in NAMED) and (not text.strip() or "\0" in text):
         cure = "The current one is ." if note.metavar == "DIR" else ""

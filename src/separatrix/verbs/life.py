@@ -26,7 +26,7 @@ REVOLUTIONS = 1e3, 1e12
 class Options:
     """How far bearings are followed, and how many are drawn."""
 
-    revolutions: Annotated[str | float, Option("Up to which bearings are followed.", "N")] = 1e9
+    revolutions: Annotated[str | float, Option("Of the rings, up to which bearings are followed.", "N")] = 1e9
     samples: Samples = 4096
 
 

@@ -67,6 +67,7 @@ POINTS = ("triple_temperature", "boiling_temperature", "critical_temperature", "
 """Properties that do not depend on temperature."""
 
 PROPERTY, LISTED = Quantity(label="", digits=5), Quantity(label="", digits=4)
+MODULUS, RATIO = Quantity(label="", form=".3g"), Quantity(label="", form=".3f")
 
 
 # --- the records --------------------------------------------------------------------------------
@@ -138,13 +139,13 @@ def _subtitle(answer: Part) -> str:
     return f"Library of separatrix {answer.separatrix_version}"
 
 
-def _first(head: str, key: str) -> Column:
+def _first(head: str, key: str, quantity: Quantity = LISTED) -> Column:
     """Return the first datum of a property of each record, with the number of its data if there are more."""
 
     def cell(record: Part) -> Cell:
         data = _data(record, key)
         mark = f" (first of {len(data)})" if data[1:] else ""
-        return Cell(data[0].value, LISTED, data[0].get("unit"), mark) if data else Cell(None)
+        return Cell(data[0].value, quantity, data[0].get("unit"), mark) if data else Cell(None)
 
     return Column(head, cell)
 
@@ -162,8 +163,8 @@ def _sure(record: Part) -> str:
 COLUMNS = (
     text_column("name", lambda one: one.name),
     text_column("also", lambda one: ", ".join(one.get("aliases") or ())),
-    _first("E", "elastic_modulus"),
-    _first("nu", "poisson_ratio"),
+    _first("E", "elastic_modulus", MODULUS),
+    _first("nu", "poisson_ratio", RATIO),
     _first("boils at", "boiling_temperature"),
     text_column("E at", lambda one: "".join(_span(at.temperature, "K") for at in _data(one)[:1])),
     text_column("confidence", _sure),

@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 class Options:
     """What `tribometer` takes."""
 
-    files: Annotated[tuple[Path, ...], Option("Raw logs, or folders of them.", "FILES...", True)]
-    column_map: Annotated[Path | None, Option("What logs do not state (TOML).", "FILE", flag="--map")] = None
+    files: Annotated[tuple[Path, ...], Option("Logs, or folders; the format is detected.", "FILES...", True)]
+    column_map: Annotated[Path | None, Option("Column map (TOML) of the logs.", "FILE", flag="--map")] = None
     run_in: Annotated[str | None, Option('Where running-in ends: "200 m" [default: found].', "END")] = None
     join: Annotated[bool, Option("The logs of one folder are strokes or parts of one test.")] = False
     out: Annotated[Path | None, Option("Friction file (.toml) to write [default: none].", "FILE")] = None
@@ -64,7 +64,10 @@ FRICTION = Quantity(label="friction", digits=4)
 EXPONENT = Quantity(label="exponent", form=".3f")
 
 LEGEND = "Friction: mean of the steady part, with its 95 % interval, allowing for autocorrelation."
-NUMBERS = "Scatter: standard deviation of means of whole cycles, or of rows. Drift: of the steady part."
+NUMBERS = (
+    "Scatter: standard deviation of the means of whole cycles, of rows where no cycle is known. Drift: of "
+    "the steady part."
+)
 COURSE = "Friction along the test with its steady part; the tables have the numbers."
 FIT_LEGEND = (
     "Friction of the material at the middle of its tested conditions, with its standard error. Scatter: "

@@ -9,8 +9,8 @@ from separatrix.verbs.parts.quantity_text import cell, fact, fill, named, show
 
 
 def clearance_blocks(found: Part | None) -> list[Block]:
-    """Return the clearances of the cage under their heading."""
-    return [Heading("Clearances of the cage"), facts(*clearance_facts(found))]
+    """Return the clearances of the cage under their heading; none if they are stated."""
+    return [] if found is None else [Heading("Clearances of the cage"), facts(*clearance_facts(found))]
 
 
 def clearance_facts(found: Part | None) -> list[tuple[str, str]]:
