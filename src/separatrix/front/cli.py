@@ -274,7 +274,7 @@ class PageOptions:
 
 
 def _page(given: Given) -> int:
-    place, port = given["place"], given["port"]
+    place = given["place"]
     if not place.is_dir():
         raise InputError(str(place), "is not a folder", cure="Name the folder of your studies.")
     if lacking := [name for name in NEEDED if find_spec(name) is None]:
@@ -282,7 +282,7 @@ def _page(given: Given) -> int:
         raise InputError("separatrix app", f"needs {', '.join(lacking)}", cure=cure)
     from separatrix.front.page.server import Server
 
-    server = Server(place.resolve(), port=port or 0)
+    server = Server(place.resolve(), port=given["port"] or 0)
     answer(f"The page of {place.resolve()} is at\n\n  {server.link}\n\nCtrl-C ends it.\n")
     if given["open"]:
         import webbrowser

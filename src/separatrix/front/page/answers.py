@@ -28,7 +28,6 @@ from separatrix.verbs.report import differing
 from separatrix.verdict.ledger import NAME as LEDGER
 
 Named = TypeVar("Named", blocks.Picture, blocks.View)
-FRESH = {"cache-control": "no-cache"}
 EMPTY = dict.fromkeys(("title", "subtitle", "body", "refused"), "")
 """What a template shows of an answer."""
 
@@ -55,7 +54,8 @@ def routes(page: Page) -> APIRouter:
     @router.get("/figure/{verb}/{of}/{name:path}")
     def figure(verb: str, of: str, name: str) -> Response:
         with refusing_damage(name):
-            return HTMLResponse(html.drawn(block(verb, name, of, blocks.Picture)), headers=FRESH)
+            drawn = html.drawn(block(verb, name, of, blocks.Picture))
+        return HTMLResponse(drawn, headers={"cache-control": "no-cache"})
 
     @router.get("/view/{verb}/{of}/{name:path}")
     def view(verb: str, of: str, name: str, script: str = "") -> Response:

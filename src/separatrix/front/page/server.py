@@ -28,9 +28,8 @@ from separatrix.ground.errors import InputError, SeparatrixError
 from separatrix.ground.units import printable
 
 HOST = "127.0.0.1"
-MOST_CONNECTIONS = 200
-IDLE = 10
-"""Time after which an idle connection is closed [s]."""
+MOST_CONNECTIONS, IDLE = 200, 10
+"""Connections at once; time after which an idle one is closed [s]."""
 
 STATIC = {
     "static": Path(__file__).with_name("static"),
@@ -38,7 +37,6 @@ STATIC = {
 }
 """Folders of style and script, by their addresses."""
 
-READING = ("GET", "HEAD")
 MOST_BYTES = 64 * 1024**2
 """Size of an upload."""
 
@@ -125,7 +123,7 @@ class Guard:
             return _refusal(HTTPStatus.MISDIRECTED_REQUEST, words)
         origin, site = headers.get("origin"), headers.get("sec-fetch-site")
         is_own = origin in (None, f"http://{host}") and site in (None, "same-origin", "none")
-        if not is_own or (asked.method not in READING and origin is None):
+        if not is_own or (asked.method not in ("GET", "HEAD") and origin is None):
             return _refusal(HTTPStatus.FORBIDDEN, "Requests of other sites are refused.")
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > MOST_BYTES:

@@ -36,9 +36,8 @@ MOST_WAITING, MOST_KEPT = 20, 50
 _AT_THE_END = 10.0
 """Time that the process has to write what it finished when the page is closed [s]."""
 
-KEPT = "Finished runs are kept: resume to go on."
-INTERRUPTED = "cancelled", KEPT
-LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {KEPT}"
+INTERRUPTED = "cancelled", "Finished runs are kept: resume to go on."
+LOST = f"The computing process ended; the terminal of `separatrix app` may show why. {INTERRUPTED[1]}"
 
 Send = Callable[..., None]
 """Sends the page what has changed of a job, by the names of its fields."""
