@@ -3,7 +3,7 @@
 import pytest
 
 from separatrix.ground.document import part_of
-from separatrix.verbs.map import map_figure, nearest_words
+from separatrix.verbs.map import map_figure, nearest_words, unchanged
 from separatrix.verbs.parts.quantity_text import is_proportional, quantity
 from separatrix.verbs.parts.verdict_blocks import linear_law, pocket_friction
 from separatrix.verbs.sweep import SHOWN, case_table, envelope_figure, worst_words
@@ -66,6 +66,9 @@ def test_a_map_says_what_is_next_to_the_study_and_where_it_changes():
     )
     assert words.endswith("the cage begins to whirl between race friction 0.1 and 0.3.")
     assert nearest_words(mapped(changes=[])).endswith("6 runs.")
+    assert [*unchanged(mapped(changes=[]))] == []
+    calm = [one.values | {"probability_high": 0.3} for one in mapped().points]
+    assert [*unchanged(mapped(changes=[], points=calm))] == [("Whirls nowhere", "at 1 \N{MICRO SIGN}m")]
 
 
 def test_every_point_of_a_map_has_its_values_to_point_at():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from separatrix.ground.document import Document, Part
 from separatrix.ground.units import UNITS, format_number
-from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, text_column
+from separatrix.present.blocks import Column, Heading, Note, Page, Picture, Table, facts, grouped, text_column
 from separatrix.present.figure import BLACK, VERMILION, Cells, Figure, Hatched, Mark, Panel, Trace
 from separatrix.verbs.parts import quantity_text as q
 from separatrix.verbs.parts.answer_page import figure, is_chosen, page_of
@@ -87,6 +87,7 @@ def page(answer: Part) -> Page:
         Picture("stability-map", lambda: map_figure(answer), "Share of the runs that whirl; white: not run."),
         Heading("Where the cage begins to whirl"),
         bands(answer),
+        facts(*unchanged(answer)),
         *(q.all_numbers(name, (), ((one,) for one in answer.get(name) or ())) for name in sheets),
     )
 
@@ -191,6 +192,18 @@ def bands(answer: Part) -> Table:
     chosen = tuple(every[round(i * step)] for i in range(min(SHOWN, len(every))))
     part = f"{SHOWN} of {len(every)} places; map.json has all. " if len(every) > SHOWN else ""
     return Table("bands", columns, chosen, part + LEGEND)
+
+
+def unchanged(answer: Part) -> Iterator[tuple[str, str]]:
+    """Yield at which values of x the cage whirls at no point, or at every one, beyond the scatter."""
+    changed = {one.x for one in answer.get("changes") or ()}
+    known = grouped((one.x, one) for one in answer.points if one.runs and one.x not in changed)
+    calm = [x for x, along in known.items() if all(one.probability_high < 0.5 for one in along)]
+    wild = [x for x, along in known.items() if all(one.probability_low > 0.5 for one in along)]
+    for words, found in (("Whirls nowhere", calm), ("Whirls everywhere", wild)):
+        if found:
+            values = ", ".join(_value(answer.x, x) for x in found[:SHOWN])
+            yield words, f"at {values}" + ", ..." * (len(found) > SHOWN)
 
 
 LEGEND = (
