@@ -7,8 +7,6 @@ import re
 import signal
 import sys
 import time
-import zipfile
-from io import BytesIO
 
 import pytest
 from commands import SMALL, work_undrawn
@@ -120,12 +118,6 @@ def test_a_point_of_a_map_is_a_study_of_its_own(page, root):
     assert 'thickness = "4e-07 m"' in text
     found = json.loads((root / path.stem / "simulate.json").read_text())
     assert found["provenance"]["command"]["question"]["restitution_factor"] == "0.3"
-
-
-def test_everything_is_downloaded_at_once(page):
-    """The study and every file of its answers."""
-    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as found:
-        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}
 
 
 def test_options_are_fields_of_their_types(page, root):

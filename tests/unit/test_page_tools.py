@@ -13,10 +13,9 @@ from separatrix.present.figure import Across
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import bearing, compare, computed, tribometer
-from separatrix.verbs.answer_files import document
+from separatrix.verbs.answer_files import document, read_answer, read_answers, read_folder
 from separatrix.verbs.compare import compared as compared_answers
 from separatrix.verbs.compare import difference_interval, differing, results
-from separatrix.verbs.saved_answers import read_answer, read_answers, read_folder
 from separatrix.verdict.judgement import wilson_interval
 
 STUDY = read_study("cryogenic-turbopump")

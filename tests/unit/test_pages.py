@@ -26,9 +26,8 @@ from separatrix.present.spreadsheet import spreadsheet
 from separatrix.present.text import text
 from separatrix.study.reading import read_study
 from separatrix.verbs import VERBS, verb_named
-from separatrix.verbs.answer_files import page_of_document
+from separatrix.verbs.answer_files import page_of_document, refusing_damage
 from separatrix.verbs.parts import quantity_text
-from separatrix.verbs.saved_answers import refusing_damage
 from separatrix.verdict.ledger import NAME
 from separatrix.verdict.long_jobs import Interrupted
 

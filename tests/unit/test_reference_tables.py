@@ -17,7 +17,7 @@ from reference_tables import (
 )
 
 from separatrix.study.template import sections, study_keys
-from separatrix.verbs.parts.quantities import QUANTITIES
+from separatrix.verbs.parts.quantity_text import QUANTITIES
 from separatrix.verdict.ranking_records import Ranked
 
 BY_NAME = {"study", "provenance", "units", "metadata", "slopes", "tested"}
