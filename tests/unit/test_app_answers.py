@@ -7,6 +7,8 @@ import re
 import signal
 import sys
 import time
+import zipfile
+from io import BytesIO
 
 import pytest
 from commands import SMALL, work_undrawn
@@ -215,3 +217,9 @@ def test_an_import_is_seen_from_within(tmp_path):
     made.loader.exec_module(module)
     assert is_importing(module.frame)
     assert not is_importing(sys._getframe())
+
+
+def test_everything_is_downloaded_at_once(page):
+    """The study and every file of its answers."""
+    with zipfile.ZipFile(BytesIO(page.get("/zip/small.toml").content)) as found:
+        assert {"small.toml", "small/rank.json", "small/bearing.txt"} <= {*found.namelist()}

@@ -55,6 +55,7 @@ def linked(page, outside, how):
         "/answer/rank/small.toml",
         "/files/small.toml",
         "/file/small/rank.json",
+        "/zip/small.toml",
         "/figure/rank/stability-curve/small.toml",
     ],
 )

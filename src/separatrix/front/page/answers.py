@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 from urllib.parse import quote
+from zipfile import ZIP_DEFLATED, ZipFile
 
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, HTMLResponse, Response
@@ -70,11 +72,20 @@ def routes(page: Page) -> APIRouter:
         head = '<head>\n<link rel="icon" href="/static/icon.svg">'
         return HTMLResponse(_POLICY.sub("", text).replace("<head>", head, 1))
 
+    def files_of(name: str) -> list[tuple[str, str]]:
+        known = (one for one in page.folder.answers(name).glob("[!.]*") if one.name != LEDGER)
+        return [(path.name, page.folder.name(path)) for path in sorted(known) if page.folder.has(path)]
+
     @router.get("/files/{name:path}")
     def files(name: str) -> Response:
-        known = (one for one in page.folder.answers(name).glob("[!.]*") if one.name != LEDGER)
-        found = [(path.name, page.folder.name(path)) for path in sorted(known) if page.folder.has(path)]
-        return page.html("files.html", name=name, files=found, answers=page.answered(name))
+        return page.html("files.html", name=name, files=files_of(name), answers=page.answered(name))
+
+    @router.get("/zip/{name:path}")
+    def everything(name: str) -> Response:
+        with ZipFile(content := BytesIO(), "w", ZIP_DEFLATED) as into:
+            for one in (name, *(path for _, path in files_of(name))):
+                into.write(page.folder.inside(one), one)
+        return Response(content.getvalue(), media_type="application/zip")
 
     @router.get("/file/{name:path}")
     def file(name: str) -> Response:
