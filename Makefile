@@ -11,7 +11,7 @@ BROWSER_TESTS := $(BIN)/pytest -q browser_tests -c browser_tests/pytest.ini
 .PHONY: demo test browser-test check bench docs clean kernels
 
 demo: .venv/ready ## rank the paper's seven cage materials
-	$(BIN)/separatrix rank cryogenic-turbopump --out demo
+	$(BIN)/separatrix demo --out demo
 
 test: kernels ## every test
 	$(TESTS)

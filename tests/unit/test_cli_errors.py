@@ -45,8 +45,16 @@ def test_eight_mistakes_are_eight_lines(verb, capsys):
         assert f"] {key} " in line
 
 
+def test_first_words(capsys):
+    """Without a command three lines: what it does, what to try, where more is; nothing is made."""
+    assert main([]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 3
+    assert all(word in one for one, word in zip(lines, ("cage", "separatrix demo", "--help"), strict=True))
+    assert [*Path().iterdir()] == []
+
+
 USAGE = {
-    "no verb": ([], "is missing; choose one of new, check"),
     "no study": (["bearing"], "STUDY"),
     "two studies": (["bearing", "le7", "le7"], "le7"),
     "unknown option": (["bearing", "le7", "--jsn"], "--jsn"),

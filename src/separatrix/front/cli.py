@@ -350,7 +350,14 @@ def _report(given: Given) -> int:
     return ANSWERED
 
 
+DEMO = "cryogenic-turbopump"
+FIRST = f"""\
+separatrix predicts whether the cage of a dry-lubricated ball bearing runs stably, and ranks cage materials.
+Try it: separatrix demo (as `separatrix rank {DEMO}`), then: separatrix new my-bearing.toml
+All commands: separatrix --help. The documentation begins in docs/index.md of the source.
+"""
 COMMANDS = {
+    "demo": "Rank the seven cage materials of the shipped study.",
     "new": "Write a commented study file to fill in.",
     **VERBS,
     **TOOLS,
@@ -370,6 +377,12 @@ def _command(name: str) -> click.Command:
         takes = beside("study") | asked_of(verb) | after
         return command(name, partial(run, verb), takes, about, verb.epilog)
     match name:
+        case "demo":
+            rank = verb_named("rank")
+            takes = asked_of(rank) | beside("full", "json", "out", "quiet", "jobs")
+            return command(
+                name, lambda given: run(rank, {**given, "study": DEMO, "cluster": None}), takes, about
+            )
         case "new":
             return command(name, _new, shown_options(NewOptions) | beside("json", "quiet"), about)
         case "report":
@@ -406,8 +419,7 @@ def _start(context: click.Context, /, *, version: bool) -> None:
         answer(f"separatrix {__version__}\n")
         context.exit()
     if context.invoked_subcommand is None:
-        rule = f"is missing; choose one of {', '.join(COMMANDS)}"
-        raise InputError("The command", rule, cure='Try "separatrix --help".')
+        answer(FIRST)
 
 
 def run_command_line(arguments: Sequence[str] | None) -> int:
