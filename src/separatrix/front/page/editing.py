@@ -160,19 +160,7 @@ def as_typed(value: object) -> str:
 def edited(text: str, section: str, key: str, value: str) -> str:
     """Return the text with one key set as a form gives it, comments kept; an empty value removes the key.
 
-    Parameters
-    ----------
-    text : str
-        Of a study file.
-    section, key : str
-        Of the study; an empty section is above the first one.
-    value : str
-        As typed: a number, a quantity, a word, or a list or table as TOML writes it.
-
-    Raises
-    ------
-    InputError
-        The text is not TOML, or the change would lose comments in a list.
+    An empty section is above the first one. `InputError`: the text is not TOML, or comments would be lost.
     """
     try:
         document = tomlkit.parse(text)
