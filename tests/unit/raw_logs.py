@@ -14,11 +14,19 @@ CODES = {"utf-8-sig": b"", "utf-16-le-mark": b"\xff\xfe", "utf-16-be-mark": b"\x
 
 
 def anton_paar(
-    friction, time, *, nano: bool = False, encoding: str = "cp1252", newline: str = "\r\n"
+    friction,
+    time,
+    *,
+    laps=None,
+    nano: bool = False,
+    decimal: str = ".",
+    encoding: str = "cp1252",
+    newline: str = "\r\n",
+    missing: str = "",
 ) -> bytes:
     """Anton Paar / CSM TRB: ``key : value [unit]`` lines, one line of headers, tabs between the columns."""
     distance, speed, load = time * 0.1, 0.1, 5.0
-    laps = distance / (2 * np.pi * 0.015)
+    laps = distance / (2 * np.pi * 0.015) if laps is None else laps
     force, unit = (1e3, "mN") if nano else (1.0, "N")
     head = [
         "Nano Tribometer" if nano else "TRB3 Tribometer",
@@ -38,36 +46,48 @@ def anton_paar(
     one = np.ones_like(time)
     columns = [time, distance, laps, one, np.floor(laps), speed * one, load * force * one, friction]
     columns += [laps % 1.0 * 360.0, friction * load * force, time * 1e-3]
-    return encoded([*head, header, *rows(columns, "\t", 6, "")], encoding, newline)
+    text = rows(columns, "\t", 6, missing)
+    head = [line.replace(".", decimal) if ":" in line else line for line in head]
+    head[3] = head[3].replace(f"Lin{decimal}", "Lin.")
+    return encoded([*head, header, *[line.replace(".", decimal) for line in text]], encoding, newline)
 
 
-def rtec(friction, time, *, steps: Sequence[int] | None = None) -> bytes:
+def rtec(
+    friction,
+    time,
+    *,
+    speed_rpm: float = 120.0,
+    steps: Sequence[int] | None = None,
+    total: str = "00:01:08.25",
+) -> bytes:
     """Rtec MFT: a line of keys over one of values, headers and rows that end in a comma, and a total time."""
     one = np.ones_like(time)
     number = one if steps is None else np.asarray(steps, float)
     head = ["Sample,Operator,Recipe", "disk 7,nobody,pin on disk"]
     header = "Step, Timestamp, RecipeStep, DAQ.Fz (N),DAQ.Fx (N),DAQ.COF (),"
     header += "Rotary.Velocity (rpm),XYZ.Z Depth (mm),"
-    columns = [number, time, number, 10.0 * one, friction * 10.0, friction, 120.0 * one, time * 1e-4]
+    columns = [number, time, number, 10.0 * one, friction * 10.0, friction, speed_rpm * one, time * 1e-4]
     text = [line + "," for line in rows(columns, ",", 6, "")]
-    return encoded([*head, header, *text, "TotalTime", "00:01:08.25"], "utf-8", "\r\n")
+    tail = ["TotalTime", total] if total else []
+    return encoded([*head, header, *text, *tail], "utf-8", "\r\n")
 
 
-def umt(friction, time, *, reciprocating: bool = False, steps: int = 1) -> bytes:
+def umt(friction, time, *, reciprocating: bool = False, steps: int = 1, unit: str = "g") -> bytes:
     """Bruker (CETR) UMT: for each step its keys, headers, a line of units, an empty line, and the rows.
 
     Forces are in gram-force with compression negative; `steps` divides the rows evenly, time begins anew.
     """
-    size = 9.80665e-3
-    lines = ["Created by CETR Data Viewer ver.2.19 01/02/26 10:00:00", "Total number of runs - 1"]
-    lines += [f"Total number of steps = {steps}", "", "Run # 1", "Run date 01 Feb 2026 10:00:00"]
+    size = {"g": 9.80665e-3, "N": 1.0}[unit]
+    head = ["Created by CETR Data Viewer ver.2.19 01/02/26 10:00:00", "Total number of runs - 1"]
+    head += [f"Total number of steps = {steps}", "", "Run # 1", "Run date 01 Feb 2026 10:00:00"]
+    lines = head
     for i, part in enumerate(np.array_split(np.arange(len(time)), steps), 1):
         f, t = friction[part], time[part] - time[part][0]
         n = np.full_like(t, 2.0)
         stroke = np.sign(np.sin(2 * np.pi * t + 0.1)) if reciprocating else np.ones_like(t)
         keys = [f"Step No. {i}", "", "Step Type Code: 0", "Radius       = 15.000", "Velocity     = 240"]
         keys += [f"Set Force    = {-n[0] / size:.0f}", f"Data Count   = {len(t)}", ""]
-        header = ["Fx,Fz,Z,T,Ff,COF", "g,g,mm,sec,g,", ""]
+        header = ["Fx,Fz,Z,T,Ff,COF", f"{unit},{unit},mm,sec,{unit},", ""]
         columns = [stroke * f * n / size, -n / size, -t * 1e-3, t, f * n / size, f]
         lines = [*lines, *keys, *header, *rows(columns, ",", 6, ""), "", ""]
     return encoded(lines, "utf-8", "\r\n")

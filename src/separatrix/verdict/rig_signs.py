@@ -64,7 +64,7 @@ def slower(solution: Solution) -> Solution:
 
 def rig_signs(this: Followed, other: Followed) -> RigSigns:
     """Signs of a run, one that lasts followed until it has grown; `other` is that of the `slower` chain."""
-    (torque, of_cage, pockets, heat), (less, *_) = _torque(*this), _torque(*other)
+    (torque, of_cage, pockets, heat), (less, *_) = shaft_torque(*this), shaft_torque(*other)
     _, cage, history = this
     line, share = loudest(cage, history) if lasts(history) else (None, None)
     return RigSigns(
@@ -106,7 +106,7 @@ def _exponent(torque: NewtonMetre, less: NewtonMetre) -> Ratio:
     return math.log(torque / less) / -math.log(SLOWER)
 
 
-def _torque(
+def shaft_torque(
     solution: Solution, cage: MovingCage, history: History
 ) -> tuple[NewtonMetre, NewtonMetre, Watt, HeatBalance | None]:
     """Torque of the shaft, the cage's part of it, heat of the pockets, balance with the fluid if any."""
