@@ -49,9 +49,10 @@ def heard(study: Study, seeds: int) -> None:
                 ]
                 octaves = sorted(loudest(cage, run) for run in runs if lasts(run))
                 middle = octaves[len(octaves) // 2]
+                numbers = " ".join(f"{octaves[i][0]:.0f}" for i in (0, len(octaves) // 2, -1))
                 print(
                     f"{motion.value:6s}  {1e3 * clearance:6.2f} mm  {1e3 * mass:.2f} g  "
-                    f"{len(octaves)}/{seeds}   {octaves[0][0]:.0f} {middle[0]:.0f} {octaves[-1][0]:.0f}; {middle[1]:.2f}",
+                    f"{len(octaves)}/{seeds}   {numbers}; {middle[1]:.2f}",
                     flush=True,
                 )
 

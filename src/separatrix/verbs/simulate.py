@@ -151,6 +151,9 @@ def run_facts(answer: Part) -> Facts:
     if "given_restitution_factor" in answer:
         damping = show(answer.cage, "race_damping") if "race_damping" in answer.cage else "infinite"
         damping += fill(answer, ", for a restitution factor of {given_restitution_factor}, not the study's")
+    judged = "{judged_from} to {followed}; the run has {run_length}"
+    if answer.followed >= answer.run_length:  # which ends with its last sample
+        judged = "{judged_from} to the end of the run, {run_length}"
     return facts(
         ("Operation", "; ".join(figure_heading(answer)[1:])),
         ("Initial disturbance", fill(answer, f"{{kick}}; run {answer.run} of seed {answer.seed}")),
@@ -158,7 +161,7 @@ def run_facts(answer: Part) -> Facts:
         ("Ball", cage["ball"]["value"]),
         ("Race damping", damping),
         ("Clearance", _clearance(answer)),
-        ("Judged", fill(answer, "{judged_from} to {followed}; the run has {run_length}")),
+        ("Judged", fill(answer, judged)),
         ("Energy balance", fill(answer, "closes to {energy_imbalance} of the work done")),
     )
 
