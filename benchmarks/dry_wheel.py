@@ -17,6 +17,8 @@ import separatrix
 from separatrix.cage import moving_cage, settings_for, simulate
 from separatrix.chain.solution import Solution, solve
 from separatrix.study.study import MotionModel, Study
+from separatrix.verdict.judgement import is_calm
+from separatrix.verdict.long_jobs import Runner
 from separatrix.verdict.rig_signs import lasts, loudest, shaft_torque
 
 RPM = math.pi / 30.0
@@ -80,17 +82,17 @@ def torque(study: Study) -> None:
 
 
 def frictions(study: Study, seeds: int) -> None:
-    """Share of runs that last, over pocket friction and land friction."""
+    """Share of runs that do not end calm, over pocket friction and land friction."""
     lands = (0.05, 0.1, 0.2, 0.3)
-    print("pocket friction: share of runs that whirl at land frictions", lands)
+    print("pocket friction: share of runs that do not end calm at land frictions", lands)
     for pocket in (0.05, 0.1, 0.15, 0.2, 0.3):
         shares = []
         for land in lands:
             found = chain(cage_of(study, land_friction=land))
             cage = moving_cage(found, pocket)
-            kick = settings_for(study.stability, cage).middle_kick
-            runs = [simulate(cage, kick=kick, seed=one) for one in range(1, 4 * seeds + 1)]
-            shares.append(sum(lasts(run) for run in runs) / len(runs))
+            settings = settings_for(study.stability, cage)
+            runs = Runner().ensemble(cage, settings, kicks=(settings.middle_kick,), runs=4 * seeds)
+            shares.append(1.0 - float(is_calm(runs.outcome).mean()))
         print(f"{pocket:4.2f}  " + "  ".join(f"{one:.2f}" for one in shares), flush=True)
 
 
