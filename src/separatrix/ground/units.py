@@ -349,6 +349,7 @@ HABITS = {unit: unit for unit in QUANTITIES} | {
     "Pa s": "uPa s",
     "kg m": "g mm",
     "kg m2": "kg mm2",
+    "m3/(N m)": "mm3/(N m)",
 }
 """The unit that an engineer would write."""
 
@@ -367,6 +368,7 @@ _READABLE: dict[str, tuple[tuple[float, str], ...]] = {
     "Pa s": ((1e-6, "uPa s"), (1e-3, "mPa s"), (1.0, "Pa s")),
     "kg m": ((1e-6, "g mm"),),
     "kg m2": ((1e-6, "kg mm2"),),
+    "m3/(N m)": ((1e-9, "mm3/(N m)"),),
     "J": ((1e-6, "uJ"), (1e-3, "mJ"), (1.0, "J")),
     "W": ((1e-6, "uW"), (1e-3, "mW"), (1.0, "W"), (1e3, "kW")),
     "W/m2": ((1.0, "W/m2"), (1e3, "kW/m2")),

@@ -18,6 +18,7 @@ from separatrix.verbs.parts.refused import cage_motion, refused
 from separatrix.verbs.verb import Option, Verb
 
 if TYPE_CHECKING:
+    from separatrix.chain.solution import Solution
     from separatrix.study.study import Study
     from separatrix.verbs.cage_answers import LifeAnswer
     from separatrix.verdict.long_jobs import Runner
@@ -90,7 +91,18 @@ def compute(study: Study, options: Options, runner: Runner) -> LifeAnswer:
 def refusals(study: Study) -> Iterator[str]:
     """Yield why there is no life of a study that states how it wears; of another none is asked."""
     if study.wear is not None and study.cage is not None:
-        yield from refused(study, cage_motion)
+        yield from refused(study, cage_motion, known_wear)
+
+
+def known_wear(solution: Solution) -> None:
+    """Refuse a film or a cage whose wear neither the study nor the library has."""
+    from separatrix.study.candidates import reference_candidate
+    from separatrix.verdict.life_table import wear_rates
+
+    study = solution.study
+    candidate = reference_candidate(study, study.ranking) if study.ranking else None
+    if study.wear is not None:
+        wear_rates(study, study.wear, candidate)
 
 
 def page(answer: Part) -> Page:
