@@ -100,9 +100,10 @@ def records_of(library: Library, kind: str | None) -> list[Record]:
 
 
 def records_named(library: Library, records: Sequence[Record], name: str) -> list[Record]:
-    """Return the records of a name, or else of another name of theirs; refused if there is none."""
+    """Return the records of a name, fluids and bearings also by other names; refused if there is none."""
+    spelled = [one for one in records if one.kind in ("fluid", "bearing")]
     found = [one for one in records if one.name == name]
-    if found := found or [one for one in records if library.named(one.kind, name) == one.name]:
+    if found := found or [one for one in spelled if library.named(one.kind, name) == one.name]:
         return found
     kinds = {one.kind for one in records}
     rule = f"is not a {kinds.pop() if len(kinds) == 1 else 'record'} of the library"
