@@ -28,10 +28,7 @@ class WearRates:
     """Of the film between ball and race."""
 
     cage_wear: SpecificWear | None = key(
-        _WEAR,
-        default=None,
-        example='"1e-6 mm3/(N m)"',
-        without="not given: that of its material in the library",
+        _WEAR, default=None, example='"1e-6 mm3/(N m)"', without="not given: that of the cage in the library"
     )
     """Of the cage's pockets on the balls."""
 

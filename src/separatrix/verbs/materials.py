@@ -130,9 +130,7 @@ def _document(which: str, **content: object) -> Document:
     return {"separatrix_version": __version__, "verb": f"materials {which}", **content}
 
 
-SEVERAL = (
-    "Of several data of a property the first is listed: `show NAME` has all. Confidence is that in E or D."
-)
+SEVERAL = "Of several data the first is listed: `show NAME` has all. Confidence is that in E or D."
 
 
 # --- the pages ----------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -149,6 +149,7 @@ def life(
     candidate = reference_candidate(study, study.ranking) if study.ranking else None
     solution, runner = solve(study, candidate), runner or Runner()
     rates = wear_rates(study, study.wear, candidate)
+    assumed = [name for name, one in rates.items() if one.range is None and name not in study.distributions]
     worn, inputs, fixed = _drawn(solution, study.wear, rates, candidate, draws)
     if max(worn.thickness.max(), THICKEST) > MOST_COVERS * worn.coverage.min():
         rule = f"must be above a {MOST_COVERS:g}th of any film, {format_quantity(THICKEST, 'm')} by transfer"
@@ -171,8 +172,7 @@ def life(
     def answer(found: Mapping[Place, Node]) -> Life:
         if len(found) < len(places):
             raise Interrupted
-        notes = [*_notes(found, fixed, study.distributions, rates)]
-        notes += [*_tests(rates, solution), *solution.notes]
+        notes = [*_notes(found, fixed, assumed), *_tests(rates, solution), *solution.notes]
         each = [
             Phase(
                 share=one.share,
@@ -403,11 +403,9 @@ def _drawn(
     return Worn(*columns), inputs, fixed
 
 
-def _notes(
-    found: Mapping[Place, Node], fixed: list[str], stated: Container[str], rates: Mapping[str, WearRate]
-) -> list[str]:
+def _notes(found: Mapping[Place, Node], fixed: list[str], assumed: list[str]) -> list[str]:
     notes = [note for one in found.values() for note in one.notes]
-    if assumed := [name for name, rate in rates.items() if name not in stated and rate.range is None]:
+    if assumed:
         words = ", ".join(name.removeprefix("wear.") for name in assumed)
         notes.append(f"Stated without a distribution, a factor of {DECADE:g} either way is assumed: {words}.")
     if fixed:

@@ -204,10 +204,8 @@ def bearing_facts(answer: Part) -> list[tuple[str, str]]:
     steels = f"balls and rings {ball}" if ball == ring else f"balls {ball}, rings {ring}"
     grooves = ", ".join(f"{entry_words(at[f'{race}_conformity'])} {race}" for race in ("inner", "outer"))
     contact = f"{entry_words(at['contact_angle'])} without load; {steels}; groove radius over ball diameter"
-    size, name = (
-        f"pitch diameter {entry_words(at['pitch_diameter'])}",
-        stated(study, "bearing", "designation"),
-    )
+    size = f"pitch diameter {entry_words(at['pitch_diameter'])}"
+    name = stated(study, "bearing", "designation")
     return [
         ("Bearing", ", ".join(filter(None, [name, balls, size, bore and f"bore {bore}"]))),
         ("Contact angle", f"{contact} {grooves}"),
